@@ -1,0 +1,175 @@
+"""The contract between world and agent: actions, observations, categories, camera and robot geometry.
+
+NumPy only. This is the one module of `sim` that `stubborn` imports, so nothing here knows about physics,
+rendering or files.
+
+Frames: the world is z up. The start frame of an episode has its origin at the start pose, x forward and y
+to the left; yaw is counter-clockwise, in radians. Images have row 0 at the top.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class ConfigError(ValueError):
+    """A value that a user gave is outside what is allowed; the message says what was given and what would do."""
+
+
+class Action(enum.IntEnum):
+    """The four discrete actions of the Habitat ObjectNav challenge 2021."""
+
+    STOP = 0
+    MOVE_FORWARD = 1
+    TURN_LEFT = 2
+    TURN_RIGHT = 3
+
+
+FORWARD_M = 0.25
+"""Commanded displacement of MOVE_FORWARD."""
+TURN_RAD = math.radians(30.0)
+"""Commanded rotation of TURN_LEFT (positive) and TURN_RIGHT (negative)."""
+MAX_STEPS = 500
+"""Actions after which an episode is truncated."""
+SUCCESS_DISTANCE_M = 1.0
+"""STOP succeeds where a visible point of the goal's footprint is at most this far from the robot's centre."""
+
+# fmt: off
+MPCAT40: tuple[str, ...] = (
+    "void", "wall", "floor", "chair", "door", "table", "picture", "cabinet", "cushion", "window", "sofa",
+    "bed", "curtain", "chest_of_drawers", "plant", "sink", "stairs", "ceiling", "toilet", "stool", "towel",
+    "mirror", "tv_monitor", "shower", "column", "bathtub", "counter", "fireplace", "lighting", "beam", "railing",
+    "shelving", "blinds", "gym_equipment", "seating", "board_panel", "furniture", "appliances", "clothes", "objects",
+    "misc",
+)
+"""Matterport's 40 categories with void first: `MPCAT40[id]` is the name behind a pixel of `semantic`."""
+
+GOAL_CATEGORIES: tuple[str, ...] = (
+    "chair", "table", "picture", "cabinet", "cushion", "sofa", "bed", "chest_of_drawers", "plant", "sink", "toilet",
+    "stool", "towel", "tv_monitor", "shower", "bathtub", "counter", "fireplace", "gym_equipment", "seating", "clothes",
+)
+"""The 21 categories that an episode may ask for; `objectgoal` is an index into this tuple."""
+# fmt: on
+
+MPCAT40_ID: Mapping[str, int] = MappingProxyType({name: i for i, name in enumerate(MPCAT40)})
+"""mpcat40 id of each category name."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CameraModel:
+    """A pinhole camera with square pixels, level, on the robot's axis."""
+
+    width_px: int = 640
+    height_px: int = 480
+    hfov_rad: float = math.radians(79.0)
+    """Horizontal field of view."""
+    height_m: float = 0.88
+    """Optical centre above the floor."""
+    min_depth_m: float = 0.5
+    """Nearer surfaces read 0."""
+    max_depth_m: float = 5.0
+    """Farther surfaces read this value."""
+
+    def __post_init__(self) -> None:
+        if min(self.width_px, self.height_px) < 1:
+            raise ConfigError(f"CameraModel needs at least 1 x 1 pixels, got {self.width_px} x {self.height_px}.")
+        if not 0.0 < self.hfov_rad < math.pi:
+            raise ConfigError(f"CameraModel.hfov_rad must lie in (0, pi), got {self.hfov_rad}.")
+        if not 0.0 <= self.min_depth_m < self.max_depth_m:
+            raise ConfigError(
+                f"CameraModel needs 0 <= min_depth_m < max_depth_m, got {self.min_depth_m} and {self.max_depth_m}."
+            )
+
+    @property
+    def focal_px(self) -> float:
+        """Focal length in pixels, the same in both directions."""
+        return 0.5 * self.width_px / math.tan(0.5 * self.hfov_rad)
+
+    @property
+    def vfov_rad(self) -> float:
+        """Vertical field of view."""
+        return 2.0 * math.atan(0.5 * self.height_px / self.focal_px)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobotModel:
+    """What an agent may know about the body it drives."""
+
+    radius_m: float = 0.18
+    height_m: float = 0.88
+    camera_forward_m: float = 0.0
+    """Camera mount ahead of the wheel axis; 0 for our robot, whose camera turns on the spot."""
+
+    def __post_init__(self) -> None:
+        if self.radius_m <= 0 or self.height_m <= 0:
+            raise ConfigError(f"RobotModel needs positive sizes, got {self.radius_m} m and {self.height_m} m.")
+
+
+Observation = Mapping[str, NDArray]
+"""What an agent sees at one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
+
+========== ============ ========= =====================================================================
+key        shape        dtype     meaning
+========== ============ ========= =====================================================================
+rgb        (h, w, 3)    uint8     colour
+depth      (h, w)       float32   metres along the optical axis; 0: none or < 0.5 m; 5.0: 5 m or farther
+semantic   (h, w)       uint8     mpcat40 id
+gps        (2,)         float32   metres forward and left of the start pose
+compass    (1,)         float32   yaw against the start heading, in (-pi, pi]
+objectgoal (1,)         int64     index into `GOAL_CATEGORIES`
+========== ============ ========= =====================================================================
+"""
+
+SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
+"""Image sensors: rendered only when asked for."""
+POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
+"""Always present."""
+
+
+class Scores(NamedTuple):
+    """Per-pixel class probabilities, reduced to what the target maps need; float32 (h, w) in [0, 1].
+
+    The resolution may be any whole fraction of the image's.
+    """
+
+    target: NDArray[np.float32]
+    """Probability of the goal category."""
+    best_other: NDArray[np.float32]
+    """Highest probability of any other category."""
+
+
+class Segmenter(Protocol):
+    """Where segmentation comes from: ground truth, a noisy oracle, a network."""
+
+    sensors: tuple[str, ...]
+    """The image sensors that `scores` reads, beside the depth that every agent asks for."""
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        """Scores of one frame for the goal category."""
+        ...
+
+
+class Agent(Protocol):
+    """What `sim` drives: anything with these two methods, built by a factory (see `stubborn.agents.make`)."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        """Start a new episode; nothing of the last one may remain."""
+        ...
+
+    def act(self, observation: Observation) -> Action:
+        """Choose the next action. The observation must not be changed."""
+        ...
+
+
+def wrap_angle(angle_rad: float) -> float:
+    """The same angle in (-pi, pi]."""
+    wrapped = math.remainder(angle_rad, math.tau)
+    return math.pi if wrapped == -math.pi else wrapped
