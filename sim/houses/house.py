@@ -1,0 +1,90 @@
+"""A house as the rest of `sim` knows it: a specification to compose a world from, and its rooms."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sim.gl import mujoco
+
+Box = tuple[tuple[float, float, float], tuple[float, float, float]]
+"""Centre and half sizes of an axis-aligned box in the world, metres."""
+
+_ROOM = re.compile(r"(?P<room>room_(?P<kind>[a-z][a-z_]*?)_\d+)(?:_\d+)?")
+
+
+@dataclass(frozen=True)
+class House:
+    """A house that keeps the house format, before a robot stands in it."""
+
+    name: str
+    spec: mujoco.MjSpec
+    """Never changed: whoever composes a world takes `spec.copy()`."""
+    rules: Mapping[str, str] | None = None
+    """Label rules of a house from elsewhere, as `read_labels` takes them."""
+    path: Path | None = None
+
+
+@dataclass(frozen=True)
+class Room:
+    """The extent of one room; its floor is the bottom of its boxes."""
+
+    name: str
+    """`room_bedroom_00`"""
+    kind: str
+    """`bedroom`"""
+    boxes: tuple[Box, ...]
+
+    @property
+    def floor_z_m(self) -> float:
+        """Height of the room's floor."""
+        return min(centre[2] - half[2] for centre, half in self.boxes)
+
+    @property
+    def area_m2(self) -> float:
+        """Area of the union of the boxes in plan."""
+        edges = [_plan(box) for box in self.boxes]
+        xs = sorted({x for edge in edges for x in edge[0:2]})
+        ys = sorted({y for edge in edges for y in edge[2:4]})
+        return sum(
+            (x1 - x0) * (y1 - y0)
+            for x0, x1 in itertools.pairwise(xs)
+            for y0, y1 in itertools.pairwise(ys)
+            if self.contains(0.5 * (x0 + x1), 0.5 * (y0 + y1))
+        )
+
+    def contains(self, x_m: float, y_m: float) -> bool:
+        """Whether a place lies in the room in plan, its edge included."""
+        return any(x0 <= x_m <= x1 and y0 <= y_m <= y1 for x0, x1, y0, y1 in map(_plan, self.boxes))
+
+
+def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
+    """The rooms that the world sites of a compiled house or world declare, in the model's order."""
+    boxes: dict[str, tuple[str, list[Box]]] = {}
+    for site in range(model.nsite):
+        match = _ROOM.fullmatch(model.site(site).name)
+        if match is None or model.site_bodyid[site] != 0 or model.site_type[site] != mujoco.mjtGeom.mjGEOM_BOX:
+            continue
+        boxes.setdefault(match["room"], (match["kind"], []))[1].append(_site_box(model, site))
+    return tuple(Room(name, kind, tuple(parts)) for name, (kind, parts) in boxes.items())
+
+
+def _site_box(model: mujoco.MjModel, site: int) -> Box:
+    """The axis-aligned box around a box site of the world body."""
+    rotation = np.empty(9)
+    mujoco.mju_quat2Mat(rotation, model.site_quat[site])
+    half = np.abs(rotation.reshape(3, 3)) @ model.site_size[site]
+    x, y, z = (float(value) for value in model.site_pos[site])
+    hx, hy, hz = (float(value) for value in half)
+    return (x, y, z), (hx, hy, hz)
+
+
+def _plan(box: Box) -> tuple[float, float, float, float]:
+    """Smallest and largest x, smallest and largest y."""
+    (x, y, _), (hx, hy, _) = box
+    return x - hx, x + hx, y - hy, y + hy

@@ -1,0 +1,187 @@
+"""Which geom shows what: labels read from the names of geoms and bodies (contract, section 3).
+
+A label is a name `<category>_<number>` (`chair_03`, `chest_of_drawers_00`), its category from mpcat40 with
+underscores. A geom takes the first label among its own name, its body's and its body's ancestors'; the bearer of that
+name is the instance. Houses from elsewhere bring rules, `{regex: category}`, that are tried before the pattern.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import HouseError
+from sim.gl import mujoco
+from sim.interface import MPCAT40, MPCAT40_ID
+
+RENDERED_GROUPS = 3
+"""Geoms of groups 0, 1 and 2 are rendered; one of group 3 or above only collides."""
+VOID = "void"
+_LABEL = re.compile(r"(?P<category>[A-Za-z][A-Za-z_]*)_(?P<number>\d+)")
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One labelled thing: the bearer of a label and the geoms that belong to it, rendered or not."""
+
+    name: str
+    category: str
+    geom_ids: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Labels:
+    """What each geom of one compiled model shows."""
+
+    instances: tuple[Instance, ...]
+    geom_category: NDArray[np.uint8]  # (ngeom,) mpcat40 id; 0: void
+    geom_instance: NDArray[np.int32]  # (ngeom,) index into `instances`; -1: none
+    void_geoms: int
+    """Visible geoms without a label, other than the robot's; more than 0 only with rules."""
+
+    def of_category(self, category: str) -> tuple[Instance, ...]:
+        """The instances of one category, in the model's order."""
+        return tuple(instance for instance in self.instances if instance.category == category)
+
+    def categories(self) -> tuple[str, ...]:
+        """The categories that have an instance, in mpcat40's order."""
+        present = {instance.category for instance in self.instances}
+        return tuple(name for name in MPCAT40 if name in present)
+
+
+def read_labels(
+    model: mujoco.MjModel, *, rules: Mapping[str, str] | None = None, ignore_prefix: str = "robot/"
+) -> Labels:
+    """Labels of a compiled house, or of a world whose robot's names begin with `ignore_prefix`.
+
+    Args:
+        model: the compiled model.
+        rules: regular expressions searched for in names, in order, and the category each gives ("void" too).
+            With rules a visible geom without a label becomes void and is counted.
+        ignore_prefix: geoms whose name or body's name begins so are nobody's; "" to ignore none.
+
+    Raises:
+        HouseError: a visible geom has no label and there are no rules, or a rule is wrong.
+    """
+    compiled_rules = _compile_rules(rules)
+    category_of_geom = np.zeros(model.ngeom, dtype=np.uint8)
+    instance_of_geom = np.full(model.ngeom, -1, dtype=np.int32)
+    members: dict[str, tuple[str, list[int]]] = {}
+    void_geoms = 0
+    visible = rendered_geoms(model)
+    for geom in range(model.ngeom):
+        names = tuple(_names(model, geom))
+        if ignore_prefix and any(name.startswith(ignore_prefix) for name in names[:2]):
+            continue
+        bearer, category = _first_label(names, compiled_rules)
+        if category == VOID:
+            if visible[geom]:
+                if rules is None:
+                    raise HouseError(_unlabelled(model, geom, names))
+                void_geoms += 1
+            continue
+        members.setdefault(bearer, (category, []))[1].append(geom)
+        category_of_geom[geom] = MPCAT40_ID[category]
+    instances = tuple(Instance(name, category, tuple(ids)) for name, (category, ids) in members.items())
+    for index, instance in enumerate(instances):
+        instance_of_geom[list(instance.geom_ids)] = index
+    return Labels(instances, category_of_geom, instance_of_geom, void_geoms)
+
+
+def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """(ngeom,) True for geoms that a camera sees: group below 3 and not wholly transparent."""
+    return (model.geom_group < RENDERED_GROUPS) & (_alpha(model) > 0.0)
+
+
+def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """(ngeom,) True for geoms that can touch something."""
+    return (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+
+
+def parse_label(name: str) -> str | None:
+    """The category of a name that is a label, else None."""
+    match = _LABEL.fullmatch(name)
+    if match is None or match["category"] not in MPCAT40_ID or match["category"] == VOID:
+        return None
+    return match["category"]
+
+
+def suggest(category: str) -> str:
+    """`Did you mean 'chair'?`, or what there is when nothing is near."""
+    names = [name for name in MPCAT40 if name != VOID]
+    near = difflib.get_close_matches(category.lower().replace("-", "_"), names, n=1)
+    return f"Did you mean '{near[0]}'?" if near else f"The categories are mpcat40's: {', '.join(names)}."
+
+
+def describe_geom(model: mujoco.MjModel, geom: int) -> str:
+    """A geom as an error message names it, also when it has no name."""
+    name = model.geom(geom).name
+    if name:
+        return f"geom '{name}'"
+    shape = mujoco.mjtGeom(model.geom_type[geom]).name.removeprefix("mjGEOM_").lower()
+    body = model.body(model.geom_bodyid[geom]).name
+    x, y, z = model.geom_pos[geom]
+    return f"the unnamed {shape} number {geom} at ({x:.2f}, {y:.2f}, {z:.2f}) in body '{body}'"
+
+
+def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
+    """(ngeom,) opacity as rendered: a geom's own colour, else its material's."""
+    alpha = model.geom_rgba[:, 3].copy()
+    default = np.all(model.geom_rgba == np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32), axis=1)
+    by_material = default & (model.geom_matid >= 0)
+    alpha[by_material] = model.mat_rgba[model.geom_matid[by_material], 3]
+    return alpha
+
+
+def _names(model: mujoco.MjModel, geom: int) -> Iterator[str]:
+    """Names of a geom, its body and the body's ancestors below the world; "" for the unnamed."""
+    yield model.geom(geom).name
+    body = int(model.geom_bodyid[geom])
+    while body != 0:
+        yield model.body(body).name
+        body = int(model.body_parentid[body])
+
+
+def _first_label(names: tuple[str, ...], rules: list[tuple[re.Pattern[str], str]]) -> tuple[str, str]:
+    """Bearer's name and category of the first label among `names`; ("", "void") without one."""
+    for name in names:
+        if not name:
+            continue
+        for pattern, category in rules:
+            if pattern.search(name):
+                return name, category
+        category = parse_label(name)
+        if category is not None:
+            return name, category
+    return "", VOID
+
+
+def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[re.Pattern[str], str]]:
+    compiled = []
+    for regex, category in (rules or {}).items():
+        if category not in MPCAT40_ID:
+            raise HouseError(f"label rule '{regex}' gives '{category}', which is no category. {suggest(category)}")
+        try:
+            compiled.append((re.compile(regex), category))
+        except re.error as error:
+            raise HouseError(f"label rule '{regex}' is no regular expression: {error}.") from None
+    return compiled
+
+
+def _unlabelled(model: mujoco.MjModel, geom: int, names: tuple[str, ...]) -> str:
+    """The sentence that refuses a visible geom without a label."""
+    where = describe_geom(model, geom)
+    for name in names:
+        match = _LABEL.fullmatch(name)
+        if match is not None:
+            category = match["category"]
+            return f"{where} is visible and named '{name}', but '{category}' is no category. {suggest(category)}"
+    return (
+        f"{where} is visible and has no label: name it, its body or an ancestor <category>_<number>, for example "
+        "chair_03, or give rules with --labels."
+    )
