@@ -73,7 +73,7 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
         (model.nu, "actuator", house.spec.actuators),
     ):
         if count:
-            raise HouseError(f"a house holds no {what}, but this one has {what} '{names[0].name or "(unnamed)"}'.")
+            raise HouseError(f"a house holds no {what}, but this one has {what} {_quoted(names[0].name)}.")
     if model.nflex or model.nskin:
         raise HouseError("a house is made of geoms, but this one has a flex or a skin, which cannot be labelled.")
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
@@ -107,6 +107,10 @@ def top_z_m(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> float:
     if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
         return z
     return z + float(np.abs(data.geom_xmat[geom, 6:9]) @ model.geom_size[geom])
+
+
+def _quoted(name: str) -> str:
+    return f"'{name}'" if name else "without a name"
 
 
 def _one_line(error: Exception) -> str:
