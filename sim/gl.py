@@ -36,7 +36,9 @@ def choose_backend() -> str:
         return "egl"
     if any(_loads(f"libOSMesa.so.{version}") for version in (8, 6)):
         return "osmesa"
-    raise RenderError(f"No OpenGL for offscreen rendering: neither libEGL nor libOSMesa is installed. Try: {INSTALL_HINT}")
+    raise RenderError(
+        f"No OpenGL for offscreen rendering: neither libEGL nor libOSMesa is installed. Try: {INSTALL_HINT}"
+    )
 
 
 os.environ["MUJOCO_GL"] = choose_backend()

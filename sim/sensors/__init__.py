@@ -1,0 +1,1 @@
+"""What the robot senses: cameras with their rendering profiles, gps and compass."""

@@ -1,0 +1,266 @@
+"""The robot's RGB-D camera with ground-truth segmentation, rendered offscreen in at most two passes.
+
+One pass gives colour. The other draws every geom in the colour of its number; a single read of that frame buffer
+gives numbers and depth, so the edges of `depth` and `semantic` agree to the pixel. Only what is asked for is drawn,
+and geoms outside the view frustum are left out of the scene, which changes no pixel.
+"""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import RenderError
+from sim.gl import INSTALL_HINT, mujoco
+from sim.interface import SENSORS, CameraModel, ConfigError
+from sim.pose import Pose
+from sim.sensors.profiles import RenderProfile, get_profile
+
+if TYPE_CHECKING:
+    from sim.houses.labels import Labels
+
+Z_NEAR_M = 0.05
+"""Near plane: its farthest corner is 0.07 m away, well inside the robot's radius of 0.18 m."""
+Z_FAR_M = 80.0
+"""Far plane: beyond the diagonal of the largest house."""
+FIRST_HIDDEN_GROUP = 3
+"""Geoms of this group and above are never rendered (house format)."""
+_OUT_OF_VIEW_GROUP = 5
+
+
+class Camera:
+    """Renders what a level camera sees from a pose of the robot in one compiled model.
+
+    The model's visual settings (clipping planes, quality, buffer size) are set here; its own do not count.
+
+    Args:
+        model: compiled world.
+        labels: category and instance of each geom of `model`.
+        camera: intrinsics, mount height and depth range.
+        profile: name of a rendering profile.
+
+    Raises:
+        RenderError: no OpenGL context, or an image larger than the frame buffer can be.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        labels: Labels,
+        *,
+        camera: CameraModel | None = None,
+        profile: str = "fast",
+        cull: bool = True,
+    ) -> None:
+        self.camera = camera or CameraModel()
+        self.profile: RenderProfile = get_profile(profile)
+        self.cull = cull
+        self._model = model
+        self._groups = model.geom_group.copy()
+        self._drawable = (self._groups < FIRST_HIDDEN_GROUP) & (_alpha(model) > 0.0)
+        self._geom_category = labels.geom_category
+        self._rect = mujoco.MjrRect(0, 0, self.camera.width_px, self.camera.height_px)
+        shape = (self.camera.height_px, self.camera.width_px)
+        self._color_buffer = np.zeros((*shape, 3), np.uint8)
+        self._depth_buffer = np.zeros(shape, np.float32)
+        self._option = mujoco.MjvOption()
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[:FIRST_HIDDEN_GROUP] = 1
+        self._option.sitegroup[:] = 0
+        self._gl = _make_gl_context(self.camera)
+        self._gl.make_current()
+        self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples)
+        # Multisampling would blend the numbers of neighbouring geoms, so their pass never has it.
+        self._number_context = (
+            _make_context(model, self.camera, self.profile, samples=0) if self.profile.samples else self._color_context
+        )
+        self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
+        self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
+        self._view = mujoco.MjvCamera()
+        self._plane_normals = _frustum_normals(self.camera)  # (5, 3) in camera axes: forward, left, up
+
+    @property
+    def gl_renderer(self) -> str:
+        """What draws: `llvmpipe (LLVM 15, 256 bits)` on a CPU, the card's name on a GPU."""
+        from OpenGL import GL
+
+        self._gl.make_current()
+        name = GL.glGetString(GL.GL_RENDERER)
+        return name.decode() if isinstance(name, bytes) else str(name)
+
+    def render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
+        """Images of the sensors asked for, each in memory of its own; see `sim.interface.Observation`.
+
+        Args:
+            data: state of the model; kinematics must be up to date.
+            pose: where the robot stands; the camera looks along its heading, level.
+            sensors: names out of `SENSORS`, plus `geom`: int32 (h, w), geom id or -1.
+
+        Raises:
+            ConfigError: an unknown sensor.
+        """
+        unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
+        if unknown:
+            raise ConfigError(f"Unknown sensor '{unknown[0]}'. There is: {', '.join(SENSORS)}, geom.")
+        images: dict[str, NDArray] = {}
+        if not sensors:
+            return images
+        self._gl.make_current()
+        drawn_ids = self._update_scene(data, pose)
+        if {"depth", "semantic", "geom"} & set(sensors):
+            images |= self._numbers_and_depth(drawn_ids, sensors)
+        if "rgb" in sensors:
+            images["rgb"] = self._color()
+        return images
+
+    def close(self) -> None:
+        """Free the renderer; safe to call twice, and called for you when the camera is dropped."""
+        self._finalizer()
+
+    def _update_scene(self, data: mujoco.MjData, pose: Pose) -> NDArray[np.intp]:
+        """Fill the scene with what may be seen; returns the geom id of each scene geom, in the scene's order."""
+        eye_m, axes = _camera_frame(pose, self.camera)
+        shown = self._drawable & self._in_view(data, eye_m, axes) if self.cull else self._drawable
+        self._model.geom_group[:] = np.where(shown, self._groups, _OUT_OF_VIEW_GROUP)
+        mujoco.mjv_updateScene(
+            self._model, data, self._option, None, self._view, mujoco.mjtCatBit.mjCAT_ALL.value, self._scene
+        )
+        self._model.geom_group[:] = self._groups
+        _aim(self._scene, eye_m, axes, self.camera)
+        drawn_ids = np.flatnonzero(shown)
+        if self._scene.ngeom != len(drawn_ids):
+            raise RenderError(f"The scene holds {self._scene.ngeom} geoms where {len(drawn_ids)} were expected.")
+        return drawn_ids
+
+    def _in_view(self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray) -> NDArray[np.bool_]:
+        """True where a geom's bounding sphere reaches into the view frustum; planes always do."""
+        in_camera = (data.geom_xpos - eye_m) @ axes.T  # (ngeom, 3) forward, left, up
+        outside = (in_camera @ self._plane_normals.T) < -self._model.geom_rbound[:, None]
+        return ~outside.any(axis=1) | (self._model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)
+
+    def _numbers_and_depth(self, drawn_ids: NDArray[np.intp], sensors: Sequence[str]) -> dict[str, NDArray]:
+        flags = self._scene.flags
+        flags[:] = 0
+        flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = 1
+        flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = 1
+        mujoco.mjr_render(self._rect, self._scene, self._number_context)
+        depth = self._depth_buffer if "depth" in sensors else None
+        mujoco.mjr_readPixels(self._color_buffer, depth, self._rect, self._number_context)
+        numbers = self._color_buffer[::-1, :, 0].astype(np.uint16)  # OpenGL's row 0 is the lowest
+        if len(drawn_ids) >= 255:
+            numbers |= self._color_buffer[::-1, :, 1].astype(np.uint16) << 8
+        images: dict[str, NDArray] = {}
+        if "semantic" in sensors:
+            images["semantic"] = np.append(np.uint8(0), self._geom_category[drawn_ids])[numbers]
+        if "geom" in sensors:
+            images["geom"] = np.append(np.int32(-1), drawn_ids.astype(np.int32))[numbers]
+        if "depth" in sensors:
+            images["depth"] = _metric_depth(self._depth_buffer[::-1], self.camera)
+        return images
+
+    def _color(self) -> NDArray[np.uint8]:
+        flags = self._scene.flags
+        flags[:] = 0
+        flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self.profile.shadows
+        flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = self.profile.reflections
+        flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = self.profile.skybox
+        flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
+        mujoco.mjr_render(self._rect, self._scene, self._color_context)
+        mujoco.mjr_readPixels(self._color_buffer, None, self._rect, self._color_context)
+        return self._color_buffer[::-1].copy()
+
+
+def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
+    """Opacity of each geom, from its material where it has one."""
+    alpha = model.geom_rgba[:, 3].copy()
+    has_material = model.geom_matid >= 0
+    alpha[has_material] = model.mat_rgba[model.geom_matid[has_material], 3]
+    return alpha
+
+
+def _make_context(
+    model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile, samples: int
+) -> mujoco.MjrContext:
+    """An offscreen frame buffer of the camera's size with the model's meshes and textures."""
+    model.stat.extent = 1.0  # clipping planes are given in units of it
+    model.vis.map.znear = Z_NEAR_M
+    model.vis.map.zfar = Z_FAR_M
+    model.vis.global_.offwidth = camera.width_px
+    model.vis.global_.offheight = camera.height_px
+    model.vis.quality.offsamples = samples
+    model.vis.quality.numslices = profile.slices
+    model.vis.quality.numstacks = profile.stacks
+    model.vis.quality.shadowsize = profile.shadow_size_px
+    context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+    mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, context)
+    context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
+    if context.offWidth < camera.width_px or context.offHeight < camera.height_px:
+        raise RenderError(
+            f"The frame buffer holds {context.offWidth} x {context.offHeight} pixels, "
+            f"the camera asks for {camera.width_px} x {camera.height_px}."
+        )
+    return context
+
+
+def _free(gl: mujoco.GLContext, contexts: set[mujoco.MjrContext]) -> None:
+    gl.make_current()  # freeing deletes names in whatever context is current
+    for context in contexts:
+        context.free()
+    gl.free()
+
+
+def _make_gl_context(camera: CameraModel) -> mujoco.GLContext:
+    try:
+        return mujoco.GLContext(camera.width_px, camera.height_px)
+    except Exception as error:  # EGL, OSMesa and GLFW each raise their own
+        raise RenderError(f"OpenGL did not start ({error}). Try: {INSTALL_HINT}") from error
+
+
+def _camera_frame(pose: Pose, camera: CameraModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Optical centre in the world, and the axes (forward, left, up) as rows."""
+    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+    axes = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return np.array([pose.x_m, pose.y_m, pose.floor_z_m + camera.height_m]), axes
+
+
+def _frustum_normals(camera: CameraModel) -> NDArray[np.float64]:
+    """Inward unit normals (5, 3) of the frustum's sides and of the plane through the eye, in camera axes."""
+    h, v = 0.5 * camera.hfov_rad, 0.5 * camera.vfov_rad
+    return np.array(
+        [
+            [math.sin(h), math.cos(h), 0.0],
+            [math.sin(h), -math.cos(h), 0.0],
+            [math.sin(v), 0.0, math.cos(v)],
+            [math.sin(v), 0.0, -math.cos(v)],
+            [1.0, 0.0, 0.0],
+        ]
+    )
+
+
+def _aim(scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, camera: CameraModel) -> None:
+    top = Z_NEAR_M * math.tan(0.5 * camera.vfov_rad)
+    for gl_camera in scene.camera:  # left and right eye; without stereo MuJoCo draws their average
+        gl_camera.pos[:] = eye_m
+        gl_camera.forward[:] = axes[0]
+        gl_camera.up[:] = axes[2]
+        gl_camera.orthographic = 0
+        gl_camera.frustum_near, gl_camera.frustum_far = Z_NEAR_M, Z_FAR_M
+        gl_camera.frustum_top, gl_camera.frustum_bottom = top, -top
+        gl_camera.frustum_center = 0.0
+        gl_camera.frustum_width = top * camera.width_px / camera.height_px
+
+
+def _metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np.float32]:
+    """Metres along the optical axis from a reversed depth buffer (1 near, 0 far), in the sensor's conventions."""
+    depth_m = buffer * np.float32((Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M))
+    depth_m += np.float32(1.0 / Z_FAR_M)
+    np.reciprocal(depth_m, out=depth_m)
+    np.minimum(depth_m, np.float32(camera.max_depth_m), out=depth_m)
+    depth_m *= depth_m >= camera.min_depth_m
+    depth_m *= buffer > 0.0  # nothing was drawn there: no return
+    return depth_m

@@ -1,0 +1,45 @@
+"""Rendering profiles: one named set of quality settings, recorded with every result and dataset."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sim.interface import ConfigError
+
+
+@dataclass(frozen=True, kw_only=True)
+class RenderProfile:
+    """Quality settings of the offscreen renderer. Segmentation and depth never depend on them but for `slices`."""
+
+    name: str
+    shadows: bool
+    reflections: bool
+    skybox: bool
+    samples: int
+    """Multisampling of the colour pass; 0 is off."""
+    slices: int
+    """Tessellation of round geoms about their axis (`quality/numslices`)."""
+    stacks: int
+    """Tessellation of round geoms along their axis (`quality/numstacks`)."""
+    shadow_size_px: int = 2048
+
+
+PROFILES: dict[str, RenderProfile] = {
+    profile.name: profile
+    for profile in (
+        RenderProfile(name="fast", shadows=False, reflections=False, skybox=False, samples=0, slices=12, stacks=8),
+        RenderProfile(name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=28, stacks=16),
+    )
+}
+"""`fast` is for agents, `good` for pictures and training data."""
+
+
+def get_profile(name: str) -> RenderProfile:
+    """The profile of that name.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    if name not in PROFILES:
+        raise ConfigError(f"Unknown rendering profile '{name}'. There is: {', '.join(PROFILES)}.")
+    return PROFILES[name]
