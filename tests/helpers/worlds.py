@@ -1,0 +1,121 @@
+"""Ten-line houses for tests: a floor, four walls, and what a test puts between them.
+
+Every function returns a `House`; the `with_*` functions copy the one they are given and add one labelled thing, so
+scenes are built by nesting: `with_box(room(4, 3), "table_00", centre_m=(1, 0, 0.4), half_m=(0.3, 0.3, 0.4))`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from sim.gl import mujoco
+from sim.houses.house import House
+
+Vec3 = tuple[float, float, float]
+
+
+def open_floor(*, friction: float = 1.0, name: str = "floor_00") -> House:
+    """An endless floor at z = 0 and nothing else."""
+    spec = mujoco.MjSpec()
+    spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
+    spec.worldbody.add_geom(
+        name=name, type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1), friction=(friction, 0.005, 0.0001)
+    )
+    return House("open_floor", spec)
+
+
+def room(width_m: float = 4.0, depth_m: float = 4.0, *, height_m: float = 2.5, box_floor: bool = False) -> House:
+    """One room around the origin: inner size `width_m` along x and `depth_m` along y, site `room_living_00`."""
+    spec = mujoco.MjSpec()
+    world = spec.worldbody
+    world.add_light(pos=(0, 0, height_m - 0.1), dir=(0, 0, -1))
+    half_x, half_y, half_z, thick = 0.5 * width_m, 0.5 * depth_m, 0.5 * height_m, 0.05
+    outer = (half_x + 2 * thick, half_y + 2 * thick)
+    if box_floor:
+        _box(world, "floor_00", (0, 0, -thick), (*outer, thick))
+    else:
+        world.add_geom(name="floor_00", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(*outer, 1))
+    _box(world, "wall_00", (half_x + thick, 0, half_z), (thick, outer[1], half_z))
+    _box(world, "wall_01", (-half_x - thick, 0, half_z), (thick, outer[1], half_z))
+    _box(world, "wall_02", (0, half_y + thick, half_z), (half_x, thick, half_z))
+    _box(world, "wall_03", (0, -half_y - thick, half_z), (half_x, thick, half_z))
+    world.add_site(
+        name="room_living_00", type=mujoco.mjtGeom.mjGEOM_BOX, pos=(0, 0, half_z), size=(half_x, half_y, half_z)
+    )
+    return House("room", spec)
+
+
+def with_box(
+    house: House,
+    name: str,
+    *,
+    centre_m: Vec3,
+    half_m: Vec3,
+    yaw_rad: float = 0.0,
+    group: int = 0,
+    rgba=(0.6, 0.5, 0.4, 1),
+) -> House:
+    """The house with one static box more."""
+    spec = house.spec.copy()
+    geom = _box(spec.worldbody, name, centre_m, half_m, yaw_rad)
+    geom.group, geom.rgba = group, rgba
+    return House(house.name, spec, house.rules)
+
+
+def with_post(
+    house: House, name: str, *, xy_m: tuple[float, float], radius_m: float = 0.01, height_m: float = 1.0
+) -> House:
+    """The house with one static upright cylinder more: a table's leg, a pole."""
+    spec = house.spec.copy()
+    spec.worldbody.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        pos=(*xy_m, 0.5 * height_m),
+        size=(radius_m, 0.5 * height_m, 0),
+    )
+    return House(house.name, spec, house.rules)
+
+
+def with_movable(
+    house: House,
+    name: str,
+    *,
+    xy_m: tuple[float, float],
+    size_m: Vec3 = (0.40, 0.40, 0.45),
+    mass_kg: float = 3.0,
+    friction: float = 0.3,
+) -> House:
+    """The house with one free box more, standing on the floor; `friction` wins over the floor's (priority 1)."""
+    spec = house.spec.copy()
+    half = tuple(0.5 * size for size in size_m)
+    body = spec.worldbody.add_body(name=name, pos=(*xy_m, half[2]))
+    body.add_freejoint()
+    geom = body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=half, mass=mass_kg)
+    geom.friction, geom.priority = (friction, 0.005, 0.0001), 1
+    return House(house.name, spec, house.rules)
+
+
+def cluttered_room(boxes: int, *, width_m: float = 12.0, free_radius_m: float = 0.6) -> House:
+    """A square room with `boxes` small static boxes on a regular lattice, none within `free_radius_m` of the origin."""
+    spec = room(width_m, width_m).spec.copy()
+    for number, (x_m, y_m) in enumerate(_lattice(boxes, width_m - 1.0, free_radius_m)):
+        body = spec.worldbody.add_body(name=f"cabinet_{number:03d}", pos=(x_m, y_m, 0.3))
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.08, 0.08, 0.3))
+    return House("cluttered_room", spec)
+
+
+def _lattice(count: int, width_m: float, free_radius_m: float) -> Iterable[tuple[float, float]]:
+    """`count` places on a square lattice of the smallest pitch that leaves them all inside `width_m`."""
+    side = math.ceil(math.sqrt(count))
+    while True:
+        steps = [width_m * ((i + 0.5) / side - 0.5) for i in range(side)]
+        places = [(x, y) for x in steps for y in steps if math.hypot(x, y) >= free_radius_m]
+        if len(places) >= count:
+            return places[:count]
+        side += 1
+
+
+def _box(parent: mujoco.MjsBody, name: str, centre_m: Vec3, half_m: Vec3, yaw_rad: float = 0.0) -> mujoco.MjsGeom:
+    quat = (math.cos(0.5 * yaw_rad), 0.0, 0.0, math.sin(0.5 * yaw_rad))
+    return parent.add_geom(name=name, type=mujoco.mjtGeom.mjGEOM_BOX, pos=centre_m, size=half_m, quat=quat)
