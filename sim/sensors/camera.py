@@ -84,15 +84,6 @@ class Camera:
         self._view = mujoco.MjvCamera()
         self._plane_normals = _frustum_normals(self.camera)  # (5, 3) in camera axes: forward, left, up
 
-    @property
-    def gl_renderer(self) -> str:
-        """What draws: `llvmpipe (LLVM 15, 256 bits)` on a CPU, the card's name on a GPU."""
-        from OpenGL import GL
-
-        self._gl.make_current()
-        name = GL.glGetString(GL.GL_RENDERER)
-        return name.decode() if isinstance(name, bytes) else str(name)
-
     def render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Images of the sensors asked for, each in memory of its own; see `sim.interface.Observation`.
 
@@ -173,6 +164,21 @@ class Camera:
         mujoco.mjr_render(self._rect, self._scene, self._color_context)
         mujoco.mjr_readPixels(self._color_buffer, None, self._rect, self._color_context)
         return self._color_buffer[::-1].copy()
+
+
+def describe_gl() -> str:
+    """What draws: `llvmpipe (LLVM 15.0.6, 256 bits)` on a CPU, the card's name on a GPU.
+
+    Raises:
+        RenderError: OpenGL does not start.
+    """
+    context = _make_gl_context(CameraModel())
+    context.make_current()
+    from OpenGL import GL  # needs PYOPENGL_PLATFORM, which `sim.gl` has set
+
+    name = GL.glGetString(GL.GL_RENDERER)
+    context.free()
+    return name.decode() if isinstance(name, bytes) else str(name)
 
 
 def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:

@@ -1,0 +1,40 @@
+# `make run`: set everything up and watch the agent find things. `make test`: set everything up and pass the tests.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: setup system-libraries run test test-all lint types clean
+
+setup: system-libraries $(STAMP)
+
+$(STAMP): pyproject.toml setup.py constraints.txt
+	@echo "== creating $(VENV) and installing the pinned packages of constraints.txt"
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+system-libraries:
+	@sh tools/system_libraries.sh
+
+run: setup
+	@echo "== five episodes: the Stubborn agent looks for objects in apartments that ship with this repository"
+	$(BIN)/python -m sim.run
+
+test: setup
+	@echo "== the tests; where all cases would be too many, a sample that changes with each commit (all: make test-all)"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
+
+test-all: setup
+	@echo "== every test, every case"
+	$(BIN)/python -m pytest -n 2 --dist worksteal --all-cases
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: setup
+	$(BIN)/pyright
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache

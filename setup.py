@@ -1,0 +1,9 @@
+"""Packages the shipped houses of assets/ into the wheel as `sim/assets`; all else is in pyproject.toml."""
+
+from setuptools import find_packages, setup
+
+setup(
+    packages=[*find_packages(include=["sim*", "stubborn*"]), "sim.assets"],
+    package_dir={"sim.assets": "assets"},
+    package_data={"sim.assets": ["mjcf_houses/**/*"], "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"]},
+)

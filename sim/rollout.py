@@ -1,0 +1,67 @@
+"""One episode with one agent, to one result line."""
+
+from __future__ import annotations
+
+import math
+import time
+import zlib
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from sim.env import ObjectNavEnv
+from sim.episodes import Episode
+from sim.errors import PhysicsError
+from sim.interface import Action, Agent
+
+OnStep = Callable[[int, Agent, dict[str, Any]], None]
+"""Called with the number of the step, the agent and the environment's info after each step; pictures hang on it."""
+
+
+def episode_seed(seed: int, episode_id: str) -> int:
+    """A seed of the agent for this episode: hangs on the run's seed and the episode only, not on who played before."""
+    return int(np.random.SeedSequence([seed, zlib.crc32(episode_id.encode())]).generate_state(1)[0])
+
+
+def play_episode(
+    env: ObjectNavEnv, agent: Agent, episode: Episode, *, seed: int, on_step: OnStep | None = None
+) -> dict[str, Any]:
+    """Run the agent until it stops, the steps are used up or the physics break.
+
+    Returns:
+        The episode's line of `results.jsonl` but for what the run knows (`agent`, `semantics`, `seed`).
+    """
+    observation, info = env.reset(seed=seed, options={"episode": episode})
+    agent.reset(episode.goal, seed)
+    began_s = time.perf_counter()
+    steps, error, done = 0, None, False
+    while not done:
+        try:
+            observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
+        except PhysicsError as broken:
+            error = f"House '{episode.house}', step {steps}: {broken}"
+            break
+        steps += 1
+        done = terminated or truncated
+        if on_step is not None:
+            on_step(steps, agent, info)
+    wall_time_s = time.perf_counter() - began_s
+    line = {key: _plain(value) for key, value in info.items() if key != "collided"}
+    if error is not None:
+        line |= broken_metrics(error)
+    return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(steps / wall_time_s, 2) if steps else 0.0}
+
+
+def broken_metrics(error: str) -> dict[str, Any]:
+    """What a result line says of an episode that broke."""
+    return {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "end_reason": "error", "error": error}
+
+
+def _plain(value: Any) -> Any:
+    """JSON's types, with null for what is not finite."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

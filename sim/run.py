@@ -1,0 +1,285 @@
+"""Run episodes: `python -m sim.run`, or `python -m sim.run --agent oracle --episodes 100 --workers 2`.
+
+The composition root: the one place in `sim` that knows `stubborn`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from sim import cli, tables
+from sim.env import ObjectNavEnv
+from sim.episodes import Episode
+from sim.errors import EpisodeError
+from sim.interface import Agent, ConfigError, Segmenter
+from sim.oracle import Oracle
+from sim.pose import Pose
+from sim.results import RunDirectory
+from sim.rollout import broken_metrics, episode_seed, play_episode
+from sim.runner import PlayerSpec, run_items
+from sim.sensors.camera import describe_gl
+from sim.sensors.profiles import get_profile
+from stubborn import agents
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+ALL_SENSORS = ("rgb", "depth", "semantic")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Let an agent look for objects in apartments, and write down how it went."""
+
+    agent: str = "stubborn"
+    """Who plays: a name of --list-agents, or your own as package.module:factory."""
+    semantics: str = "gt"
+    """Where segmentation comes from: gt."""
+    split: str = "val"
+    """A shipped split, or a folder laid out like one."""
+    house: Path | None = None
+    """One MJCF file in place of a split."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for houses from elsewhere."""
+    goal: str | None = None
+    """Only this goal category."""
+    start_deg: str | None = None
+    """With --house: the start pose "X Y YAW" in metres and degrees."""
+    episodes: int = 5
+    """The first N episodes of the split; with --house, so many are drawn."""
+    seed: int = 0
+    """Drives agents and, with --house, starts and goals."""
+    workers: int = 1
+    """Processes."""
+    profile: str = "fast"
+    """Rendering quality: fast or good."""
+    out: Path | None = None
+    """Where everything goes (runs/<time>); a run that is there goes on."""
+    list_agents: bool = False
+    """Print the agents and end."""
+
+
+def main(args: Args) -> int:
+    """Run what was asked for; returns the exit status."""
+    console = Console()
+    if args.list_agents:
+        for name in agent_names():
+            console.print(name)
+        return 0
+    _check(args)
+    episodes, split = plan_episodes(args)
+    out = args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
+    config = _config(args, split)
+    run = RunDirectory(out, config)
+    try:
+        done = {line["episode_id"] for line in run.lines}
+        todo = [episode for episode in episodes if episode.episode_id not in done]
+        console.print(
+            f"{args.agent} with {args.semantics} semantics, {len(episodes)} episodes of {split['name']} "
+            f"(version {split['version']}), drawn by {config['versions']['gl_renderer']}; results in {out}"
+        )
+        if done:
+            console.print(f"{len(episodes) - len(todo)} of them were there already, {len(todo)} to go.")
+        spec = PlayerSpec("sim.run:EpisodePlayer", args)
+        lines = run_items(spec, todo, workers=args.workers, on_death=lambda episode: _death_line(args, episode))
+        for line in tables.with_progress(console, lines, total=len(todo)):
+            run.append(line)
+        summary = run.write_summary({"split": split})
+    finally:
+        run.close()
+    tables.print_results(console, run.lines, summary)
+    return 1 if summary["errors"] else 0
+
+
+def agent_names() -> list[str]:
+    """Every name that --agent takes."""
+    return [*agents.NAMES, "oracle"]
+
+
+def plan_episodes(args: Args) -> tuple[list[Episode], dict[str, Any]]:
+    """The episodes to play, and what identifies where they come from.
+
+    Raises:
+        ConfigError, EpisodeError, HouseError: what was asked for is not there.
+    """
+    start = _parse_start(args.start_deg)
+    env = ObjectNavEnv(
+        split=args.split, house=args.house, labels=args.labels, goal=args.goal, start=start, sensors=(), profile="fast"
+    )
+    try:
+        split = env.split
+        if args.house is None:
+            episodes = [episode for episode in split.episodes if args.goal in (None, episode.goal)]
+            if args.episodes > len(episodes):
+                raise ConfigError(
+                    f"--episodes {args.episodes}: split '{split.name}' has {len(episodes)} episodes"
+                    + (f" with goal '{args.goal}'." if args.goal else ".")
+                )
+            episodes = episodes[: args.episodes]
+        else:
+            episodes = [
+                env.draw_episode(np.random.default_rng([args.seed, i]), episode_id=f"{args.house.stem}_{i:04d}")
+                for i in range(args.episodes)
+            ]
+    finally:
+        env.close()
+    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
+    """The agent of that name, for this environment.
+
+    Raises:
+        ConfigError: there is no agent or no factory of that name.
+    """
+    if args.agent == "oracle":
+        return Oracle(env)
+    robot = env.robot_model
+    segmenter = make_segmenter(args.semantics)
+    if args.agent in agents.NAMES:
+        return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter)
+    return _load_factory(args.agent)(camera=env.camera_model, robot=robot, segmenter=segmenter)
+
+
+def make_segmenter(semantics: str) -> Segmenter:
+    """The source of segmentation of that name.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    if semantics != "gt":
+        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: gt.")
+    return GroundTruthSegmenter()
+
+
+class EpisodePlayer:
+    """One process's environment and agent; see `sim.runner`."""
+
+    def __init__(self, args: Args) -> None:
+        self._args = args
+        self._env = ObjectNavEnv(
+            split=args.split, house=args.house, labels=args.labels, sensors=_sensors(args), profile=args.profile
+        )
+        self._agent = make_agent(args, self._env)
+
+    def play(self, episode: Episode) -> dict[str, Any]:
+        """One episode, to one result line."""
+        seed = episode_seed(self._args.seed, episode.episode_id)
+        try:
+            metrics = play_episode(self._env, self._agent, episode, seed=seed)
+        except EpisodeError as error:
+            return _error_line(self._args, episode, str(error))
+        return _identity(self._args, episode) | metrics
+
+    def close(self) -> None:
+        """Free the renderers."""
+        self._env.close()
+
+
+def _sensors(args: Args) -> tuple[str, ...]:
+    """Image sensors that the agent reads; an agent from elsewhere gets all of them."""
+    if args.agent == "oracle":
+        return ()
+    if args.agent in agents.NAMES:
+        return tuple(sorted({"depth", *make_segmenter(args.semantics).sensors}))
+    return ALL_SENSORS
+
+
+def _identity(args: Args, episode: Episode) -> dict[str, Any]:
+    return {
+        "episode_id": episode.episode_id,
+        "house": episode.house,
+        "goal": episode.goal,
+        "agent": args.agent,
+        "semantics": args.semantics,
+        "seed": args.seed,
+    }
+
+
+def _error_line(args: Args, episode: Episode, error: str) -> dict[str, Any]:
+    """The line of an episode that never ran to an end."""
+    nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "gt_explored": None, "wall_time_s": 0.0}
+    return _identity(args, episode) | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
+
+
+def _death_line(args: Args, episode: Episode) -> dict[str, Any]:
+    return _error_line(args, episode, f"House '{episode.house}': the worker died twice in this episode.")
+
+
+def _load_factory(name: str) -> Any:
+    module_name, _, factory_name = name.partition(":")
+    if not factory_name:
+        raise ConfigError(
+            f"Unknown agent '{name}'. There is: {', '.join(agent_names())}, or your own as package.module:factory."
+        )
+    if "" not in sys.path:
+        sys.path.insert(0, "")  # `python -m` has it, the spawned workers and an installed script have not
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        raise ConfigError(f"Agent '{name}': no module '{error.name}' can be imported from here.") from None
+    factory = getattr(module, factory_name, None)
+    if not callable(factory):
+        raise ConfigError(f"Agent '{name}': module '{module_name}' has no function '{factory_name}'.")
+    return factory
+
+
+def _check(args: Args) -> None:
+    if args.episodes < 1:
+        raise ConfigError(f"--episodes must be at least 1, got {args.episodes}.")
+    if args.workers < 1:
+        raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
+    if args.seed < 0:
+        raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
+    if args.house is None and (args.labels is not None or args.start_deg is not None):
+        raise ConfigError("--labels and --start-deg go with --house.")
+    get_profile(args.profile)
+    make_segmenter(args.semantics)
+    if args.agent not in agent_names():
+        _load_factory(args.agent)
+
+
+def _parse_start(text: str | None) -> Pose | None:
+    if text is None:
+        return None
+    try:
+        x_m, y_m, yaw_deg = (float(word) for word in text.split())
+    except ValueError:
+        raise ConfigError(f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{text}".') from None
+    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
+        raise ConfigError(f'--start-deg must be finite, got "{text}".')
+    return Pose(x_m, y_m, math.radians(yaw_deg))
+
+
+def _config(args: Args, split: dict[str, Any]) -> dict[str, Any]:
+    """What `config.json` says: every option, the split and the versions that made the results."""
+    options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(args).items()}
+    del options["list_agents"]
+    packages = ("stubborn-objectnav", "mujoco", "numpy")
+    versions = {name: version(name) for name in packages} | {"gl_renderer": describe_gl()}
+    return options | {"split_identity": split, "versions": versions}
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """The command line."""
+    try:
+        return cli.run(Args, main, argv)
+    except KeyboardInterrupt:
+        print("\nStopped. The same command with the same --out goes on where it was.", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    from sim.run import entry as importable_entry  # spawned workers import `sim.run`, not `__main__`
+
+    sys.exit(importable_entry())

@@ -1,0 +1,52 @@
+"""One house ready to play in: the compiled world with the robot, its camera and the task; and a small cache of them."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable
+
+from sim.houses.house import House
+from sim.interface import MAX_STEPS, CameraModel
+from sim.robot.config import RobotConfig
+from sim.sensors.camera import Camera
+from sim.task import Task
+from sim.world import World
+
+
+class Scene:
+    """World, camera and task of one house; they live and end together."""
+
+    def __init__(
+        self, house: House, *, robot: RobotConfig, camera: CameraModel, profile: str, max_steps: int = MAX_STEPS
+    ) -> None:
+        self.world = World(house, robot=robot)
+        self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
+        self.task = Task(self.world, max_steps=max_steps)
+
+    def close(self) -> None:
+        """Free the renderer."""
+        self.camera.close()
+
+
+class SceneCache:
+    """Keeps the scenes used last, since compiling a house and charting its free space takes most of a second."""
+
+    def __init__(self, make: Callable[[str], Scene], *, size: int = 2) -> None:
+        self._make = make
+        self._size = size
+        self._scenes: OrderedDict[str, Scene] = OrderedDict()
+
+    def get(self, house: str) -> Scene:
+        """The scene of that house, made if it is not there."""
+        if house in self._scenes:
+            self._scenes.move_to_end(house)
+            return self._scenes[house]
+        while len(self._scenes) >= self._size:
+            self._scenes.popitem(last=False)[1].close()
+        self._scenes[house] = self._make(house)
+        return self._scenes[house]
+
+    def close(self) -> None:
+        """Free all of them."""
+        while self._scenes:
+            self._scenes.popitem()[1].close()

@@ -1,0 +1,19 @@
+"""Two tiers: `make test` takes samples that change with each commit, `make test-all` takes everything."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.helpers import sampling
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all-cases", action="store_true", help="every case of every parametrised test, no samples")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    sampling.ALL_CASES = config.getoption("--all-cases")
+
+
+def pytest_report_header() -> str:
+    return f"cases: {'all' if sampling.ALL_CASES else f'samples of commit {sampling.commit()[:12]}'}"

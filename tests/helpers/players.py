@@ -1,0 +1,46 @@
+"""Players for tests of the runner: real processes, no physics."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Errand:
+    """An item of work; `kill` is a marker file that its first player dies over."""
+
+    episode_id: str
+    house: str
+    kill: Path | None = None
+    always: bool = False
+    fail: bool = False
+
+
+class ErrandPlayer:
+    """Answers with its process and how often it had to change houses."""
+
+    def __init__(self) -> None:
+        self.house: str | None = None
+        self.changes = 0
+
+    def play(self, item: Errand) -> dict[str, Any]:
+        if item.kill is not None and (item.always or not item.kill.exists()):
+            item.kill.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        if item.fail:
+            raise ValueError(f"errand {item.episode_id} cannot be done")
+        self.changes += item.house != self.house
+        self.house = item.house
+        return {"episode_id": item.episode_id, "pid": os.getpid(), "changes": self.changes}
+
+    def close(self) -> None:
+        self.house = None
+
+
+def make_player(config: None) -> ErrandPlayer:
+    """Entry point `tests.helpers.players:make_player`."""
+    return ErrandPlayer()

@@ -1,0 +1,78 @@
+"""The files of a run survive a kill, and refuse to mix runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.interface import ConfigError
+from sim.results import RunDirectory, bootstrap_interval, summarise
+
+CONFIG = {"agent": "stubborn", "episodes": 5, "workers": 1}
+
+
+def line(number: int, **metrics: object) -> dict:
+    base = {"episode_id": f"e{number}", "success": 1.0, "spl": 0.5, "soft_spl": 0.5, "distance_to_goal": 0.1}
+    return base | {"gt_explored": 1.0, "trapped": 0.0, "collisions": 3, "end_reason": "stop"} | metrics
+
+
+def test_a_run_that_was_killed_while_writing_a_line_goes_on_without_that_line(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path, CONFIG)
+    run.append(line(1))
+    run.append(line(2))
+    run.close()
+    whole = (tmp_path / "results.jsonl").read_text()
+    (tmp_path / "results.jsonl").write_text(whole[:-10])
+    again = RunDirectory(tmp_path, CONFIG)
+    assert [there["episode_id"] for there in again.lines] == ["e1"]
+    again.append(line(2))
+    again.close()
+    assert (tmp_path / "results.jsonl").read_text() == whole
+
+
+def test_other_options_in_the_same_folder_are_refused_and_named(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG).close()
+    with pytest.raises(ConfigError, match=r'agent = "stubborn", this one has "oracle"'):
+        RunDirectory(tmp_path, CONFIG | {"agent": "oracle"})
+
+
+def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG).close()
+    RunDirectory(tmp_path, CONFIG | {"workers": 2}).close()
+
+
+def test_two_writers_in_one_folder_are_refused(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path, CONFIG)
+    with pytest.raises(ConfigError, match="Another process"):
+        RunDirectory(tmp_path, CONFIG)
+    run.close()
+
+
+def test_a_folder_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigError, match="Cannot write to --out"):
+        RunDirectory(tmp_path / "file" / "run", CONFIG)
+
+
+def test_null_metrics_do_not_count_in_the_mean() -> None:
+    summary = summarise([line(1, distance_to_goal=None), line(2, distance_to_goal=2.0)])
+    assert summary["distance_to_goal"]["mean"] == 2.0
+    assert summary["episodes"] == 2
+
+
+def test_a_summary_of_nothing_is_valid_json() -> None:
+    assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
+
+
+def test_the_interval_does_not_depend_on_the_order_of_episodes() -> None:
+    values = np.random.default_rng(0).random(40)
+    assert bootstrap_interval(values) == bootstrap_interval(values[::-1])
+
+
+def test_the_interval_of_a_fair_coin_is_near_the_normal_one() -> None:
+    low, high = bootstrap_interval(np.repeat([0.0, 1.0], 200))
+    assert low == pytest.approx(0.5 - 1.96 * 0.025, abs=0.006)
+    assert high == pytest.approx(0.5 + 1.96 * 0.025, abs=0.006)
