@@ -54,7 +54,7 @@ def with_box(
     half_m: Vec3,
     yaw_rad: float = 0.0,
     group: int = 0,
-    rgba=(0.6, 0.5, 0.4, 1),
+    rgba: tuple[float, ...] = (0.6, 0.5, 0.4, 1.0),
 ) -> House:
     """The house with one static box more."""
     spec = house.spec.copy()

@@ -1,0 +1,235 @@
+"""The robot's body as MJCF: two driven wheels, two casters, a hull of two cylinders.
+
+Robot frame: origin on the floor under the middle of the wheel axis, +x ahead, +y left, +z up.
+
+Collision masks (contype / conaffinity; two geoms meet when one's contype shares a bit with the other's conaffinity):
+
+=================== ============ =========================================================
+what                masks        meets
+=================== ============ =========================================================
+floor               1 / 0        wheels, casters, hull, movables
+static              2 / 0        hull, movables
+movable             2 / 7        everything but wheels and casters
+wheels, casters     0 / 1        the floor only
+hull                4 / 3        floor, static, movables
+=================== ============ =========================================================
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.interface import wrap_angle
+from sim.robot.config import RobotConfig
+
+PREFIX = "robot/"
+"""Begins every name of the robot in a composed world."""
+ROBOT_GROUP = 5
+"""Geom group of the robot: no camera renders it."""
+
+FLOOR_MASK = (1, 0)
+STATIC_MASK = (2, 0)
+MOVABLE_MASK = (2, 7)
+WHEEL_MASK = (0, 1)
+HULL_MASK = (4, 3)
+
+_CASTER_PRIORITY = 1000
+"""Casters are frictionless on every floor: their friction wins over the floor's."""
+_HULL_PRIORITY = 1000
+"""The hull's friction and stiffness win over those of what it touches."""
+_NET_FORCE = 3
+"""`reduce` of a contact sensor: one wrench for all contacts, in the world frame."""
+
+
+def robot_spec(config: RobotConfig) -> mujoco.MjSpec:
+    """The robot alone, to be attached with the prefix `PREFIX` to the world body."""
+    spec = mujoco.MjSpec()
+    spec.modelname = "robot"
+    base = spec.worldbody.add_body(name="base", fuse=0)
+    _add_joints(base, config)
+    _set_inertia(base, config)
+    for name, side in (("left", 1.0), ("right", -1.0)):
+        _add_wheel(base, name, side, config)
+        _add_motor(spec, name, config)
+    for name, end in (("front", 1.0), ("rear", -1.0)):
+        _add_caster(base, name, end, config)
+    _add_hull(base, config)
+    _add_touch(spec)
+    return spec
+
+
+def _add_joints(base: mujoco.MjsBody, config: RobotConfig) -> None:
+    if config.base == "free":
+        base.add_freejoint(name="free")
+        return
+    for name, axis in (("x", (1, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 1))):
+        base.add_joint(name=name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)
+    base.add_joint(name="yaw", type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0, 0, 1))
+
+
+def _set_inertia(base: mujoco.MjsBody, config: RobotConfig) -> None:
+    """Mass of all but the wheels, spread like a solid cylinder twice as high as its centre of mass."""
+    body, wheels = config.body, config.wheels
+    mass = body.mass_kg - 2.0 * wheels.mass_kg
+    com_z = (body.mass_kg * body.com_height_m - 2.0 * wheels.mass_kg * wheels.radius_m) / mass
+    across = mass * (3.0 * body.radius_m**2 + (2.0 * com_z) ** 2) / 12.0
+    base.mass, base.ipos = mass, (0.0, 0.0, com_z)
+    base.inertia = (across, across, 0.5 * mass * body.radius_m**2)
+    base.explicitinertial = True
+
+
+def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig) -> None:
+    """One wheel. Its tyre touches as a sphere: the same rolling radius, and exact contacts on planes and boxes."""
+    wheels = config.wheels
+    radius = wheels.radius_m
+    wheel = base.add_body(name=f"{name}_wheel", pos=(0.0, side * wheels.half_track_m, radius))
+    wheel.add_joint(
+        name=f"{name}_wheel", type=mujoco.mjtJoint.mjJNT_HINGE, axis=(0, 1, 0), armature=wheels.armature_kg_m2
+    )
+    spin = 0.5 * wheels.mass_kg * radius**2
+    wheel.mass, wheel.ipos, wheel.inertia = wheels.mass_kg, (0.0, 0.0, 0.0), (0.5 * spin, spin, 0.5 * spin)
+    wheel.explicitinertial = True
+    # The wheel brings no friction of its own: the pair takes the larger value, which is then the floor's.
+    wheel.add_geom(
+        name=f"{name}_tyre",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        size=(radius, 0, 0),
+        friction=(0.0, 0.0, 0.0),
+        condim=3,
+        contype=WHEEL_MASK[0],
+        conaffinity=WHEEL_MASK[1],
+        group=ROBOT_GROUP,
+        rgba=(0.1, 0.1, 0.1, 1.0),
+    )
+
+
+def _add_motor(spec: mujoco.MjSpec, name: str, config: RobotConfig) -> None:
+    wheels = config.wheels
+    motor = spec.add_actuator(
+        name=f"{name}_motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target=f"{name}_wheel", forcelimited=1
+    )
+    motor.set_to_velocity(kv=wheels.motor_gain_nm_s)
+    motor.forcerange = (-wheels.max_torque_nm, wheels.max_torque_nm)
+
+
+def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig) -> None:
+    wheels = config.wheels
+    base.add_geom(
+        name=f"{name}_caster",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        size=(wheels.caster_radius_m, 0, 0),
+        pos=(end * wheels.caster_offset_m, 0.0, wheels.caster_radius_m + wheels.caster_gap_m),
+        condim=1,
+        priority=_CASTER_PRIORITY,
+        contype=WHEEL_MASK[0],
+        conaffinity=WHEEL_MASK[1],
+        group=ROBOT_GROUP,
+        rgba=(0.1, 0.1, 0.1, 1.0),
+    )
+
+
+def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
+    body = config.body
+    hull = base.add_body(name="hull", fuse=0)  # a body of its own, so that one contact sensor sees all of it
+    for name, bottom, top in (("lower", body.clearance_m, body.waist_m), ("upper", body.waist_m, body.height_m)):
+        hull.add_geom(
+            name=f"{name}_hull",
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+            size=(body.radius_m, 0.5 * (top - bottom), 0),
+            pos=(0.0, 0.0, 0.5 * (top + bottom)),
+            mass=0.0,
+            friction=(body.friction, 0.0, 0.0),
+            priority=_HULL_PRIORITY,
+            solref=(body.contact_time_s, 1.0),
+            contype=HULL_MASK[0],
+            conaffinity=HULL_MASK[1],
+            group=ROBOT_GROUP,
+            rgba=(0.8, 0.8, 0.85, 1.0),
+        )
+
+
+def _add_touch(spec: mujoco.MjSpec) -> None:
+    fields = (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND)) | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE))
+    spec.add_sensor(
+        name="touch",
+        type=mujoco.mjtSensor.mjSENS_CONTACT,
+        objtype=mujoco.mjtObj.mjOBJ_BODY,
+        objname="hull",
+        intprm=[fields, _NET_FORCE, 1],
+    )
+
+
+@dataclass(frozen=True)
+class Body:
+    """Where the robot is found in a composed world: views into its data, valid as long as the data live."""
+
+    planar: bool
+    qpos: NDArray[np.float64]  # (4,) x, y, z, yaw or (7,) position and quaternion
+    qvel: NDArray[np.float64]  # (4,) or (6,): a free joint's angular part is in the body's frame
+    ctrl: NDArray[np.float64]  # (2,) left and right wheel, commanded rad/s
+    touch: NDArray[np.float64]  # (4,) number of hull contacts; net force of the hull on what it touches, world, N
+    hull_geoms: tuple[int, ...]
+    wheel_geoms: tuple[int, ...]
+    """Tyres and casters."""
+
+    @staticmethod
+    def find(model: mujoco.MjModel, data: mujoco.MjData) -> Body:
+        """Look the robot's parts up by name."""
+        base = model.body(PREFIX + "base").id
+        joint = model.body_jntadr[base]
+        planar = model.body_jntnum[base] == 4
+        q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+        motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in ("left", "right")]
+        sensor = model.sensor_adr[model.sensor(PREFIX + "touch").id]
+        return Body(
+            planar=bool(planar),
+            qpos=data.qpos[q : q + (4 if planar else 7)],
+            qvel=data.qvel[v : v + (4 if planar else 6)],
+            ctrl=data.ctrl[motors[0] : motors[0] + 2],
+            touch=data.sensordata[sensor : sensor + 4],
+            hull_geoms=tuple(model.geom(f"{PREFIX}{name}_hull").id for name in ("lower", "upper")),
+            wheel_geoms=tuple(
+                model.geom(PREFIX + name).id for name in ("left_tyre", "right_tyre", "front_caster", "rear_caster")
+            ),
+        )
+
+    def place(self, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
+        """Write a pose into the state; the caller runs `mj_forward`."""
+        if self.planar:
+            self.qpos[:] = (x_m, y_m, z_m, wrap_angle(yaw_rad))
+        else:
+            self.qpos[:] = (x_m, y_m, z_m, math.cos(0.5 * yaw_rad), 0.0, 0.0, math.sin(0.5 * yaw_rad))
+
+    def state(self) -> tuple[float, float, float, float, float]:
+        """x, y (metres), yaw (radians, not wrapped for a planar base), speed ahead (m/s) and turn rate (rad/s)."""
+        if self.planar:
+            x, y, _, yaw = self.qpos.tolist()
+            vx, vy, _, rate = self.qvel.tolist()
+        else:
+            x, y, _, *quat = self.qpos.tolist()
+            vx, vy, _, _, _, rate = self.qvel.tolist()
+            yaw = _yaw_of(quat)
+        return x, y, yaw, math.cos(yaw) * vx + math.sin(yaw) * vy, rate
+
+    @property
+    def z_m(self) -> float:
+        """Height of the robot frame's origin."""
+        return float(self.qpos[2])
+
+    @property
+    def tilt_rad(self) -> float:
+        """Angle between the robot's axis and the vertical."""
+        if self.planar:
+            return 0.0
+        _, qx, qy, _ = self.qpos[3:7]
+        return math.acos(max(-1.0, min(1.0, 1.0 - 2.0 * float(qx * qx + qy * qy))))
+
+
+def _yaw_of(quat: list[float]) -> float:
+    w, x, y, z = quat
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -1,0 +1,265 @@
+"""An action as a closed-loop motion in physics: trapezoid profiles, blocks noticed, ends at rest.
+
+The heading reference is absolute: the start heading plus a whole number of turns, never re-read from the pose, so
+that errors do not add up. Feedback is the true pose. The controller ticks every `tick_s`; between ticks physics runs
+alone with constant motor commands.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from sim.gl import mujoco
+from sim.interface import Action, wrap_angle
+from sim.robot.body import Body
+from sim.robot.config import RobotConfig
+from sim.robot.contacts import Contact, ContactLog
+
+Ended = Literal["reached", "blocked", "timeout"]
+
+_BACK_OFF_SPEED_M_S = 0.04
+_BACK_OFF_MAX_S = 0.2
+_REALIGN_MAX_S = 0.6
+_REST_MAX_S = 0.4
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What one action did."""
+
+    action: Action
+    displacement_m: float
+    """Of the robot's centre in plan, from the first to the last moment."""
+    yaw_change_rad: float
+    """In (-pi, pi], counter-clockwise."""
+    duration_s: float
+    """Simulated time."""
+    ended: Ended
+    """Why it ended: it arrived, something held it back, or it never came to rest in time."""
+    contacts: tuple[Contact, ...]
+    """What the hull touched, also where that stopped nothing."""
+
+    @property
+    def collided(self) -> bool:
+        """Whether a contact of the body ended the motion before its end."""
+        return self.ended != "reached" and any(contact.stopped for contact in self.contacts)
+
+
+class Trapezoid:
+    """Distance over time that speeds up, cruises and slows down; a triangle where the way is short."""
+
+    def __init__(self, distance: float, speed: float, acceleration: float) -> None:
+        self._distance = distance
+        self._acceleration = acceleration
+        self._speed = min(speed, math.sqrt(distance * acceleration))
+        self._ramp_s = self._speed / acceleration
+        self.duration_s = distance / self._speed + self._ramp_s if distance > 0.0 else 0.0
+
+    def at(self, time_s: float) -> tuple[float, float, float]:
+        """Distance, speed and acceleration at one time; at rest before the start and after the end."""
+        left_s = self.duration_s - time_s
+        if time_s <= 0.0:
+            return 0.0, 0.0, 0.0
+        if left_s <= 0.0:
+            return self._distance, 0.0, 0.0
+        a = self._acceleration
+        if time_s < self._ramp_s:
+            return 0.5 * a * time_s**2, a * time_s, a
+        if left_s < self._ramp_s:
+            return self._distance - 0.5 * a * left_s**2, a * left_s, -a
+        return self._speed * (time_s - 0.5 * self._ramp_s), self._speed, 0.0
+
+
+class Driver:
+    """Drives one robot in one world; remembers only the heading reference and where it stood."""
+
+    def __init__(
+        self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
+    ) -> None:
+        self._model, self._data, self._body, self._log = model, data, body, log
+        self._drive = config.drive
+        self._steps = config.steps_per_tick
+        self._tick_s = config.drive.tick_s
+        wheels = config.wheels
+        self._radius, self._half_track = wheels.radius_m, wheels.half_track_m
+        gain = wheels.motor_gain_nm_s
+        # Speed that the motors lag behind for each m/s2 and rad/s2: the torque that inertia asks for, over the gain.
+        yaw_inertia = 0.5 * config.body.mass_kg * config.body.radius_m**2
+        self._lag_s = (0.5 * config.body.mass_kg * wheels.radius_m**2 + wheels.armature_kg_m2) / gain
+        self._turn_lag_s = (
+            0.5 * yaw_inertia * (wheels.radius_m / wheels.half_track_m) ** 2 + wheels.armature_kg_m2
+        ) / gain
+        # A wheel commanded this much faster than it rolls asks for all its torque ...
+        self._full_slip = wheels.max_torque_nm / gain * wheels.radius_m
+        # ... and this much pushes half-way between what blocks and what the motors can do.
+        push_n = 0.5 * (self._drive.blocking_force_n + wheels.max_push_n)
+        self._push_slip = self._full_slip * push_n / wheels.max_push_n
+        self._start_yaw = 0.0
+        self._turns = 0
+        self._ticks = 0
+
+    def reset(self, yaw_rad: float) -> None:
+        """A new episode: the heading grid starts at `yaw_rad`."""
+        self._start_yaw, self._turns = yaw_rad, 0
+
+    def run(self, action: Action) -> Motion:
+        """Carry one action out, from rest to rest."""
+        if action == Action.STOP:
+            return Motion(action, 0.0, 0.0, 0.0, "reached", ())
+        self._log.clear()
+        self._ticks = 0
+        x0, y0, yaw0, _, _ = self._body.state()
+        if action == Action.MOVE_FORWARD:
+            ended, against = self._forward()
+        else:
+            ended, against = self._turn(1 if action == Action.TURN_LEFT else -1)
+        contacts = self._log.contacts(self._tick_s, against)
+        if ended != "reached":
+            self._recover(back_off=action == Action.MOVE_FORWARD)
+        self._come_to_rest()
+        x, y, yaw, _, _ = self._body.state()
+        return Motion(
+            action=action,
+            displacement_m=math.hypot(x - x0, y - y0),
+            yaw_change_rad=wrap_angle(yaw - yaw0),
+            duration_s=self._ticks * self._tick_s,
+            ended=ended,
+            contacts=contacts,
+        )
+
+    @property
+    def _reference(self) -> float:
+        return self._start_yaw + self._turns * self._drive.turn_rad
+
+    def _forward(self) -> tuple[Ended, tuple[float, float] | None]:
+        """Drive ahead along the heading reference. How it ended and, unless reached, in which direction it went."""
+        drive, body = self._drive, self._body
+        reference = self._reference
+        cos, sin = math.cos(reference), math.sin(reference)
+        profile = Trapezoid(drive.forward_m, drive.speed_m_s, drive.acceleration_m_s2)
+        last_tick = math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)
+        pushed_ticks = 0
+        stalled_s = 0.0
+        x0, y0, _, _, _ = body.state()
+        for tick in range(last_tick):
+            x, y, yaw, speed, rate = body.state()
+            time_s = tick * self._tick_s
+            lag = profile.at(time_s)[0] - ((x - x0) * cos + (y - y0) * sin)
+            heading_error = wrap_angle(reference - yaw)
+            if time_s >= profile.duration_s and self._at_rest(lag, heading_error, speed, rate):
+                return "reached", None
+            force = -(cos * self._push_x() + sin * self._push_y())
+            pushed_ticks = pushed_ticks + 1 if force > drive.blocking_force_n else 0
+            stalled_s = stalled_s + self._tick_s if lag > drive.stall_lag_m and speed < drive.stall_speed_m_s else 0.0
+            if pushed_ticks >= drive.blocking_ticks or stalled_s >= drive.stall_s:
+                return "blocked", (cos, sin)
+            _, planned, acceleration = profile.at(time_s + 0.5 * self._tick_s)
+            self._command(
+                planned + drive.position_gain_1_s * lag + self._lag_s * acceleration,
+                drive.heading_gain_1_s * heading_error,
+                speed,
+                rate,
+            )
+        return "timeout", (cos, sin)
+
+    def _turn(self, side: int) -> tuple[Ended, tuple[float, float] | None]:
+        """Turn on the spot to the next heading of the grid, left for +1. A blocked turn returns to the last one."""
+        drive, body = self._drive, self._body
+        x0, y0, yaw0, _, _ = body.state()
+        self._turns += side
+        way = wrap_angle(self._reference - yaw0)
+        sign = math.copysign(1.0, way)
+        profile = Trapezoid(abs(way), drive.turn_speed_rad_s, drive.turn_acceleration_rad_s2)
+        last_tick = math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)
+        stalled_s = 0.0
+        for tick in range(last_tick):
+            x, y, yaw, speed, rate = body.state()
+            time_s = tick * self._tick_s
+            lag = sign * profile.at(time_s)[0] - wrap_angle(yaw - yaw0)
+            behind = -((x - x0) * math.cos(yaw) + (y - y0) * math.sin(yaw))
+            if time_s >= profile.duration_s and self._at_rest(behind, lag, speed, rate):
+                return "reached", None
+            stalled = sign * lag > drive.stall_lag_rad and sign * rate < drive.stall_speed_rad_s
+            stalled_s = stalled_s + self._tick_s if stalled else 0.0
+            if stalled_s >= drive.stall_s:
+                break
+            _, planned, acceleration = profile.at(time_s + 0.5 * self._tick_s)
+            self._command(
+                drive.position_gain_1_s * behind,
+                sign * (planned + self._turn_lag_s * acceleration) + drive.heading_gain_1_s * lag,
+                speed,
+                rate,
+            )
+        blocked = stalled_s >= drive.stall_s
+        if abs(wrap_angle(self._reference - body.state()[2])) > 0.5 * drive.turn_rad:
+            self._turns -= side
+        return "blocked" if blocked else "timeout", (0.0, 0.0)
+
+    def _recover(self, *, back_off: bool) -> None:
+        """Leave what held the body back by a few millimetres, then turn to the heading reference."""
+        body, drive = self._body, self._drive
+        reference = self._reference
+        if back_off:
+            x0, y0, _, _, _ = body.state()
+            cos, sin = math.cos(reference), math.sin(reference)
+            for _ in range(round(_BACK_OFF_MAX_S / self._tick_s)):
+                x, y, yaw, speed, rate = body.state()
+                if (x - x0) * cos + (y - y0) * sin <= -drive.back_off_m:
+                    break
+                self._command(-_BACK_OFF_SPEED_M_S, drive.heading_gain_1_s * wrap_angle(reference - yaw), speed, rate)
+        for _ in range(round(_REALIGN_MAX_S / self._tick_s)):
+            _, _, yaw, speed, rate = body.state()
+            error = wrap_angle(reference - yaw)
+            if abs(error) <= drive.heading_tolerance_rad and abs(rate) <= drive.rest_speed_rad_s:
+                break
+            self._command(0.0, drive.heading_gain_1_s * error, speed, rate)
+
+    def _come_to_rest(self) -> None:
+        """Brake until nothing moves."""
+        drive = self._drive
+        for _ in range(round(_REST_MAX_S / self._tick_s)):
+            _, _, _, speed, rate = self._body.state()
+            if abs(speed) <= drive.rest_speed_m_s and abs(rate) <= drive.rest_speed_rad_s:
+                break
+            self._command(0.0, 0.0, speed, rate)
+        self._body.ctrl[:] = 0.0
+
+    def _at_rest(self, lag_m: float, heading_error: float, speed: float, rate: float) -> bool:
+        drive = self._drive
+        tolerance_m = drive.touching_tolerance_m if self._body.touch[0] > 0.0 else drive.position_tolerance_m
+        return (
+            abs(lag_m) <= tolerance_m
+            and abs(heading_error) <= drive.heading_tolerance_rad
+            and abs(speed) <= drive.rest_speed_m_s
+            and abs(rate) <= drive.rest_speed_rad_s
+        )
+
+    def _push_x(self) -> float:
+        return -float(self._body.touch[1])
+
+    def _push_y(self) -> float:
+        return -float(self._body.touch[2])
+
+    def _command(self, speed_m_s: float, rate_rad_s: float, actual_speed: float, actual_rate: float) -> None:
+        """Hold one command of speed and turn rate for a tick.
+
+        While the hull touches something, the command stays so near the actual motion that no motor saturates, since
+        two saturated motors cannot keep the heading; the turn rate is served first.
+        """
+        if self._body.touch[0] > 0.0:
+            rate_rad_s = _near(rate_rad_s, actual_rate, self._full_slip / self._half_track)
+            spare = self._full_slip - abs(rate_rad_s - actual_rate) * self._half_track
+            speed_m_s = _near(speed_m_s, actual_speed, min(self._push_slip, spare))
+        across = rate_rad_s * self._half_track
+        self._body.ctrl[0] = (speed_m_s - across) / self._radius
+        self._body.ctrl[1] = (speed_m_s + across) / self._radius
+        mujoco.mj_step(self._model, self._data, self._steps)
+        self._ticks += 1
+        if self._body.touch[0] > 0.0:
+            self._log.sample()
+
+
+def _near(value: float, centre: float, reach: float) -> float:
+    return max(centre - reach, min(centre + reach, value))

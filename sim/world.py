@@ -1,0 +1,255 @@
+"""House and robot, compiled once: where an action becomes a motion.
+
+The house is compiled as it is to read its labels; then the masks of `sim.robot.body` are set, static bodies are fused
+(geoms of the world body cost half of what geoms in bodies of their own cost), the robot is attached, and the whole
+is compiled again. Geoms keep their names; an unnamed one is called after its instance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import EpisodeError, HouseError, PhysicsError
+from sim.gl import mujoco
+from sim.houses.house import House, Room, read_rooms
+from sim.houses.labels import Instance, Labels, read_labels
+from sim.interface import MPCAT40_ID, Action, wrap_angle
+from sim.pose import Pose
+from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK, Body, robot_spec
+from sim.robot.config import RobotConfig
+from sim.robot.contacts import ContactLog
+from sim.robot.drive import Driver, Motion
+
+SAME_STOREY_M = 1.0
+"""Floors less than this apart belong to one storey."""
+_FLOOR = MPCAT40_ID["floor"]
+
+
+class World:
+    """One house with one robot in it. Deterministic: after `reset`, nothing of what happened before is left."""
+
+    def __init__(self, house: House, *, robot: RobotConfig | None = None) -> None:
+        """Compile the house with a robot.
+
+        Raises:
+            HouseError: a visible geom has no label, or the house cannot be compiled with a robot in it.
+        """
+        self.house = house
+        self.config = robot or RobotConfig()
+        self.robot = self.config.model
+        _keep_log_out_of_working_directory()
+        self.model, self.labels, self.rooms = _compose(house, self.config)
+        self.data = mujoco.MjData(self.model)
+        self._body = Body.find(self.model, self.data)
+        log = ContactLog(self.model, self.data, self.labels, self._body.hull_geoms)
+        self._driver = Driver(self.config, self.model, self.data, self._body, log)
+        self._storeys_m = _storey_floors(self.model, self.labels)
+
+    @property
+    def pose(self) -> Pose:
+        """The robot's true pose; its floor is that of the storey it stands on."""
+        x, y, yaw, _, _ = self._body.state()
+        z = self._body.z_m
+        return Pose(x, y, wrap_angle(yaw), min(self._storeys_m, key=lambda floor: abs(floor - z)))
+
+    def reset(self, start: Pose) -> None:
+        """Everything as the house's file has it, the robot at rest on the floor at `start`.
+
+        Raises:
+            EpisodeError: the hull would overlap something there, or there is no floor.
+        """
+        mujoco.mj_resetData(self.model, self.data)
+        self._place_on_floor(start)
+        self._require_room(start)
+        physics = self.config.physics
+        mujoco.mj_step(self.model, self.data, nstep=round(physics.settle_s / physics.timestep_s))
+        if abs(self._body.z_m - start.floor_z_m) > physics.max_drop_m:
+            raise EpisodeError(f"{self._where(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
+        self._driver.reset(start.yaw_rad)
+
+    def move(self, action: Action) -> Motion:
+        """Carry one action out in physics, from rest to rest. STOP is a motion of zero.
+
+        Raises:
+            PhysicsError: NaN, an unstable state, a robot that tipped over or fell.
+        """
+        z_before = self._body.z_m
+        motion = self._driver.run(Action(action))
+        self._require_physical(z_before)
+        return motion
+
+    def _place_on_floor(self, start: Pose) -> None:
+        """Put the wheels on the highest floor (a rug) under the start."""
+        z = start.floor_z_m
+        for _ in range(3):
+            self._body.place(start.x_m, start.y_m, z, start.yaw_rad)
+            mujoco.mj_forward(self.model, self.data)
+            sunk = max((-dist for geoms, dist in self._contacts() if not geoms.isdisjoint(self._wheels)), default=0.0)
+            if sunk <= 0.0005:
+                break
+            z += sunk
+
+    def _require_room(self, start: Pose) -> None:
+        """Refuse a start where the hull is inside something."""
+        hull = frozenset(self._body.hull_geoms)
+        overlaps = [
+            (-dist, geoms - hull)
+            for geoms, dist in self._contacts()
+            if not geoms.isdisjoint(hull) and -dist > self.config.physics.max_overlap_m
+        ]
+        if overlaps:
+            depth, (geom,) = max(overlaps, key=lambda overlap: overlap[0])
+            raise EpisodeError(
+                f"{self._where(start)}: the robot (radius {self.robot.radius_m} m) would stand {depth * 100:.1f} cm "
+                f"inside '{self._name(geom)}'."
+            )
+
+    def _contacts(self) -> list[tuple[frozenset[int], float]]:
+        """Pairs of geoms that touch now and their distance, negative inside one another."""
+        contacts = self.data.contact
+        return [
+            (frozenset(pair), dist) for pair, dist in zip(contacts.geom.tolist(), contacts.dist.tolist(), strict=True)
+        ]
+
+    @property
+    def _wheels(self) -> frozenset[int]:
+        return frozenset(self._body.wheel_geoms)
+
+    def _name(self, geom: int) -> str:
+        instance = int(self.labels.geom_instance[geom])
+        return self.labels.instances[instance].name if instance >= 0 else self.model.geom(geom).name
+
+    def _where(self, start: Pose) -> str:
+        return (
+            f"Start ({start.x_m:.2f}, {start.y_m:.2f}) m, {np.degrees(start.yaw_rad):.0f} deg "
+            f"in house '{self.house.name}'"
+        )
+
+    def _require_physical(self, z_before: float) -> None:
+        """Refuse to go on from a state that no robot could be in."""
+        physics = self.config.physics
+        for kind, warning in enumerate(self.data.warning):
+            if warning.number:
+                text = mujoco.mju_warningText(kind, int(warning.lastinfo))
+                raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {text}")
+        if not np.isfinite(self.data.qpos).all():
+            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: a position is not finite.")
+        if self._body.tilt_rad > physics.max_tilt_rad:
+            raise PhysicsError(
+                f"House '{self.house.name}' at {self.data.time:.2f} s: the robot tipped over, it leans "
+                f"{np.degrees(self._body.tilt_rad):.0f} deg."
+            )
+        fallen_m = z_before - self._body.z_m
+        if fallen_m > physics.max_drop_m:
+            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: the robot fell {fallen_m:.2f} m.")
+
+
+def _keep_log_out_of_working_directory() -> None:
+    """MuJoCo would write MUJOCO_LOG.TXT where the user happens to stand."""
+    config = mujoco.MjLogConfig.get()
+    config.logto_file = False
+    config.set()
+
+
+def _compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
+    """The compiled world, its labels and rooms."""
+    spec = house.spec.copy()
+    try:
+        bare = spec.compile()
+    except ValueError as error:
+        raise HouseError(f"House '{house.name}': {' '.join(str(error).split())}") from None
+    labels = read_labels(bare, rules=house.rules, ignore_prefix="")
+    rooms = read_rooms(bare)
+    names = _name_geoms(spec, labels)
+    _set_masks(spec, bare, labels)
+    _set_options(spec, config)
+    spec.attach(robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
+    spec.compiler.fusestatic = True
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise HouseError(f"House '{house.name}' with a robot: {' '.join(str(error).split())}") from None
+    return model, _renumber(labels, names, model), rooms
+
+
+def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
+    """Give each geom a name of its own; names by number in the bare house."""
+    geoms = spec.geoms
+    taken = {geom.name for geom in geoms}
+    for geom in geoms:
+        if geom.name:
+            continue
+        instance = int(labels.geom_instance[geom.id])
+        stem = labels.instances[instance].name if instance >= 0 else "geom"
+        number = geom.id
+        while f"{stem}:{number}" in taken:
+            number += len(geoms)
+        geom.name = f"{stem}:{number}"
+        taken.add(geom.name)
+    return [geom.name for geom in sorted(geoms, key=lambda geom: geom.id)]
+
+
+def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> None:
+    """Who touches whom (see `sim.robot.body`); what was visual only stays so."""
+    movable = bare.body_weldid[bare.geom_bodyid] != 0
+    for geom in spec.geoms:
+        if geom.contype == 0 and geom.conaffinity == 0:
+            continue
+        if movable[geom.id]:
+            mask = MOVABLE_MASK
+        elif labels.geom_category[geom.id] == _FLOOR:
+            mask = FLOOR_MASK
+        else:
+            mask = STATIC_MASK
+        geom.contype, geom.conaffinity = mask
+
+
+def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
+    """One set of physics options for every house."""
+    option = spec.option
+    option.timestep = config.physics.timestep_s
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.iterations, option.ls_iterations = 20, 20
+    option.gravity = (0.0, 0.0, -9.81)
+    option.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    # multiccd gives wrong normals for a cylinder on a box's corner; a state reset in silence would hide a NaN.
+    option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_MULTICCD) | int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+
+
+def _renumber(labels: Labels, names: list[str], model: mujoco.MjModel) -> Labels:
+    """Labels of the bare house, whose geoms had these names, for the world's model."""
+    new_id = np.array([model.geom(name).id for name in names], dtype=np.int64)
+    category = np.zeros(model.ngeom, dtype=np.uint8)
+    category[new_id] = labels.geom_category
+    owner = np.full(model.ngeom, -1, dtype=np.int32)
+    owner[new_id] = labels.geom_instance
+    instances = tuple(
+        Instance(instance.name, instance.category, tuple(sorted(new_id[list(instance.geom_ids)].tolist())))
+        for instance in labels.instances
+    )
+    return replace(labels, instances=instances, geom_category=category, geom_instance=owner)
+
+
+def _storey_floors(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
+    """Heights of the storeys' floors, lowest first; a rug or a threshold is no storey."""
+    floors: list[float] = []
+    for top in sorted(_floor_tops(model, labels)):
+        if not floors or top - floors[-1] >= SAME_STOREY_M:
+            floors.append(top)
+    return tuple(floors) or (0.0,)
+
+
+def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
+    """Heights of the tops of all static floors that carry wheels."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    floors = (labels.geom_category == _FLOOR) & (model.geom_contype == FLOOR_MASK[0]) & (model.geom_bodyid == 0)
+    ids = np.flatnonzero(floors)
+    rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)
+    rise[model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
+    return data.geom_xpos[ids, 2] + rise
