@@ -10,26 +10,21 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
 from sim.gl import INSTALL_HINT, mujoco
+from sim.houses.labels import RENDERED_GROUPS, Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.pose import Pose
 from sim.sensors.profiles import RenderProfile, get_profile
-
-if TYPE_CHECKING:
-    from sim.houses.labels import Labels
 
 Z_NEAR_M = 0.05
 """Near plane: its farthest corner is 0.07 m away, well inside the robot's radius of 0.18 m."""
 Z_FAR_M = 80.0
 """Far plane: beyond the diagonal of the largest house."""
-FIRST_HIDDEN_GROUP = 3
-"""Geoms of this group and above are never rendered (house format)."""
 _OUT_OF_VIEW_GROUP = 5
 
 
@@ -62,7 +57,7 @@ class Camera:
         self.cull = cull
         self._model = model
         self._groups = model.geom_group.copy()
-        self._drawable = (self._groups < FIRST_HIDDEN_GROUP) & (_alpha(model) > 0.0)
+        self._drawable = rendered_geoms(model)
         self._geom_category = labels.geom_category
         self._rect = mujoco.MjrRect(0, 0, self.camera.width_px, self.camera.height_px)
         shape = (self.camera.height_px, self.camera.width_px)
@@ -70,12 +65,12 @@ class Camera:
         self._depth_buffer = np.zeros(shape, np.float32)
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = 0
-        self._option.geomgroup[:FIRST_HIDDEN_GROUP] = 1
+        self._option.geomgroup[:RENDERED_GROUPS] = 1
         self._option.sitegroup[:] = 0
         self._gl = _make_gl_context(self.camera)
         self._gl.make_current()
         self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples)
-        # Multisampling would blend the numbers of neighbouring geoms, so their pass never has it.
+        # Numbers must not be blended at edges; a buffer without samples also makes their pass twice as fast.
         self._number_context = (
             _make_context(model, self.camera, self.profile, samples=0) if self.profile.samples else self._color_context
         )
@@ -179,14 +174,6 @@ def describe_gl() -> str:
     name = GL.glGetString(GL.GL_RENDERER)
     context.free()
     return name.decode() if isinstance(name, bytes) else str(name)
-
-
-def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
-    """Opacity of each geom, from its material where it has one."""
-    alpha = model.geom_rgba[:, 3].copy()
-    has_material = model.geom_matid >= 0
-    alpha[has_material] = model.mat_rgba[model.geom_matid[has_material], 3]
-    return alpha
 
 
 def _make_context(
