@@ -74,10 +74,9 @@ def read_labels(
     members: dict[str, tuple[str, list[int]]] = {}
     void_geoms = 0
     visible = rendered_geoms(model)
-    for geom in range(model.ngeom):
+    ignored = geoms_of(model, ignore_prefix) if ignore_prefix else np.zeros(model.ngeom, dtype=np.bool_)
+    for geom in np.flatnonzero(~ignored).tolist():
         names = tuple(_names(model, geom))
-        if ignore_prefix and any(name.startswith(ignore_prefix) for name in names[:2]):
-            continue
         bearer, category = _first_label(names, compiled_rules)
         if category == VOID:
             if visible[geom]:
@@ -103,6 +102,13 @@ def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     return (model.geom_contype != 0) | (model.geom_conaffinity != 0)
 
 
+def geoms_of(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
+    """(ngeom,) True for geoms whose name or body's name begins with `prefix`, such as the robot's."""
+    bodies = np.array([model.body(body).name.startswith(prefix) for body in range(model.nbody)], dtype=np.bool_)
+    named = np.array([model.geom(geom).name.startswith(prefix) for geom in range(model.ngeom)], dtype=np.bool_)
+    return bodies[model.geom_bodyid] | named
+
+
 def parse_label(name: str) -> str | None:
     """The category of a name that is a label, else None."""
     match = _LABEL.fullmatch(name)
@@ -124,7 +130,7 @@ def describe_geom(model: mujoco.MjModel, geom: int) -> str:
     if name:
         return f"geom '{name}'"
     shape = mujoco.mjtGeom(model.geom_type[geom]).name.removeprefix("mjGEOM_").lower()
-    body = model.body(model.geom_bodyid[geom]).name
+    body = model.body(model.geom_bodyid[geom]).name or "(unnamed)"
     x, y, z = model.geom_pos[geom]
     return f"the unnamed {shape} number {geom} at ({x:.2f}, {y:.2f}, {z:.2f}) in body '{body}'"
 
