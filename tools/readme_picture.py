@@ -1,0 +1,76 @@
+"""Make the picture of the README: robot's view, its segmentation, and the agent's map with path and goal.
+
+python tools/readme_picture.py --episode-id <id> --step 60 --out docs/images/episode.png
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim import cli
+from sim.env import ObjectNavEnv
+from sim.interface import ConfigError
+from sim.palette import with_legend
+from sim.rollout import episode_seed
+from stubborn import agents, draw
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Play an episode up to a step and draw what the robot sees and believes."""
+
+    split: str = "val"
+    """Split that the episode is taken from."""
+    episode_id: str | None = None
+    """The episode; the split's first if not given."""
+    step: int = 40
+    """After so many actions (or at the episode's end, if that comes first)."""
+    profile: str = "good"
+    """Rendering quality of the picture."""
+    out: Path = Path("docs/images/episode.png")
+    """Where the PNG goes."""
+
+
+def main(args: Args) -> int:
+    """Write the picture."""
+    env = ObjectNavEnv(split=args.split, sensors=("rgb", "depth", "semantic"), profile=args.profile)
+    try:
+        picture = np.hstack(panels(env, args))
+    finally:
+        env.close()
+    args.out.parent.mkdir(parents=True, exist_ok=True)
+    if not cv2.imwrite(str(args.out), picture[..., ::-1]):
+        raise ConfigError(f"Cannot write the picture to '{args.out}'.")
+    print(f"{args.out}: {picture.shape[1]} x {picture.shape[0]} pixels")
+    return 0
+
+
+def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
+    """Camera, segmentation and map at the same height, uint8 (h, w, 3) each."""
+    episode = env.split.episode(args.episode_id) if args.episode_id else env.split.episodes[0]
+    observation, _ = env.reset(options={"episode": episode})
+    agent = agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
+    agent.reset(episode.goal, episode_seed(0, episode.episode_id))
+    action, done, steps = agent.act(observation), False, 0
+    while not done and steps < args.step:
+        observation, _, terminated, truncated, _ = env.step(action)
+        steps, done = steps + 1, terminated or truncated
+        if not done:
+            action = agent.act(observation)
+    print(f"{episode.episode_id}: looking for {episode.goal}, {steps} steps")
+    height = observation["rgb"].shape[0]
+    belief = draw.draw_belief(agent)
+    width = round(belief.shape[1] * height / belief.shape[0])
+    belief = cv2.resize(belief, (width, height), interpolation=cv2.INTER_AREA)
+    return [observation["rgb"], with_legend(observation["semantic"]), belief]
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
