@@ -1,0 +1,144 @@
+"""The one place where metres become cells and cells become metres.
+
+World of the agent: x forward and y left of the start pose, in metres; yaw counter-clockwise from +x, in radians.
+Grid arrays are indexed [row, col] = [y, x]; cell (0, 0) is the corner with the smallest x and y.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sim.interface import ConfigError
+
+
+class PlanarPose(NamedTuple):
+    """Where the robot's centre stands in the start frame, and where it looks."""
+
+    x_m: float
+    y_m: float
+    yaw_rad: float
+
+    def ahead(self, distance_m: float) -> tuple[float, float]:
+        """The point that far in front of the robot."""
+        return self.x_m + distance_m * math.cos(self.yaw_rad), self.y_m + distance_m * math.sin(self.yaw_rad)
+
+    def distance_to(self, x_m: float, y_m: float) -> float:
+        """Distance in plan, metres."""
+        return math.hypot(x_m - self.x_m, y_m - self.y_m)
+
+
+@dataclass(frozen=True, kw_only=True)
+class GridFrame:
+    """Where a grid lies in the plane."""
+
+    origin_xy_m: tuple[float, float]
+    """World position of the outer corner of cell (0, 0)."""
+    shape: tuple[int, int]
+    """Rows (y) and columns (x)."""
+    cell_m: float = 0.05
+    """Edge length of one cell."""
+
+    def __post_init__(self) -> None:
+        if self.cell_m <= 0:
+            raise ConfigError(f"GridFrame.cell_m must be > 0 m, got {self.cell_m}.")
+        if min(self.shape) < 1:
+            raise ConfigError(f"GridFrame.shape needs at least 1 x 1 cells, got {self.shape[0]} x {self.shape[1]}.")
+
+    @classmethod
+    def around_start(cls, size_cells: int, cell_m: float = 0.05) -> GridFrame:
+        """A square grid whose middle cell has its centre at the start pose."""
+        origin_m = -(size_cells // 2 + 0.5) * cell_m
+        return cls(origin_xy_m=(origin_m, origin_m), shape=(size_cells, size_cells), cell_m=cell_m)
+
+    def cells(self, x_m: ArrayLike, y_m: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Rows and columns of points; points outside give indices outside the shape."""
+        cols = np.floor((np.asarray(x_m) - self.origin_xy_m[0]) / self.cell_m).astype(np.intp)
+        rows = np.floor((np.asarray(y_m) - self.origin_xy_m[1]) / self.cell_m).astype(np.intp)
+        return rows, cols
+
+    def cell(self, x_m: float, y_m: float) -> tuple[int, int]:
+        """Row and column of one point."""
+        return (
+            math.floor((y_m - self.origin_xy_m[1]) / self.cell_m),
+            math.floor((x_m - self.origin_xy_m[0]) / self.cell_m),
+        )
+
+    def centres(self, rows: ArrayLike, cols: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """World x and y of cell centres."""
+        x_m = self.origin_xy_m[0] + (np.asarray(cols) + 0.5) * self.cell_m
+        y_m = self.origin_xy_m[1] + (np.asarray(rows) + 0.5) * self.cell_m
+        return x_m, y_m
+
+    def contains(self, rows: ArrayLike, cols: ArrayLike) -> NDArray[np.bool_]:
+        """True where the index lies on this grid."""
+        rows, cols = np.asarray(rows), np.asarray(cols)
+        return (rows >= 0) & (rows < self.shape[0]) & (cols >= 0) & (cols < self.shape[1])
+
+    def part(self, rows: slice, cols: slice) -> Window:
+        """The rectangle of these rows and columns, clipped to this grid."""
+        row_0, row_1, _ = rows.indices(self.shape[0])
+        col_0, col_1, _ = cols.indices(self.shape[1])
+        frame = GridFrame(
+            origin_xy_m=(self.origin_xy_m[0] + col_0 * self.cell_m, self.origin_xy_m[1] + row_0 * self.cell_m),
+            shape=(row_1 - row_0, col_1 - col_0),
+            cell_m=self.cell_m,
+        )
+        return Window(frame=frame, rows=slice(row_0, row_1), cols=slice(col_0, col_1))
+
+    def window_at(self, x_m: float, y_m: float, size_cells: int) -> Window:
+        """A square of cells around a point, shifted where it would leave this grid."""
+        row, col = self.cell(x_m, y_m)
+        size_rows, size_cols = min(size_cells, self.shape[0]), min(size_cells, self.shape[1])
+        row_0 = min(max(row - size_rows // 2, 0), self.shape[0] - size_rows)
+        col_0 = min(max(col - size_cols // 2, 0), self.shape[1] - size_cols)
+        return self.part(slice(row_0, row_0 + size_rows), slice(col_0, col_0 + size_cols))
+
+    def patch(self, x_m: ArrayLike, y_m: ArrayLike, margin_m: float) -> Window:
+        """The smallest rectangle of cells that holds the points with a margin; may be cut by the grid's edge."""
+        rows, cols = self.cells(
+            [np.min(x_m) - margin_m, np.max(x_m) + margin_m], [np.min(y_m) - margin_m, np.max(y_m) + margin_m]
+        )
+        row_0, col_0 = (int(np.clip(i[0], 0, n - 1)) for i, n in zip((rows, cols), self.shape, strict=True))
+        row_1, col_1 = (int(np.clip(i[1], 0, n - 1)) + 1 for i, n in zip((rows, cols), self.shape, strict=True))
+        return self.part(slice(row_0, row_1), slice(col_0, col_1))
+
+    def mesh(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """World x (1, cols) and y (rows, 1) of all cell centres, ready to broadcast."""
+        x_m, y_m = self.centres(np.arange(self.shape[0]), np.arange(self.shape[1]))
+        return x_m[None, :], y_m[:, None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Window:
+    """A rectangle of a larger grid: its own frame, and where it lies in the larger one."""
+
+    frame: GridFrame
+    rows: slice
+    cols: slice
+
+    @property
+    def index(self) -> tuple[slice, slice]:
+        """What to index an array of the larger grid with."""
+        return self.rows, self.cols
+
+
+def cells_near_segment(
+    frame: GridFrame, start_xy_m: tuple[float, float], end_xy_m: tuple[float, float], radius_m: float
+) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
+    """Cells whose centre is within `radius_m` of a segment, that is, what a disc sweeps along it.
+
+    Returns the index of a small rectangle of `frame` and the mask inside it.
+    """
+    (x0, y0), (x1, y1) = start_xy_m, end_xy_m
+    patch = frame.patch((x0, x1), (y0, y1), radius_m)
+    x_m, y_m = patch.frame.mesh()
+    dx, dy = x1 - x0, y1 - y0
+    length_sq = dx * dx + dy * dy
+    along = np.clip(((x_m - x0) * dx + (y_m - y0) * dy) / length_sq, 0.0, 1.0) if length_sq > 0 else 0.0
+    gap_sq = (x_m - x0 - along * dx) ** 2 + (y_m - y0 - along * dy) ** 2
+    return patch.index, gap_sq <= radius_m * radius_m

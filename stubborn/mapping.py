@@ -1,0 +1,216 @@
+"""From images to map layers: depth points into obstacles, class scores into object layers (paper: Mapping Module).
+
+A pixel (u, v) with depth d lies d ahead of the camera, d (c_u - u) / f to its left and d (c_v - v) / f above it. The
+camera is level, so a column of the image is a vertical plane and the ground position of a pixel needs its depth and
+its column only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from stubborn.grid import PlanarPose, Window
+from stubborn.navmap import NavMap
+
+
+@dataclass(frozen=True, kw_only=True)
+class MappingConfig:
+    """Which depth points count as what."""
+
+    obstacle_min_height_m: float = 0.10
+    """Lower surfaces are floor: rugs, thresholds, slabs the robot drives under or over."""
+    obstacle_max_height_m: float | None = None
+    """Higher surfaces are overhead; None takes the robot's height (0.88 m)."""
+    score_max_height_m: float = 2.2
+    """Object layers take points up to here: pictures, towels and wall screens hang high."""
+    eye_level_halfwidth_m: float = 0.06
+    """Surfaces this near the camera's height can hide what is behind them."""
+    obstacle_stride_px: int = 2
+    """Every so many pixels of depth, each way, go into the obstacle layer."""
+    score_stride_px: int = 4
+    """Every so many pixels, each way, go into the object layers."""
+    candidate_score: float = 0.5
+    """A cell with a higher target score is a candidate."""
+
+    def __post_init__(self) -> None:
+        if min(self.obstacle_stride_px, self.score_stride_px) < 1:
+            raise ConfigError(
+                f"MappingConfig strides must be >= 1 px, got {self.obstacle_stride_px} and {self.score_stride_px}."
+            )
+
+
+@dataclass(frozen=True)
+class GroundPoints:
+    """Depth pixels of one frame seen from above; a pixel without a distance is left out."""
+
+    valid: NDArray[np.bool_]
+    """(h, w) True where depth is a distance; the other fields hold these pixels only, in row-major order."""
+    rows: NDArray[np.int32]
+    """Row of each point on the window's grid."""
+    cols: NDArray[np.int32]
+    """Column of each point on the window's grid."""
+    height_m: NDArray[np.float32]
+    """Height of each point above the floor."""
+
+
+class Rays:
+    """The fixed part of the projection: where every `stride_px`-th pixel looks, from pixel `first_px` on, each way."""
+
+    def __init__(self, camera: CameraModel, first_px: int, stride_px: int) -> None:
+        self.camera = camera
+        self.pick = (slice(first_px, None, stride_px), slice(first_px, None, stride_px))
+        u_px = np.arange(first_px, camera.width_px, stride_px)
+        v_px = np.arange(first_px, camera.height_px, stride_px)
+        self.left = ((0.5 * camera.width_px - (u_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+        self.up = ((0.5 * camera.height_px - (v_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+
+    def project(self, depth: NDArray[np.float32], camera_pose: PlanarPose, window: Window) -> GroundPoints:
+        """Cells of `window` and heights of the points of a full-size depth image, (height_px, width_px) metres.
+
+        The window must hold everything within sight: see `sight_window_cells`.
+        """
+        d = depth[self.pick]
+        valid = (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
+        cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
+        frame = window.frame
+        x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
+        y_cells = np.float32((camera_pose.y_m - frame.origin_xy_m[1]) / frame.cell_m)
+        x_slope = ((cos - sin * self.left) / frame.cell_m).astype(np.float32)
+        y_slope = ((sin + cos * self.left) / frame.cell_m).astype(np.float32)
+        # Positive throughout the window, so truncation is floor.
+        cols = (d * x_slope + x_cells)[valid].astype(np.int32)
+        rows = (d * y_slope + y_cells)[valid].astype(np.int32)
+        height_m = (d * self.up[:, None] + np.float32(self.camera.height_m))[valid]
+        return GroundPoints(valid, rows, cols, height_m)
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Target pixels of one frame, as cells of the whole map."""
+
+    rows: NDArray[np.intp]
+    cols: NDArray[np.intp]
+    distance_m: NDArray[np.float32]
+    """From the robot's centre, in plan."""
+
+    def nearest_m(self, navmap: NavMap) -> float:
+        """Distance of the nearest target point in view that was not rejected; infinite when there is none."""
+        counts = ~navmap.rejected[self.rows, self.cols]
+        return float(self.distance_m[counts].min()) if counts.any() else math.inf
+
+
+NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))
+"""A frame without a target pixel."""
+
+
+class Mapper:
+    """Writes frames into a `NavMap`. Holds precomputed rays, no memory of the episode."""
+
+    def __init__(self, camera: CameraModel, robot: RobotModel, config: MappingConfig) -> None:
+        top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
+        if config.obstacle_min_height_m >= top_m:
+            raise ConfigError(
+                "The obstacle layer needs a band of heights: obstacle_min_height_m is "
+                f"{config.obstacle_min_height_m} m, its top {top_m} m."
+            )
+        self.camera = camera
+        self.camera_forward_m = robot.camera_forward_m
+        self.config = config
+        self._obstacle_top_m = top_m
+        self._obstacle_rays = Rays(camera, config.obstacle_stride_px // 2, config.obstacle_stride_px)
+        self._score_rays: dict[int, Rays] = {}
+
+    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> None:
+        """Enter one depth image, (height_px, width_px) metres, into the obstacle layers."""
+        camera_pose = self._camera_pose(pose)
+        window = self._sight_window(navmap, camera_pose)
+        points = self._obstacle_rays.project(depth, camera_pose, window)
+        c = self.config
+        solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
+        navmap.seen_obstacle[window.index][points.rows[solid], points.cols[solid]] = True
+        tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
+        navmap.seen_at_eye_level[window.index][points.rows[tall], points.cols[tall]] = True
+
+    def add_scores(
+        self, navmap: NavMap, depth: NDArray[np.float32], scores: Scores, pose: PlanarPose, step: int
+    ) -> Sighting:
+        """Enter one frame of class scores into the object layers; returns the target points it shows.
+
+        A cell takes the highest score of its pixels: a picture shares its cell with the wall above and below it.
+        """
+        camera_pose = self._camera_pose(pose)
+        window = self._sight_window(navmap, camera_pose)
+        rays, score_pick = self._rays_for(scores)
+        points = rays.project(depth, camera_pose, window)
+        low = points.height_m <= self.config.score_max_height_m
+        flat = points.rows[low] * np.int32(window.frame.shape[1]) + points.cols[low]
+        target = scores.target[score_pick][points.valid][low]
+        other = scores.best_other[score_pick][points.valid][low]
+        self._accumulate(navmap.view(window), flat, target, other, step)
+        found = target > self.config.candidate_score
+        if not found.any():
+            return NOTHING_SIGHTED
+        rows, cols = np.divmod(np.unique(flat[found]), window.frame.shape[1])
+        x_m, y_m = window.frame.centres(rows, cols)
+        distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m).astype(np.float32)
+        return Sighting(rows + window.rows.start, cols + window.cols.start, distance_m)
+
+    def _accumulate(
+        self,
+        view: NavMap,
+        flat: NDArray[np.int32],
+        target: NDArray[np.float32],
+        other: NDArray[np.float32],
+        step: int,
+    ) -> None:
+        """Reduce one frame's pixels to one score a cell, then add them to the layers of `view`."""
+        shape = view.frame.shape
+        in_view = np.zeros(shape, np.bool_)
+        in_view.reshape(-1)[flat] = True
+        frame_target = np.zeros(shape, np.float32)
+        frame_other = np.zeros(shape, np.float32)
+        hit = target > 0
+        np.maximum.at(frame_target.reshape(-1), flat[hit], target[hit])
+        np.maximum.at(frame_other.reshape(-1), flat, other)
+        threshold = self.config.candidate_score
+        newly_found = (frame_target > threshold) & (view.score_max <= threshold)
+        view.found_step[newly_found] = step
+        view.frames_in_view += in_view
+        view.score_sum += frame_target
+        np.maximum(view.score_max, frame_target, out=view.score_max)
+        np.maximum(view.other_max, frame_other, out=view.other_max)
+
+    def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
+        x_m, y_m = pose.ahead(self.camera_forward_m)
+        return PlanarPose(x_m, y_m, pose.yaw_rad)
+
+    def _sight_window(self, navmap: NavMap, camera_pose: PlanarPose) -> Window:
+        cells = sight_window_cells(self.camera, navmap.frame.cell_m)
+        return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
+
+    def _rays_for(self, scores: Scores) -> tuple[Rays, tuple[slice, slice]]:
+        """Rays for the score pixels that are used, and the slices that pick those out of the score images."""
+        height, width = scores.target.shape
+        block_px = self.camera.width_px // max(width, 1)
+        if (height * block_px, width * block_px) != (self.camera.height_px, self.camera.width_px):
+            raise ConfigError(
+                f"Scores must be a whole fraction of the {self.camera.height_px} x {self.camera.width_px} image, "
+                f"got {height} x {width}."
+            )
+        every = max(1, self.config.score_stride_px // block_px)
+        pick = slice(every // 2, None, every)
+        if block_px not in self._score_rays:
+            first_px = (every // 2) * block_px + block_px // 2  # depth in the middle of the score's block
+            self._score_rays[block_px] = Rays(self.camera, first_px, every * block_px)
+        return self._score_rays[block_px], (pick, pick)
+
+
+def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
+    """Cells of a square around the camera that holds every point nearer than the camera's range."""
+    farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
+    return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1

@@ -1,0 +1,57 @@
+"""Small questions about masks on a grid: how far, how connected, what hides what. Cells, not metres."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Cells = tuple[NDArray[np.integer], NDArray[np.integer]]
+"""Rows and columns."""
+
+
+def distance_to(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
+    return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+
+
+def nearest(mask: NDArray[np.bool_]) -> tuple[NDArray[np.float32], NDArray[np.intp], NDArray[np.intp]]:
+    """Distance from every cell to the nearest True one (to 2 %), and that one's row and column.
+
+    The mask must hold at least one True cell.
+    """
+    distance, marked = cv2.distanceTransformWithLabels(
+        (~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    labels = np.asarray(marked, np.intp)
+    rows, cols = np.nonzero(mask)
+    row_of = np.zeros(int(labels.max()) + 1, np.intp)
+    col_of = np.zeros_like(row_of)
+    row_of[labels[rows, cols]], col_of[labels[rows, cols]] = rows, cols
+    return np.asarray(distance, np.float32), row_of[labels], col_of[labels]
+
+
+def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int) -> NDArray[np.bool_]:
+    """The part of a mask that holds a cell; nothing when that cell is not in the mask."""
+    if not mask[row, col]:
+        return np.zeros_like(mask)
+    _, parts = cv2.connectedComponents(np.ascontiguousarray(mask).view(np.uint8), connectivity=connectivity)
+    return np.asarray(parts) == parts[row, col]
+
+
+def sight_is_clear(blocked: NDArray[np.bool_], starts: Cells, ends: Cells, edge_cells: float) -> NDArray[np.bool_]:
+    """For each pair of cells whether no blocked cell lies on the straight line between their centres.
+
+    The last `edge_cells` before the end do not count. Returns one value a pair.
+    """
+    d_row, d_col = ends[0] - starts[0], ends[1] - starts[1]
+    length = np.hypot(d_row, d_col)
+    if length.size == 0:
+        return np.zeros(0, np.bool_)
+    samples = max(2, math.ceil(float(length.max()) * 1.5))
+    share = np.linspace(0.0, 1.0, samples)[:, None] * np.maximum(0.0, 1.0 - edge_cells / np.maximum(length, 1e-9))
+    rows = np.rint(starts[0] + share * d_row).astype(np.intp)
+    cols = np.rint(starts[1] + share * d_col).astype(np.intp)
+    return np.asarray(~blocked[rows, cols].any(axis=0))

@@ -1,0 +1,1 @@
+"""Segmenters: from an observation to scores of the goal category."""

@@ -1,0 +1,204 @@
+"""From a candidate to a decision: approach, verify, accept or reject (paper: Target Object Detection Module).
+
+A stop counts where some point of the object is within 1 m of the robot *and* in free line of sight. So the way to a
+candidate leads to a stand: a reachable cell near enough to a candidate cell, from which no wall hides it. What stands
+as tall as the camera may be a wall; a table or a sofa between robot and object does not matter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interface import ConfigError
+from stubborn.exploration import Route
+from stubborn.grid import PlanarPose, Window
+from stubborn.mapping import Sighting
+from stubborn.navmap import NavMap
+from stubborn.planning import Bumps, FreeSpace, Planner
+from stubborn.raster import Cells, connected, distance_to, nearest, sight_is_clear
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetConfig:
+    """Distances and steps of the approach."""
+
+    candidate_score: float = 0.5
+    """A cell with a higher target score is a candidate."""
+    stop_in_view_m: float = 0.92
+    """A target point in view within this distance ends the approach: it is near and nothing hides it."""
+    stand_m: float = 0.85
+    """A stand is this near a candidate cell: a metre, less what cells blur."""
+    far_stand_m: float = 0.93
+    """Where there is no such stand, this will do."""
+    last_resort_m: float = 1.6
+    """Late in an episode, the nearest reachable place within this distance of a candidate is better than nothing."""
+    last_resort_step: int = 420
+    """From this step on the last resort counts."""
+    rejection_margin_m: float = 0.25
+    """Around rejected cells this much is rejected too."""
+    verify_until_step: int = 200
+    """A candidate first found later is not verified: no time is left to look elsewhere."""
+    retry_after_steps: int = 15
+    """A candidate that could not be reached is tried again after so many steps of exploring."""
+    target_edge_m: float = 0.08
+    """A wall this near the candidate cell is what the object hangs on, not what hides it."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.stand_m <= self.far_stand_m <= self.last_resort_m:
+            raise ConfigError(
+                "TargetConfig needs 0 < stand_m <= far_stand_m <= last_resort_m, "
+                f"got {self.stand_m}, {self.far_stand_m} and {self.last_resort_m} m."
+            )
+
+
+class Features(NamedTuple):
+    """What the object layers hold at a candidate cell: the input of a verifier."""
+
+    total_view: int
+    cumulative: float
+    maximum: float
+    maximum_other: float
+
+
+class Verifier(Protocol):
+    """Decides whether a candidate is what it seems; belongs to a kind of semantics."""
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        """True: stop here. False: never come back to this candidate."""
+        ...
+
+
+class AcceptAll:
+    """The verifier of ground truth: there is nothing to verify."""
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        """True for everything."""
+        return True
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The way to the nearest stand of any candidate."""
+
+    route: Route | None
+    """None when the robot stands on one."""
+    bearing_rad: float
+    """World angle from the robot to its nearest candidate cell."""
+    cell: tuple[int, int]
+    """Row and column of that candidate cell on the whole map."""
+
+
+class TargetSeeker:
+    """Finds candidates on the map, leads to them and judges them."""
+
+    def __init__(self, config: TargetConfig, planner: Planner, verifier: Verifier, *, bumps: bool) -> None:
+        self.config = config
+        self.planner = planner
+        self.verifier = verifier
+        self._maps = (Bumps.PESSIMISTIC, Bumps.OPTIMISTIC) if bumps else (Bumps.NONE,)
+        self.reset("")
+
+    def reset(self, goal: str) -> None:
+        """Forget the last episode."""
+        self.goal = goal
+        self._retry_step = 0
+
+    def candidates(self, view: NavMap) -> NDArray[np.bool_]:
+        """Cells that look like the target and were neither rejected nor set aside."""
+        return (view.score_max > self.config.candidate_score) & ~view.rejected & ~view.set_aside
+
+    def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
+        """Map cell of the nearest target point in this very frame, when it is near enough to stop."""
+        if sighting.nearest_m(navmap) > self.config.stop_in_view_m:
+            return None
+        counts = ~navmap.rejected[sighting.rows, sighting.cols]
+        nearest = int(np.argmin(np.where(counts, sighting.distance_m, np.inf)))
+        return int(sighting.rows[nearest]), int(sighting.cols[nearest])
+
+    def approach(self, navmap: NavMap, window: Window, pose: PlanarPose, step: int) -> Approach | None:
+        """The way to the nearest stand; None when there is no candidate or none can be reached now."""
+        if step >= self._retry_step and navmap.set_aside.any():
+            navmap.set_aside[:] = False
+        whole = navmap.known_window(margin_cells=40)
+        if not self.candidates(navmap.view(whole)).any():
+            return None
+        for part in (window, whole):
+            view = navmap.view(part)
+            candidates = self.candidates(view)
+            if candidates.any():
+                found = self._approach_on(view, candidates, pose, late=step >= self.config.last_resort_step)
+                if found is not None:
+                    row, col = found.cell
+                    return Approach(found.route, found.bearing_rad, (row + part.rows.start, col + part.cols.start))
+        navmap.view(whole).set_aside[self.candidates(navmap.view(whole))] = True
+        self._retry_step = step + self.config.retry_after_steps
+        return None
+
+    def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
+        """Verify the candidate at a map cell; a rejected one never counts again in this episode."""
+        whole = navmap.known_window(margin_cells=40)
+        view = navmap.view(whole)
+        row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
+        instance = connected(view.score_max > self.config.candidate_score, row, col, connectivity=8)
+        features = Features(
+            int(view.frames_in_view[row, col]),
+            float(view.score_sum[row, col]),
+            float(view.score_max[row, col]),
+            float(view.other_max[row, col]),
+        )
+        found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
+        if found_late or self.verifier.accepts(self.goal, features):
+            return True
+        margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
+        view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
+        return False
+
+    def _approach_on(
+        self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool
+    ) -> Approach | None:
+        """The same on one window, with the candidate cell counted in that window."""
+        gap_cells, nearest_row, nearest_col = nearest(candidates)
+        gap_m = gap_cells * np.float32(view.frame.cell_m)
+        here = view.frame.cell(pose.x_m, pose.y_m)
+        cell = int(nearest_row[here]), int(nearest_col[here])
+        x_m, y_m = view.frame.centres(*cell)
+        bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
+        free_spaces = [self.planner.free_space(view, pose, bumps) for bumps in self._maps]
+        for free, stands in self._stands(view, free_spaces, gap_m, (nearest_row, nearest_col), late=late):
+            if stands[here]:
+                return Approach(None, bearing_rad, cell)
+            plan = self.planner.plan(free, stands, pose)
+            if plan is not None:
+                return Approach(Route(plan, free), bearing_rad, cell)
+        return None
+
+    def _stands(
+        self,
+        view: NavMap,
+        free_spaces: list[FreeSpace],
+        gap_m: NDArray[np.float32],
+        ends: Cells,
+        *,
+        late: bool,
+    ) -> Iterator[tuple[FreeSpace, NDArray[np.bool_]]]:
+        """Reachable cells to stop on, from the best kind to the last resort."""
+        for within_m in (self.config.stand_m, self.config.far_stand_m):
+            for free in free_spaces:
+                stands = free.reachable & (gap_m <= within_m)
+                rows, cols = np.nonzero(stands)
+                seen = ends[0][rows, cols], ends[1][rows, cols]
+                edge_cells = self.config.target_edge_m / view.frame.cell_m
+                stands[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), seen, edge_cells)
+                if stands.any():
+                    yield free, stands
+        if late:
+            free = free_spaces[-1]
+            reach_m = np.where(free.reachable, gap_m, np.inf)
+            if reach_m.min() <= self.config.last_resort_m:
+                yield free, reach_m <= reach_m.min() + view.frame.cell_m
