@@ -95,11 +95,11 @@ class ConvexPolygon:
         entry, leave = np.zeros(len(step)), np.ones(len(step))
         for normal, offset in zip(self.normals, self.offsets_m, strict=True):
             room, speed = offset + JOINT_M - start_m @ normal, step @ normal
-            parallel = np.abs(speed) < 1e-12
-            t = room / np.where(parallel, 1.0, speed)
-            leave = np.where(speed > 0.0, np.minimum(leave, t), leave)
-            entry = np.where(speed < 0.0, np.maximum(entry, t), entry)
-            leave = np.where(parallel & (room < 0.0), -1.0, leave)
+            outward, inward = speed > 1e-12, speed < -1e-12
+            t = room / np.where(outward | inward, speed, 1.0)
+            leave = np.where(outward, np.minimum(leave, t), leave)
+            entry = np.where(inward, np.maximum(entry, t), entry)
+            leave = np.where(~(outward | inward) & (room < 0.0), -1.0, leave)
         return (leave - entry) * np.linalg.norm(step, axis=1) > MIN_CROSSING_M
 
 

@@ -148,3 +148,10 @@ def test_a_line_that_ends_on_the_surface_is_free_and_one_that_ends_inside_is_not
 def test_a_line_along_the_joint_of_two_walls_does_not_slip_through():
     walls = [rectangle(1.0, -1.0, 1.1, 0.0), rectangle(1.0, 0.0, 1.1, 1.0)]
     assert lines_blocked(np.array([[0.0, 0.0]]), np.array([[2.0, 0.0]]), walls).all()
+
+
+def test_a_line_all_but_parallel_to_a_side_is_blocked_like_a_parallel_one():
+    wall = [rectangle(2.0, -2.1, 2.1, 2.1)]
+    for slant in (0.0, 1e-17, 2e-16, 1e-13, 1e-9):
+        start, end = np.array([[2.3, 1.6]]), np.array([[2.05, 1.6 + slant]])
+        assert lines_blocked(start, end, wall).all()
