@@ -118,7 +118,9 @@ def _add_motor(spec: mujoco.MjSpec, name: str, config: RobotConfig) -> None:
 
 
 def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig) -> None:
+    """One caster. An upright base needs none: there it is for show, or it would lift the wheels at a rug's edge."""
     wheels = config.wheels
+    mask = WHEEL_MASK if config.base == "free" else (0, 0)
     base.add_geom(
         name=f"{name}_caster",
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
@@ -126,8 +128,8 @@ def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig
         pos=(end * wheels.caster_offset_m, 0.0, wheels.caster_radius_m + wheels.caster_gap_m),
         condim=1,
         priority=_CASTER_PRIORITY,
-        contype=WHEEL_MASK[0],
-        conaffinity=WHEEL_MASK[1],
+        contype=mask[0],
+        conaffinity=mask[1],
         group=ROBOT_GROUP,
         rgba=(0.1, 0.1, 0.1, 1.0),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -35,7 +35,6 @@ class _Touch:
         self.weight = 0.0
         self.position = np.zeros(3)
         self.force = np.zeros(3)
-        self.last_force = np.zeros(3)
         self.last_tick = -1
         self.ticks = 0
 
@@ -48,16 +47,13 @@ class ContactLog:
         self._hull = frozenset(hull_geoms)
         self._wrench = np.zeros(6)
         self._touches: dict[int, _Touch] = {}
-        self._tick = 0
 
     def clear(self) -> None:
         """Forget everything: a new action begins."""
         self._touches = {}
-        self._tick = 0
 
-    def sample(self) -> None:
-        """Add the contacts that the data hold now; called at most once a tick."""
-        self._tick += 1
+    def sample(self, tick: int) -> None:
+        """Add the contacts that the data hold now, at the end of one tick of the action."""
         contacts = self._data.contact
         for index, (first, second) in enumerate(contacts.geom.tolist()):
             if first in self._hull:
@@ -69,38 +65,39 @@ class ContactLog:
             mujoco.mj_contactForce(self._model, self._data, index, self._wrench)
             # The rows of `frame` are the contact's axes; the force is the one on the second geom.
             force = sign * (self._wrench[:3] @ contacts.frame[index].reshape(3, 3))
-            self._add(other, contacts.pos[index], force)
+            self._add(tick, other, contacts.pos[index], force)
 
-    def _add(self, geom: int, position: np.ndarray, force: np.ndarray) -> None:
+    def _add(self, tick: int, geom: int, position: np.ndarray, force: np.ndarray) -> None:
         touch = self._touches.setdefault(geom, _Touch())
-        if touch.last_tick != self._tick:
+        if touch.last_tick != tick:
             touch.ticks += 1
-            touch.last_tick = self._tick
-            touch.last_force = np.zeros(3)
+            touch.last_tick = tick
         weight = float(np.linalg.norm(force)) + 1e-9
         touch.weight += weight
         touch.position += weight * position
         touch.force += force
-        touch.last_force = touch.last_force + force
 
-    def contacts(self, tick_s: float, against: tuple[float, float] | None) -> tuple[Contact, ...]:
-        """What was touched, in the order of first touch.
+    def contacts(self, tick_s: float) -> tuple[Contact, ...]:
+        """What was touched in a motion that arrived, in the order of first touch; one sample stands for `tick_s`."""
+        return tuple(self._contact(geom, touch, tick_s, stopped=False) for geom, touch in self._touches.items())
+
+    def contacts_of_stop(self, tick_s: float, since_tick: int, against: tuple[float, float]) -> tuple[Contact, ...]:
+        """What was touched in a motion that was given up.
 
         Args:
             tick_s: time that one sample stands for.
-            against: direction in plan of a motion that was given up at the last sample, (0, 0) for a turn; contacts
-                of that sample which push against it `stopped` it. None when no motion was given up.
+            since_tick: contacts of this tick or later that pushed against the motion `stopped` it.
+            against: direction of the motion in plan; (0, 0) for a turn, which any contact may hold back.
         """
+        turning = against == (0.0, 0.0)
         found = []
         for geom, touch in self._touches.items():
-            stopped = False
-            if against is not None and touch.last_tick == self._tick:
-                along = against[0] * touch.last_force[0] + against[1] * touch.last_force[1]
-                stopped = bool(along < 0.0) or against == (0.0, 0.0)
-            found.append(replace(self._contact(geom, touch, tick_s), stopped=stopped))
+            along = float(against[0] * touch.force[0] + against[1] * touch.force[1])
+            stopped = touch.last_tick >= since_tick and (turning or along < 0.0)
+            found.append(self._contact(geom, touch, tick_s, stopped=stopped))
         return tuple(found)
 
-    def _contact(self, geom: int, touch: _Touch, tick_s: float) -> Contact:
+    def _contact(self, geom: int, touch: _Touch, tick_s: float, *, stopped: bool) -> Contact:
         instance = int(self._labels.geom_instance[geom])
         size = float(np.linalg.norm(touch.force))
         direction = touch.force / size if size > 0.0 else np.zeros(3)
@@ -110,7 +107,7 @@ class ContactLog:
             position_m=_triple(touch.position / touch.weight),
             direction=_triple(direction),
             duration_s=touch.ticks * tick_s,
-            stopped=False,
+            stopped=stopped,
         )
 
 

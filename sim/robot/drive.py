@@ -23,6 +23,8 @@ _BACK_OFF_SPEED_M_S = 0.04
 _BACK_OFF_MAX_S = 0.2
 _REALIGN_MAX_S = 0.6
 _REST_MAX_S = 0.4
+_TOUCH_MEMORY_S = 0.1
+"""A body that bounces along something still touches it for this long after the last contact."""
 
 
 @dataclass(frozen=True)
@@ -57,19 +59,23 @@ class Trapezoid:
         self._ramp_s = self._speed / acceleration
         self.duration_s = distance / self._speed + self._ramp_s if distance > 0.0 else 0.0
 
-    def at(self, time_s: float) -> tuple[float, float, float]:
-        """Distance, speed and acceleration at one time; at rest before the start and after the end."""
+    def distance(self, time_s: float) -> float:
+        """Distance covered at one time: 0 before the start, all of it after the end."""
         left_s = self.duration_s - time_s
         if time_s <= 0.0:
-            return 0.0, 0.0, 0.0
+            return 0.0
         if left_s <= 0.0:
-            return self._distance, 0.0, 0.0
-        a = self._acceleration
+            return self._distance
         if time_s < self._ramp_s:
-            return 0.5 * a * time_s**2, a * time_s, a
+            return 0.5 * self._acceleration * time_s**2
         if left_s < self._ramp_s:
-            return self._distance - 0.5 * a * left_s**2, a * left_s, -a
-        return self._speed * (time_s - 0.5 * self._ramp_s), self._speed, 0.0
+            return self._distance - 0.5 * self._acceleration * left_s**2
+        return self._speed * (time_s - 0.5 * self._ramp_s)
+
+    def speed(self, time_s: float) -> float:
+        """Speed at one time: 0 before the start and after the end."""
+        ramp = self._acceleration * min(time_s, self.duration_s - time_s)
+        return max(0.0, min(self._speed, ramp))
 
 
 class Driver:
@@ -84,21 +90,16 @@ class Driver:
         self._tick_s = config.drive.tick_s
         wheels = config.wheels
         self._radius, self._half_track = wheels.radius_m, wheels.half_track_m
-        gain = wheels.motor_gain_nm_s
-        # Speed that the motors lag behind for each m/s2 and rad/s2: the torque that inertia asks for, over the gain.
-        yaw_inertia = 0.5 * config.body.mass_kg * config.body.radius_m**2
-        self._lag_s = (0.5 * config.body.mass_kg * wheels.radius_m**2 + wheels.armature_kg_m2) / gain
-        self._turn_lag_s = (
-            0.5 * yaw_inertia * (wheels.radius_m / wheels.half_track_m) ** 2 + wheels.armature_kg_m2
-        ) / gain
         # A wheel commanded this much faster than it rolls asks for all its torque ...
-        self._full_slip = wheels.max_torque_nm / gain * wheels.radius_m
+        self._full_slip = wheels.max_torque_nm / wheels.motor_gain_nm_s * wheels.radius_m
         # ... and this much pushes half-way between what blocks and what the motors can do.
         push_n = 0.5 * (self._drive.blocking_force_n + wheels.max_push_n)
         self._push_slip = self._full_slip * push_n / wheels.max_push_n
+        self._touch_ticks = math.ceil(_TOUCH_MEMORY_S / self._tick_s)
         self._start_yaw = 0.0
         self._turns = 0
         self._ticks = 0
+        self._touched_until = 0
 
     def reset(self, yaw_rad: float) -> None:
         """A new episode: the heading grid starts at `yaw_rad`."""
@@ -109,14 +110,18 @@ class Driver:
         if action == Action.STOP:
             return Motion(action, 0.0, 0.0, 0.0, "reached", ())
         self._log.clear()
-        self._ticks = 0
+        self._ticks = self._touched_until = 0
         x0, y0, yaw0, _, _ = self._body.state()
         if action == Action.MOVE_FORWARD:
             ended, against = self._forward()
         else:
             ended, against = self._turn(1 if action == Action.TURN_LEFT else -1)
-        contacts = self._log.contacts(self._tick_s, against)
-        if ended != "reached":
+        if against is None:
+            contacts = self._log.contacts(self._tick_s)
+            if self._touching:
+                self._recover(back_off=False)
+        else:
+            contacts = self._log.contacts_of_stop(self._tick_s, self._ticks - self._touch_ticks, against)
             self._recover(back_off=action == Action.MOVE_FORWARD)
         self._come_to_rest()
         x, y, yaw, _, _ = self._body.state()
@@ -146,7 +151,7 @@ class Driver:
         for tick in range(last_tick):
             x, y, yaw, speed, rate = body.state()
             time_s = tick * self._tick_s
-            lag = profile.at(time_s)[0] - ((x - x0) * cos + (y - y0) * sin)
+            lag = profile.distance(time_s) - ((x - x0) * cos + (y - y0) * sin)
             heading_error = wrap_angle(reference - yaw)
             if time_s >= profile.duration_s and self._at_rest(lag, heading_error, speed, rate):
                 return "reached", None
@@ -155,14 +160,16 @@ class Driver:
             stalled_s = stalled_s + self._tick_s if lag > drive.stall_lag_m and speed < drive.stall_speed_m_s else 0.0
             if pushed_ticks >= drive.blocking_ticks or stalled_s >= drive.stall_s:
                 return "blocked", (cos, sin)
-            _, planned, acceleration = profile.at(time_s + 0.5 * self._tick_s)
+            planned = profile.speed(time_s + drive.lookahead_s)
             self._command(
-                planned + drive.position_gain_1_s * lag + self._lag_s * acceleration,
+                planned + drive.position_gain_1_s * lag,
                 drive.heading_gain_1_s * heading_error,
                 speed,
                 rate,
             )
-        return "timeout", (cos, sin)
+        x, y, _, _, _ = body.state()
+        lag = drive.forward_m - ((x - x0) * cos + (y - y0) * sin)
+        return ("reached", None) if abs(lag) <= drive.touching_tolerance_m else ("timeout", (cos, sin))
 
     def _turn(self, side: int) -> tuple[Ended, tuple[float, float] | None]:
         """Turn on the spot to the next heading of the grid, left for +1. A blocked turn returns to the last one."""
@@ -177,7 +184,7 @@ class Driver:
         for tick in range(last_tick):
             x, y, yaw, speed, rate = body.state()
             time_s = tick * self._tick_s
-            lag = sign * profile.at(time_s)[0] - wrap_angle(yaw - yaw0)
+            lag = sign * profile.distance(time_s) - wrap_angle(yaw - yaw0)
             behind = -((x - x0) * math.cos(yaw) + (y - y0) * math.sin(yaw))
             if time_s >= profile.duration_s and self._at_rest(behind, lag, speed, rate):
                 return "reached", None
@@ -185,10 +192,10 @@ class Driver:
             stalled_s = stalled_s + self._tick_s if stalled else 0.0
             if stalled_s >= drive.stall_s:
                 break
-            _, planned, acceleration = profile.at(time_s + 0.5 * self._tick_s)
+            planned = profile.speed(time_s + drive.lookahead_s)
             self._command(
                 drive.position_gain_1_s * behind,
-                sign * (planned + self._turn_lag_s * acceleration) + drive.heading_gain_1_s * lag,
+                sign * planned + drive.heading_gain_1_s * lag,
                 speed,
                 rate,
             )
@@ -228,13 +235,17 @@ class Driver:
 
     def _at_rest(self, lag_m: float, heading_error: float, speed: float, rate: float) -> bool:
         drive = self._drive
-        tolerance_m = drive.touching_tolerance_m if self._body.touch[0] > 0.0 else drive.position_tolerance_m
+        tolerance_m = drive.touching_tolerance_m if self._touching else drive.position_tolerance_m
         return (
             abs(lag_m) <= tolerance_m
             and abs(heading_error) <= drive.heading_tolerance_rad
             and abs(speed) <= drive.rest_speed_m_s
             and abs(rate) <= drive.rest_speed_rad_s
         )
+
+    @property
+    def _touching(self) -> bool:
+        return self._ticks < self._touched_until
 
     def _push_x(self) -> float:
         return -float(self._body.touch[1])
@@ -245,10 +256,10 @@ class Driver:
     def _command(self, speed_m_s: float, rate_rad_s: float, actual_speed: float, actual_rate: float) -> None:
         """Hold one command of speed and turn rate for a tick.
 
-        While the hull touches something, the command stays so near the actual motion that no motor saturates, since
-        two saturated motors cannot keep the heading; the turn rate is served first.
+        While the hull touches something, or did a moment ago, the command stays so near the actual motion that no
+        motor saturates, since two saturated motors cannot keep the heading; the turn rate is served first.
         """
-        if self._body.touch[0] > 0.0:
+        if self._touching:
             rate_rad_s = _near(rate_rad_s, actual_rate, self._full_slip / self._half_track)
             spare = self._full_slip - abs(rate_rad_s - actual_rate) * self._half_track
             speed_m_s = _near(speed_m_s, actual_speed, min(self._push_slip, spare))
@@ -258,7 +269,8 @@ class Driver:
         mujoco.mj_step(self._model, self._data, self._steps)
         self._ticks += 1
         if self._body.touch[0] > 0.0:
-            self._log.sample()
+            self._touched_until = self._ticks + self._touch_ticks
+            self._log.sample(self._ticks)
 
 
 def _near(value: float, centre: float, reach: float) -> float:
