@@ -1,0 +1,164 @@
+"""`python -m sim.run` as a user meets it: results, resuming, workers, one clear line where an option will not do."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.helpers.worlds import room, with_box
+
+TIMES = ("wall_time_s", "steps_per_s")
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    file.write_text(furnished.spec.to_xml())
+    return file
+
+
+def command(*options: object) -> list[str]:
+    return [sys.executable, "-m", "sim.run", *map(str, options)]
+
+
+def run(*options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(*options), capture_output=True, text=True, check=False)
+
+
+def lines_of(out: Path) -> list[dict]:
+    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
+    for line in lines:
+        for key in TIMES:
+            del line[key]
+    return sorted(lines, key=lambda line: line["episode_id"])
+
+
+def test_results_are_the_same_twice_and_with_two_workers(house: Path, tmp_path: Path) -> None:
+    for name, workers in (("once", 1), ("twice", 1), ("shared", 2)):
+        done = run("--house", house, "--episodes", 3, "--workers", workers, "--out", tmp_path / name)
+        assert done.returncode == 0, done.stderr
+        assert "95 % interval" in done.stdout
+    assert len(lines_of(tmp_path / "once")) == 3
+    assert lines_of(tmp_path / "once") == lines_of(tmp_path / "twice") == lines_of(tmp_path / "shared")
+
+
+def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
+    for seed in (0, 1):
+        run("--agent", "oracle", "--house", house, "--episodes", 2, "--seed", seed, "--out", tmp_path / str(seed))
+    assert [line["shortest_path"] for line in lines_of(tmp_path / "0")] != [
+        line["shortest_path"] for line in lines_of(tmp_path / "1")
+    ]
+
+
+def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_path: Path) -> None:
+    run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
+    (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
+    wanted = (
+        "episode_id house goal agent semantics seed success spl soft_spl distance_to_goal num_steps path_length "
+        "shortest_path collisions gt_explored trapped failure end_reason"
+    )
+    assert set(wanted.split()) <= set(line)
+    assert summary["episodes"] == 2
+    for metric in ["success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions"]:
+        low, high = summary[metric]["ci95"]
+        assert low <= summary[metric]["mean"] <= high
+    config = json.loads((tmp_path / "config.json").read_text())
+    assert config["agent"] == "oracle"
+    assert {"mujoco", "numpy", "gl_renderer"} <= set(config["versions"])
+
+
+def test_a_killed_run_goes_on_and_no_line_is_lost_or_doubled(house: Path, tmp_path: Path) -> None:
+    options = ("--agent", "random", "--house", house, "--episodes", 6)
+    results = tmp_path / "killed" / "results.jsonl"
+    process = subprocess.Popen(command(*options, "--out", tmp_path / "killed"), stdout=subprocess.DEVNULL)
+    deadline_s = time.monotonic() + 60
+    while not (results.exists() and results.read_text().count("\n") >= 2):
+        assert time.monotonic() < deadline_s, "no result in a minute"
+        assert process.poll() is None, "it ended before it could be killed"
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    before = results.read_text().count("\n")
+    assert before < 6
+    assert run(*options, "--out", tmp_path / "killed").returncode == 0
+    assert run(*options, "--out", tmp_path / "whole").returncode == 0
+    assert lines_of(tmp_path / "killed") == lines_of(tmp_path / "whole")
+
+
+def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:
+    done = run("--agent", "examples.my_agent:make", "--house", house, "--episodes", 1, "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert lines_of(tmp_path)[0]["agent"] == "examples.my_agent:make"
+
+
+def test_agents_are_listed() -> None:
+    listed = run("--list-agents").stdout.split()
+    assert {"stubborn", "stubborn-i", "stubborn-v", "oracle", "random"} <= set(listed)
+
+
+BROKEN_HOUSES = {
+    "not_xml.xml": "this is no house",
+    "no_floor.xml": '<mujoco><worldbody><geom name="wall_00" type="box" size="1 1 1"/></worldbody></mujoco>',
+    "unlabelled.xml": (
+        '<mujoco><worldbody><geom name="floor_00" type="plane" size="3 3 1"/>'
+        '<geom name="thing" type="box" size="1 1 1"/></worldbody></mujoco>'
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--agent", "stuborn"), "stuborn"),
+        (("--agent", "nowhere.at_all:make"), "nowhere"),
+        (("--split", "vall"), "vall"),
+        (("--goal", "spaceship"), "spaceship"),
+        (("--semantics", "psychic"), "psychic"),
+        (("--profile", "best"), "best"),
+        (("--house", "HOUSE", "--goal", "toilet"), "toilet"),
+        (("--house", "HOUSE", "--start-deg", "2.9 2.9 0"), "wall"),
+        (("--house", "HOUSE", "--start-deg", "here"), "here"),
+        (("--house", "nowhere.xml"), "nowhere.xml"),
+        (("--house", "not_xml.xml"), "not_xml.xml"),
+        (("--house", "no_floor.xml"), "floor"),
+        (("--house", "unlabelled.xml"), "thing"),
+        (("--episodes", "0"), "--episodes"),
+        (("--workers", "-1"), "--workers"),
+        (("--episodes", "five"), "five"),
+        (("--house", "HOUSE", "--out", "/proc/nowhere"), "--out"),
+    ],
+)
+def test_a_wrong_option_is_one_line_and_status_2(
+    options: tuple[str, ...],
+    told: str,
+    house: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    from sim.run import entry
+
+    for name, content in BROKEN_HOUSES.items():
+        (tmp_path / name).write_text(content)
+    monkeypatch.chdir(tmp_path)
+    assert entry([str(house) if option == "HOUSE" else option for option in options]) == 2
+    complaint = capsys.readouterr().err
+    assert complaint.startswith("error: ")
+    assert complaint.count("\n") == 1
+    assert told in complaint
+
+
+def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:
+    options = ("--agent", "random", "--house", house, "--out", tmp_path)
+    assert run(*options, "--episodes", 1).returncode == 0
+    refused = run(*options, "--episodes", 1, "--seed", 1)
+    assert refused.returncode == 2
+    assert "seed" in refused.stderr

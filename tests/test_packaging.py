@@ -1,0 +1,50 @@
+"""What leaves the repository: the wheel, and the directions of import."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
+    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if tracked.returncode:
+        pytest.skip("no git checkout")
+    for name in filter(None, tracked.stdout.split("\0")):
+        copy = tmp_path / "source" / name
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_bytes((ROOT / name).read_bytes())
+    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", tmp_path, "source"]
+    subprocess.run(list(map(str, build)), cwd=tmp_path, check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    packed = set(zipfile.ZipFile(wheel).namelist())
+    shipped = [file for file in (ROOT / "assets/mjcf_houses").rglob("*") if file.suffix in {".xml", ".gz", ".png"}]
+    assert shipped
+    for file in shipped:
+        assert f"sim/assets/{file.relative_to(ROOT / 'assets')}" in packed
+
+
+def test_importing_the_agent_leaves_mujoco_out() -> None:
+    code = "import sys, stubborn.agent, stubborn.agents; print(any(m.split('.')[0] == 'mujoco' for m in sys.modules))"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "False"
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "stubborn").rglob("*.py")), ids=lambda file: file.name)
+def test_the_mind_knows_of_the_world_only_the_interface(file: Path) -> None:
+    for module in re.findall(r"^\s*(?:from|import)\s+(sim[\w.]*|mujoco[\w.]*)", file.read_text(), re.MULTILINE):
+        assert module == "sim.interface"
+
+
+@pytest.mark.parametrize("file", sorted((ROOT / "sim").rglob("*.py")), ids=lambda file: file.name)
+def test_only_the_composition_root_of_the_world_knows_the_mind(file: Path) -> None:
+    imports = re.findall(r"^\s*(?:from|import)\s+(stubborn|mujoco)\b", file.read_text(), re.MULTILINE)
+    allowed = {"run.py": {"stubborn"}, "gl.py": {"mujoco"}}.get(file.name, set())
+    assert set(imports) <= allowed
