@@ -1,0 +1,57 @@
+"""The numbers of an episode, as pure functions (contract, section 2).
+
+SPL is of Anderson et al. 2018 (arXiv:1807.06757), soft SPL as Habitat has it; distances are metres.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interface import MPCAT40_ID
+
+TRAPPED_WINDOW_STEPS = 100
+TRAPPED_RADIUS_M = 1.0
+"""A robot is trapped when it never gets this far from where a window of `TRAPPED_WINDOW_STEPS` began."""
+EXPLORED_SHARE = 0.008
+"""Share of a frame that the goal's true mask must cover for the goal to count as found by exploration."""
+
+
+def path_efficiency(shortest_path_m: float, path_length_m: float) -> float:
+    """Shortest over taken path, in [0, 1]; 1 for a robot that had no way to go and went none."""
+    longer = max(shortest_path_m, path_length_m)
+    return shortest_path_m / longer if longer > 0.0 else 1.0
+
+
+def spl(success: bool, shortest_path_m: float, path_length_m: float) -> float:
+    """Success weighted by path length."""
+    return path_efficiency(shortest_path_m, path_length_m) if success else 0.0
+
+
+def soft_spl(start_distance_m: float, end_distance_m: float | None, path_length_m: float) -> float:
+    """The share of the way to the goal that was covered, weighted by path length; 0 where there is no way any more."""
+    if end_distance_m is None:
+        return 0.0
+    if start_distance_m <= 0.0:
+        progress = 1.0 if end_distance_m <= 0.0 else 0.0
+    else:
+        progress = max(0.0, 1.0 - end_distance_m / start_distance_m)
+    return progress * path_efficiency(start_distance_m, path_length_m)
+
+
+def sees_goal(semantic: NDArray[np.uint8], goal: str) -> bool:
+    """Whether the goal's class covers enough of one ground-truth frame (h, w)."""
+    return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) >= EXPLORED_SHARE * semantic.size
+
+
+def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:
+    """Whether the last window of a walk, positions (n, 2) from its start on, never left the circle around its begin.
+
+    False while fewer than `TRAPPED_WINDOW_STEPS` steps were taken.
+    """
+    if len(positions_m) <= TRAPPED_WINDOW_STEPS:
+        return False
+    window = np.asarray(positions_m[-TRAPPED_WINDOW_STEPS - 1 :], dtype=np.float64)
+    return bool(np.hypot(*(window - window[0]).T).max() < TRAPPED_RADIUS_M)

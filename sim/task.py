@@ -1,0 +1,175 @@
+"""How an episode starts, what counts while it runs, and when it ends (contract, section 2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim import metrics
+from sim.errors import EpisodeError
+from sim.freespace import SAME_STOREY_M
+from sim.ground_truth import GroundTruth
+from sim.interface import MAX_STEPS, Action, ConfigError
+from sim.pose import Pose
+from sim.robot.drive import Motion
+from sim.world import World
+
+EndReason = Literal["stop", "max_steps"]
+_SURELY_OUTSIDE_M = 0.1
+"""A robot this far from the nearest cell that counts need not be tested exactly."""
+
+
+@dataclass
+class _Record:
+    """What is known of the running episode."""
+
+    goal: str
+    start: Pose
+    shortest_path_m: float
+    positions_m: list[tuple[float, float]]
+    """Of the robot's centre, the start first."""
+    path_length_m: float = 0.0
+    collisions: int = 0
+    touches: int = 0
+    explored: bool = False
+    trapped: bool = False
+    success: bool = False
+    end_reason: EndReason | None = None
+
+
+class Task:
+    """ObjectNav in one world: watches the motions and the true segmentation, and keeps the metrics.
+
+    Call `begin` after `World.reset`, `look` with the first frame, then `observe` after each motion.
+    """
+
+    def __init__(self, world: World, *, max_steps: int = MAX_STEPS) -> None:
+        if max_steps < 1:
+            raise ConfigError(f"max_steps must be at least 1, got {max_steps}.")
+        self.truth = GroundTruth(world)
+        self.max_steps = max_steps
+        self._world = world
+        self._record: _Record | None = None
+
+    def begin(self, goal: str, start: Pose) -> None:
+        """Start an episode.
+
+        Raises:
+            EpisodeError: the goal is no goal category, is not in the house, or has no way to it from the start.
+        """
+        self._record = None
+        shortest_path_m = self.distance_from(goal, start)
+        if shortest_path_m is None:
+            raise EpisodeError(
+                f"House '{self._world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a "
+                f"place where '{goal}' would count as found."
+            )
+        self._record = _Record(goal, start, shortest_path_m, [(start.x_m, start.y_m)])
+
+    def look(self, semantic: NDArray[np.uint8]) -> None:
+        """Note what one frame of ground-truth segmentation (h, w) shows."""
+        record = self._running
+        record.explored = record.explored or metrics.sees_goal(semantic, record.goal)
+
+    def observe(self, action: Action, motion: Motion, semantic: NDArray[np.uint8] | None = None) -> None:
+        """Count one action, carried out by the world, and the frame seen after it.
+
+        Raises:
+            EpisodeError: the episode has not begun or is over.
+        """
+        record = self._running
+        if record.end_reason is not None:
+            raise EpisodeError(f"The episode has ended ({record.end_reason}): begin another before the next action.")
+        pose = self._world.pose
+        record.positions_m.append((pose.x_m, pose.y_m))
+        record.path_length_m += motion.displacement_m
+        record.collisions += motion.collided
+        record.touches += bool(motion.contacts) and not motion.collided
+        record.trapped = record.trapped or metrics.stayed_near(record.positions_m)
+        if semantic is not None:
+            self.look(semantic)
+        if action == Action.STOP:
+            record.end_reason = "stop"
+            record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
+        elif self.num_steps >= self.max_steps:
+            record.end_reason = "max_steps"
+
+    @property
+    def goal(self) -> str:
+        """The category that the episode asks for."""
+        return self._running.goal
+
+    @property
+    def start(self) -> Pose:
+        """Where the episode started."""
+        return self._running.start
+
+    @property
+    def num_steps(self) -> int:
+        """Actions so far, STOP included."""
+        return len(self._running.positions_m) - 1
+
+    @property
+    def terminated(self) -> bool:
+        """Whether the agent called STOP."""
+        return self._running.end_reason == "stop"
+
+    @property
+    def truncated(self) -> bool:
+        """Whether the steps are used up."""
+        return self._running.end_reason == "max_steps"
+
+    @property
+    def done(self) -> bool:
+        """Whether the episode is over."""
+        return self._running.end_reason is not None
+
+    @property
+    def success(self) -> bool:
+        """Whether the agent called STOP where the goal counts as found."""
+        return self._running.success
+
+    def distance_from(self, goal: str, pose: Pose) -> float | None:
+        """Geodesic distance from a pose to the nearest place that satisfies success; None where there is no way."""
+        target, space = self.truth.target(goal, pose.floor_z_m), self.truth.space(pose.floor_z_m)
+        distance_m = space.distance_at(target.distance_m, pose.x_m, pose.y_m)
+        if distance_m < _SURELY_OUTSIDE_M and target.region.succeeds(pose.x_m, pose.y_m):
+            return 0.0
+        return distance_m if math.isfinite(distance_m) else None
+
+    def metrics(self) -> dict[str, Any]:
+        """The contract's metrics as they stand now; `failure` is None until its rules exist."""
+        record, distance_m = self._running, self._distance_now()
+        return {
+            "success": float(record.success),
+            "spl": metrics.spl(record.success, record.shortest_path_m, record.path_length_m),
+            "soft_spl": metrics.soft_spl(record.shortest_path_m, distance_m, record.path_length_m),
+            "distance_to_goal": distance_m,
+            "num_steps": self.num_steps,
+            "path_length": record.path_length_m,
+            "shortest_path": record.shortest_path_m,
+            "collisions": record.collisions,
+            "touches": record.touches,
+            "gt_explored": record.explored,
+            "trapped": record.trapped,
+            "failure": None,
+            "end_reason": record.end_reason,
+        }
+
+    @property
+    def _running(self) -> _Record:
+        if self._record is None:
+            raise EpisodeError("No episode has begun: call begin() first.")
+        return self._record
+
+    def _distance_now(self) -> float | None:
+        pose, record = self._world.pose, self._running
+        if record.success:
+            return 0.0
+        if abs(pose.floor_z_m - record.start.floor_z_m) >= SAME_STOREY_M:
+            return None
+        return self.distance_from(record.goal, pose)
