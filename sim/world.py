@@ -66,7 +66,7 @@ class World:
         self._require_room(start)
         physics = self.config.physics
         mujoco.mj_step(self.model, self.data, nstep=round(physics.settle_s / physics.timestep_s))
-        if abs(self._body.z_m - start.floor_z_m) > physics.max_drop_m:
+        if not any(not geoms.isdisjoint(self._wheels) for geoms, _ in self._contacts()):
             raise EpisodeError(f"{self._where(start)}: there is no floor at z = {start.floor_z_m:.2f} m.")
         self._driver.reset(start.yaw_rad)
 

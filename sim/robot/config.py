@@ -176,6 +176,11 @@ class RobotConfig:
                 f"{self.drive.tick_s} s and {self.physics.timestep_s} s."
             )
         wheels = self.wheels
+        if self.body.mass_kg <= 2.0 * wheels.mass_kg:
+            raise ConfigError(
+                f"BodyConfig.mass_kg is the whole robot's and must exceed that of its wheels, {2 * wheels.mass_kg} kg; "
+                f"got {self.body.mass_kg} kg."
+            )
         stiffness = wheels.motor_gain_nm_s * self.physics.timestep_s / wheels.armature_kg_m2
         if stiffness >= 1.0:
             raise ConfigError(

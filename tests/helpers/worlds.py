@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
 from sim.gl import mujoco
 from sim.houses.house import House
 
@@ -103,6 +105,35 @@ def cluttered_room(boxes: int, *, width_m: float = 12.0, free_radius_m: float = 
         body = spec.worldbody.add_body(name=f"cabinet_{number:03d}", pos=(x_m, y_m, 0.3))
         body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=(0.08, 0.08, 0.3))
     return House("cluttered_room", spec)
+
+
+def random_obstacles(seed: int) -> House:
+    """An endless floor with 1 to 8 things around the origin: boxes, 2 cm poles, low slabs, table tops, chairs' legs.
+
+    A disc of radius 0.18 m fits at the origin.
+    """
+    rng = np.random.default_rng(seed)
+    house = open_floor()
+    nearest_m = {"box": 0.62, "pole": 0.20, "slab": 0.41, "top": 0.55, "legs": 0.47}
+    for number in range(int(rng.integers(1, 9))):
+        kind = str(rng.choice(list(nearest_m)))
+        distance_m, bearing, yaw = nearest_m[kind] + rng.uniform(0, 0.4), rng.uniform(0, math.tau), rng.uniform(0, 3)
+        x, y = float(distance_m * math.cos(bearing)), float(distance_m * math.sin(bearing))
+        if kind == "box":
+            half = (float(rng.uniform(0.02, 0.3)), float(rng.uniform(0.02, 0.3)), 0.4)
+            house = with_box(house, f"cabinet_{number}", centre_m=(x, y, 0.4), half_m=half, yaw_rad=yaw)
+        elif kind == "pole":
+            house = with_post(house, f"column_{number}", xy_m=(x, y))
+        elif kind == "slab":
+            half = (0.1, 0.2, 0.025)
+            house = with_box(house, f"objects_{number}", centre_m=(x, y, 0.025), half_m=half, yaw_rad=yaw)
+        elif kind == "top":
+            half = (0.3, 0.2, 0.02)
+            house = with_box(house, f"table_{number}", centre_m=(x, y, 0.7), half_m=half, yaw_rad=yaw)
+        else:
+            for leg, (dx, dy) in enumerate(((0.19, 0.19), (0.19, -0.19), (-0.19, 0.19), (-0.19, -0.19))):
+                house = with_post(house, f"chair_{number}{leg}", xy_m=(x + dx, y + dy))
+    return house
 
 
 def _lattice(count: int, width_m: float, free_radius_m: float) -> Iterable[tuple[float, float]]:

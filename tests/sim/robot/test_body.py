@@ -1,0 +1,76 @@
+"""The body as MuJoCo compiles it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.gl import mujoco
+from sim.robot.body import HULL_MASK, MOVABLE_MASK, ROBOT_GROUP, STATIC_MASK, WHEEL_MASK, robot_spec
+from sim.robot.config import RobotConfig
+from sim.world import World
+from tests.helpers.worlds import open_floor
+
+
+@pytest.fixture(scope="module", params=["planar", "free"])
+def alone(request: pytest.FixtureRequest) -> mujoco.MjModel:
+    return robot_spec(RobotConfig(base=request.param)).compile()
+
+
+def test_the_mass_is_the_declared_one(alone: mujoco.MjModel):
+    assert alone.body_mass.sum() == pytest.approx(RobotConfig().body.mass_kg)
+
+
+def test_the_centre_of_mass_is_the_declared_one(alone: mujoco.MjModel):
+    data = mujoco.MjData(alone)
+    mujoco.mj_forward(alone, data)
+    base = alone.body("base").id
+    np.testing.assert_allclose(data.subtree_com[base], (0.0, 0.0, RobotConfig().body.com_height_m), atol=1e-9)
+
+
+def test_wheels_are_balanced(alone: mujoco.MjModel):
+    for name in ("left_wheel", "right_wheel"):
+        np.testing.assert_array_equal(alone.body_ipos[alone.body(name).id], 0.0)
+
+
+def test_no_camera_group_shows_the_robot(alone: mujoco.MjModel):
+    assert (alone.geom_group == ROBOT_GROUP).all()
+    assert ROBOT_GROUP >= 3
+
+
+def test_the_hull_fills_the_declared_cylinder(alone: mujoco.MjModel):
+    body = RobotConfig().body
+    hull = [alone.geom(f"{name}_hull") for name in ("lower", "upper")]
+    assert min(float(geom.pos[2] - geom.size[1]) for geom in hull) == pytest.approx(body.clearance_m)
+    assert max(float(geom.pos[2] + geom.size[1]) for geom in hull) == pytest.approx(body.height_m)
+    assert all(float(geom.size[0]) == body.radius_m for geom in hull)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "meet"),
+    [
+        (WHEEL_MASK, (1, 0), True),
+        (WHEEL_MASK, STATIC_MASK, False),
+        (WHEEL_MASK, MOVABLE_MASK, False),
+        (WHEEL_MASK, HULL_MASK, False),
+        (HULL_MASK, (1, 0), True),
+        (HULL_MASK, STATIC_MASK, True),
+        (HULL_MASK, MOVABLE_MASK, True),
+        (MOVABLE_MASK, (1, 0), True),
+        (MOVABLE_MASK, STATIC_MASK, True),
+        (MOVABLE_MASK, MOVABLE_MASK, True),
+        (STATIC_MASK, (1, 0), False),
+    ],
+)
+def test_masks_say_who_meets_whom(one, other, meet):
+    assert bool((one[0] & other[1]) | (other[0] & one[1])) is meet
+
+
+@pytest.mark.parametrize("base", ["planar", "free"])
+def test_all_the_weight_is_on_the_wheels_at_rest(base):
+    world = World(open_floor(), robot=RobotConfig(base=base))
+    data = world.data
+    mujoco.mj_step(world.model, data, nstep=250)
+    tyres = {world.model.geom(f"robot/{name}_tyre").id for name in ("left", "right")}
+    assert data.ncon == 2
+    assert all(not tyres.isdisjoint(pair) for pair in data.contact.geom.tolist())

@@ -1,0 +1,46 @@
+"""A robot that cannot be is refused where it is declared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from sim.interface import ConfigError
+from sim.robot.config import BodyConfig, DriveConfig, PhysicsConfig, RobotConfig, WheelConfig
+
+
+def test_agents_are_told_the_size_of_the_hull():
+    model = RobotConfig(body=BodyConfig(radius_m=0.2, height_m=1.0)).model
+    assert (model.radius_m, model.height_m) == (0.2, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("build", "message"),
+    [
+        (lambda: RobotConfig(base="hovering"), "planar, free, got 'hovering'"),  # type: ignore[arg-type]
+        (lambda: BodyConfig(mass_kg=0.0), "BodyConfig.mass_kg must be a finite number > 0, got 0.0"),
+        (lambda: BodyConfig(radius_m=float("nan")), "BodyConfig.radius_m must be a finite number > 0, got nan"),
+        (lambda: BodyConfig(waist_m=0.9), "clearance_m < waist_m < height_m"),
+        (lambda: WheelConfig(caster_gap_m=-0.001), "WheelConfig.caster_gap_m"),
+        (lambda: WheelConfig(max_torque_nm=-1.0), "WheelConfig.max_torque_nm"),
+        (lambda: DriveConfig(blocking_ticks=0), "DriveConfig.blocking_ticks"),
+        (lambda: PhysicsConfig(timestep_s=0.0), "PhysicsConfig.timestep_s"),
+        (lambda: RobotConfig(physics=PhysicsConfig(timestep_s=0.003)), "whole multiple"),
+        (lambda: RobotConfig(wheels=WheelConfig(armature_kg_m2=0.002)), "must stay below 1 or the wheels shake"),
+        (lambda: RobotConfig(wheels=WheelConfig(half_track_m=0.2)), "inside the hull"),
+        (lambda: RobotConfig(drive=DriveConfig(blocking_force_n=40.0)), "below what the motors can push, 35.0 N"),
+        (lambda: RobotConfig(body=BodyConfig(mass_kg=0.4)), "mass"),
+    ],
+)
+def test_impossible_values_are_refused_by_name(build, message):
+    with pytest.raises(ConfigError) as error:
+        build()
+    assert message in str(error.value)
+
+
+def test_the_whole_tree_can_be_varied_by_replacing():
+    config = RobotConfig()
+    slower = replace(config, drive=replace(config.drive, speed_m_s=0.25))
+    assert slower.drive.speed_m_s == 0.25
+    assert config.drive.speed_m_s == 0.5

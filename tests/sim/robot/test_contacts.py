@@ -1,0 +1,96 @@
+"""The record of what was touched."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.gl import mujoco
+from sim.interface import Action
+from sim.pose import Pose
+from sim.world import World
+from tests.helpers.sampling import sample
+from tests.helpers.worlds import open_floor, random_obstacles, with_box, with_post
+
+FORWARD = Action.MOVE_FORWARD
+
+
+def test_a_contact_names_the_thing_the_place_and_the_push():
+    world = World(with_box(open_floor(), "cabinet_07", centre_m=(0.5, 0.0, 0.3), half_m=(0.1, 1.0, 0.3)))
+    world.reset(Pose(0.0, 0.0, 0.0))
+    (contact,) = world.move(FORWARD).contacts
+    assert (contact.instance, contact.geom) == ("cabinet_07", "cabinet_07")
+    assert contact.stopped
+    assert contact.position_m[0] == pytest.approx(0.4, abs=0.005)
+    assert contact.position_m[1] == pytest.approx(0.0, abs=0.01)
+    assert 0.0 <= contact.position_m[2] <= 0.61
+    assert contact.direction[0] < -0.9
+    assert np.linalg.norm(contact.direction) == pytest.approx(1.0)
+    assert 0.02 <= contact.duration_s < 0.3
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_push_comes_from_the_side_that_was_hit(side):
+    world = World(with_post(open_floor(), "column_00", xy_m=(0.3, side * 0.12), radius_m=0.02))
+    world.reset(Pose(0.0, 0.0, 0.0))
+    (contact,) = world.move(FORWARD).contacts
+    assert contact.direction[0] < 0
+    assert contact.direction[1] * side < 0
+    assert contact.position_m[1] * side > 0
+
+
+def test_an_invisible_obstacle_collides_and_is_named():
+    glass = with_box(open_floor(), "door_00", centre_m=(0.4, 0.0, 1.0), half_m=(0.01, 1.0, 1.0), group=3)
+    world = World(glass)
+    world.reset(Pose(0.0, 0.0, 0.0))
+    motion = world.move(FORWARD)
+    assert motion.collided
+    assert motion.contacts[0].instance == "door_00"
+
+
+def test_an_unlabelled_invisible_obstacle_has_a_geom_but_no_instance():
+    world = World(with_box(open_floor(), "artefact", centre_m=(0.4, 0.0, 1.0), half_m=(0.01, 1.0, 1.0), group=4))
+    world.reset(Pose(0.0, 0.0, 0.0))
+    motion = world.move(FORWARD)
+    assert motion.collided
+    assert (motion.contacts[0].instance, motion.contacts[0].geom) == ("", "artefact")
+
+
+class DeepestContact:
+    """Watches every physics step for how deep the hull is in something."""
+
+    def __init__(self, world: World) -> None:
+        self._hull = {world.model.geom(f"robot/{name}_hull").id for name in ("lower", "upper")}
+        self.depth_m = 0.0
+
+    def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        if data.ncon <= 2:
+            return
+        for pair, distance_m in zip(data.contact.geom.tolist(), data.contact.dist.tolist(), strict=True):
+            if not self._hull.isdisjoint(pair):
+                self.depth_m = max(self.depth_m, -distance_m)
+
+
+@pytest.mark.parametrize("seed", sample(range(200), 25))
+def test_among_random_obstacles_nothing_gives_way_and_the_record_holds(seed):
+    """Penetration below 3 mm, headings kept, and `collided` says what the displacement says."""
+    world = World(random_obstacles(seed))
+    rng = np.random.default_rng(seed)
+    start_yaw = float(rng.uniform(-3, 3))
+    world.reset(Pose(0.0, 0.0, start_yaw))
+    deepest = DeepestContact(world)
+    mujoco.set_mjcb_control(deepest)
+    try:
+        for action in map(Action, rng.choice([1, 1, 1, 2, 3], size=8).tolist()):
+            motion = world.move(action)
+            assert abs(math.degrees(math.remainder(world.pose.yaw_rad - start_yaw, math.radians(30)))) < 0.5
+            if motion.ended == "reached":
+                assert motion.displacement_m == pytest.approx(0.25 if action == FORWARD else 0.0, abs=0.006)
+            else:
+                assert motion.collided
+                assert motion.displacement_m < 0.25
+    finally:
+        mujoco.set_mjcb_control(None)
+    assert deepest.depth_m < 0.003
