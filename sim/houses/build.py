@@ -10,7 +10,7 @@ from pathlib import Path
 from sim.gl import mujoco
 from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape
 from sim.houses.geometry import Rect
-from sim.houses.materials import texrepeat, texture_file
+from sim.houses.materials import texture_file, texture_mapping
 
 ASSETS_DIR = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses"
 TEXTURE_DIR = "../textures"
@@ -162,8 +162,9 @@ class HouseBuilder:
             textures = list(material.textures)
             textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = self._texture(look.texture)
             material.textures = textures
-            material.texuniform = True
-            material.texrepeat = list(texrepeat(look))
+            uniform, repeat = texture_mapping(look)
+            material.texuniform = uniform
+            material.texrepeat = [repeat, repeat]
         return name
 
     def _texture(self, name: str) -> str:

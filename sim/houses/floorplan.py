@@ -109,13 +109,13 @@ class _Row:
         return low, min(max(usual, low), max(high, low)), max(high, low)
 
 
-def draw_floorplan(rng: np.random.Generator, kind: PlanKind, area_m2: float) -> FloorPlan:
-    """A plan of this shape with about this area.
+def draw_floorplan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> FloorPlan:
+    """A plan of this shape with about this area, with the private rooms `wanted` if they fit.
 
     Raises:
         PlanError: the drawn rooms do not fit together, or the area is off by more than a quarter.
     """
-    program = draw_program(rng, kind, area_m2)
+    program = draw_program(rng, kind, area_m2, wanted)
     draft = _Draft()
     corridor_m = _draw(rng, 1.2, 1.45) if area_m2 < 120 else _draw(rng, 1.3, 1.75)
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))

@@ -6,7 +6,7 @@ a single bedroom from 9 m2, a double from 12 m2, bathrooms 3.5-10 m2, corridors 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
@@ -105,8 +105,11 @@ def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
     return fitting[int(rng.integers(len(fitting)))]
 
 
-def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float) -> Program:
-    """The rooms of a home of this shape and area; larger homes have more of the rarer rooms."""
+def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> Program:
+    """The rooms of a home of this shape and area; larger homes have more of the rarer rooms.
+
+    Private rooms `wanted` are granted first, as far as the area goes.
+    """
     if kind == "studio":
         extra = "laundry" if rng.random() < 0.4 else "closet"
         return Program(("studio",), ((Column("bathroom"),), (Column(extra),)))
@@ -115,7 +118,7 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float) -> Pr
         public.append("dining_room")
     left = 0.84 * area_m2 - sum(ROOM_RULES[room].area_m2[1] for room in public) * (1.25 if kind == "openplan" else 1.0)
     groups: list[tuple[Column, ...]] = [(Column("bathroom"),)]
-    wishes = _wishes(rng, area_m2)
+    wishes = [(Column(room),) for room in wanted] + _wishes(rng, area_m2, wanted)
     left -= 6.5
     rooms = len(public) + 1
     for group in wishes:
@@ -128,7 +131,7 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float) -> Pr
     return Program(tuple(public), tuple(groups))
 
 
-def _wishes(rng: np.random.Generator, area_m2: float) -> list[tuple[Column, ...]]:
+def _wishes(rng: np.random.Generator, area_m2: float, wanted: Sequence[str]) -> list[tuple[Column, ...]]:
     """Private rooms in the order they are granted while area lasts."""
     ensuite = (Column("bedroom"), Column("closet", "bathroom"))
     beside = (Column("bedroom"), Column("bathroom", "closet"))
@@ -139,5 +142,6 @@ def _wishes(rng: np.random.Generator, area_m2: float) -> list[tuple[Column, ...]
     wishes = [first, rare[0], second, rare[1], bedroom, rare[2]]
     if area_m2 < 105 and rng.random() < 0.5:
         wishes = [first, second, *rare]
+    wishes = [group for group in wishes if group[0].front not in wanted]
     wishes += [ensuite, bedroom, (Column("office"),), beside, (Column("closet"),), bedroom]
     return wishes

@@ -25,6 +25,8 @@ CASING_M = (0.07, 0.014)
 """Width and thickness of the boards around a door."""
 SLAB_M = 0.1
 """Thickness of floors."""
+MESH_BOXES = 12
+"""Boxes in one mesh at most."""
 Box3 = tuple[float, float, float, float, float, float]
 """x0, x1, y0, y1, z0, z1."""
 
@@ -134,9 +136,9 @@ def _room_walls(
         if geoms:
             walls.append(_item("wall", "side", geoms))
         boards += _baseboards(rect, side, holes)
-    if boards and walls:
-        board = _mesh_geom("baseboard", boards, trim)
-        walls[0] = _item("wall", "side", [*walls[0].geoms, board])
+    if walls:
+        meshes = [_mesh_geom("baseboard", boards[n : n + MESH_BOXES], trim) for n in range(0, len(boards), MESH_BOXES)]
+        walls[0] = _item("wall", "side", [*walls[0].geoms, *meshes])
     return walls
 
 

@@ -1,0 +1,74 @@
+"""The looks of a home's structure and its light: drawn once for a home, so that its rooms belong together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.houses import materials
+from sim.houses.build import Lamp
+from sim.houses.floorplan import FloorPlan
+from sim.houses.furniture.item import Look, Pool
+from sim.houses.structure import Finish
+
+TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
+OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
+SKY = {"train": (0.55, 0.75, 0.95, 1.0), "heldout": (0.66, 0.80, 0.92, 1.0)}
+MAX_POINT_LAMPS = 5
+"""Fixed-function OpenGL has eight lights; three shine everywhere."""
+
+
+def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
+    """Paint and floors by room; rooms that flow into each other share theirs."""
+    walls, floors = {}, {}
+    main_floor = materials.floor_look("living_room", rng, pool)
+    main_wall = materials.wall_look(rng, pool)
+    shared = _flowing(plan)
+    for i, room in enumerate(plan.rooms):
+        own = materials.wall_look(rng, pool, room.kind)
+        floor = materials.floor_look(room.kind, rng, pool)
+        same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
+        walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
+        floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
+    trim = Look(TRIM[pool], specular=0.2)
+    door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
+    frame = trim if rng.random() < 0.6 else door
+    return Finish(
+        walls, floors, materials.ceiling_look(rng, pool), Look(OUTSIDE[pool]), trim, door, frame,
+        materials.look("metal", rng, pool), Look(SKY[pool], specular=0.0, emission=0.75),
+    )  # fmt: skip
+
+
+def _flowing(plan: FloorPlan) -> set[int]:
+    """Rooms that are open to another one without any wall between."""
+    return {room for join in plan.joins if join.kind == "open" for room in (join.a, join.b)}
+
+
+def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
+    """Daylight from two sides, a reflection from the floors, and lamps in the largest rooms.
+
+    The light that is the same everywhere casts no shadow: a ceiling would swallow it. Strengths were set by looking.
+    """
+    warm = float(rng.uniform(0.0, 1.0))
+    tint = np.array([1.0, 0.99 - 0.03 * warm, 0.97 - 0.10 * warm])
+    turn = float(rng.uniform(0.0, 2 * np.pi))
+
+    def towards(angle: float, tilt: float) -> tuple[float, float, float]:
+        level = np.cos(tilt)
+        return (round(float(level * np.cos(angle)), 4), round(float(level * np.sin(angle)), 4), round(float(np.sin(tilt)), 4))
+
+    def light(strength: float) -> tuple[float, float, float]:
+        r, g, b = (round(float(v), 3) for v in strength * tint)
+        return (r, g, b)
+
+    x, y = plan.bounds.centre
+    above = (round(x, 2), round(y, 2), ceiling_m + 2.0)
+    lamps = [
+        Lamp(above, light(0.34), towards(turn, -0.75)),
+        Lamp(above, light(0.22), towards(turn + 2.3, -0.55)),
+        Lamp((above[0], above[1], 0.1), light(0.30), towards(turn + 1.0, 1.2)),
+    ]
+    rooms = sorted(plan.rooms, key=lambda room: -room.rect.area_m2)[:MAX_POINT_LAMPS]
+    for room in rooms:
+        cx, cy = room.rect.centre
+        lamps.append(Lamp((round(cx, 2), round(cy, 2), round(ceiling_m - 0.25, 2)), light(0.42), shadow=True))
+    return lamps

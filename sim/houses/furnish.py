@@ -1,0 +1,374 @@
+"""What stands in each kind of room, and in which order it is put there: first what the room is for, then the rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from sim.houses.geometry import SIDES, Side
+from sim.houses.groups import (
+    bed_group,
+    desk_group,
+    dining_group,
+    hang,
+    hang_over,
+    lay_rug,
+    place,
+    put_things,
+    row,
+    sofa_group,
+)
+from sim.houses.kit import Kit
+from sim.houses.placement import RoomSpace, Standing
+
+
+def furnish(space: RoomSpace, kit: Kit) -> None:
+    """Fill a room by the rules of its kind, then hang curtains, pictures and a lamp."""
+    RULES.get(space.kind, _other)(space, kit)
+    _curtains(space, kit)
+    _ceiling_lamp(space, kit)
+
+
+def _bedroom(space: RoomSpace, kit: Kit) -> None:
+    area = space.inner.area_m2
+    bed_group(space, kit, large=area > 10.5)
+    place(space, kit, "cabinet", "wardrobe", along="corner", front_m=0.7)
+    chest = place(space, kit, "chest_of_drawers", "dresser", front_m=0.7) if kit.chance(0.8) else None
+    if chest is not None:
+        put_things(space, kit, chest, ("objects", "plant", "objects", "lighting"), (0.6, 0.3, 0.4, 0.2))
+        hang_over(space, kit, chest, *(("mirror",) if kit.chance(0.5) else ("picture",)))
+    if area > 13 and kit.chance(0.55):
+        desk_group(space, kit)
+    if area > 14 and kit.chance(0.5):
+        place(space, kit, "chair", "arm", along="corner", front_m=0.4)
+    if kit.chance(0.35):
+        hang(space, kit, "tv_monitor", "wall")
+    if kit.clutter_chance(0.5):
+        place(space, kit, "clothes", "rack", "floor", along="corner", front_m=0.3)
+    _extras(space, kit, plants=0.5, pictures=(1, 2))
+
+
+def _living_room(space: RoomSpace, kit: Kit) -> None:
+    area = space.inner.area_m2
+    if kit.chance(0.55):
+        hearth = place(space, kit, "fireplace", along="middle", front_m=0.9)
+        if hearth is not None:
+            hang_over(space, kit, hearth, "picture" if kit.chance(0.6) else "mirror")
+    sofa_group(space, kit)
+    if area > 20 or kit.chance(0.4):
+        place(space, kit, "shelving", "bookcase", front_m=0.6)
+    if area > 24:
+        board = place(space, kit, "cabinet", "sideboard", front_m=0.6)
+        if board is not None:
+            put_things(space, kit, board, ("objects", "plant", "lighting", "objects"), (0.6, 0.4, 0.4, 0.4))
+            hang_over(space, kit, board, "picture")
+    if area > 30:
+        place(space, kit, "chair", "arm", along="corner", front_m=0.5)
+        place(space, kit, "seating", front_m=0.4)
+    if area > 26 and kit.chance(0.4):
+        desk_group(space, kit)
+    place(space, kit, "lighting", "floor", along="corner", front_m=0.0)
+    if kit.clutter_chance(0.3):
+        place(space, kit, "cushion", "floor", along="corner", front_m=0.2)
+    _extras(space, kit, plants=0.9, pictures=(1, 3))
+
+
+def _kitchen(space: RoomSpace, kit: Kit) -> None:
+    kitchen_units(space, kit)
+    area = space.inner.area_m2
+    if area > 13 and kit.chance(0.6):
+        _island(space, kit)
+    elif area > 9:
+        dining_group(space, kit, around_m=0.65)
+    _extras(space, kit, plants=0.4, pictures=(0, 1))
+
+
+def kitchen_units(space: RoomSpace, kit: Kit) -> None:
+    """A run of units along the best wall: fridge, counter with sink, cooker, counter; cabinets above."""
+    sides = sorted(SIDES, key=lambda side: -space.wall_length(side) + (0.8 if _has_window(space, side) else 0.0))
+    looks: dict[str, object] = {}
+    for side in sides:
+        free = min(space.wall_length(side) - 0.02, 5.2)
+        made = _kitchen_run(space, kit, side, free, looks)
+        if made:
+            _wall_cabinets(space, kit, side, made, looks)
+            others = [s for s in sides if s != side]
+            if space.inner.area_m2 > 12 and kit.chance(0.6):
+                for other in others:
+                    width = min(space.wall_length(other) - 0.7, 2.4)
+                    item = kit.make("counter", "kitchen", width_m=round(width, 2), looks=looks) if width > 0.9 else None
+                    run = row(space, kit, [item], other) if item else []
+                    if run:
+                        put_things(space, kit, run[0], ("objects", "plant", "objects"), (0.8, 0.2, 0.5))
+                        _wall_cabinets(space, kit, other, run, looks)
+                        break
+            return
+
+
+def _kitchen_run(space: RoomSpace, kit: Kit, side: Side, free_m: float, looks: dict[str, object]) -> list[Standing]:
+    """Units side by side on one wall, fewer and narrower ones where the wall is short."""
+    fridge = kit.make("appliances", "fridge", "refrigerator")
+    cooker = kit.make("appliances", "stove", "cooker", "oven")
+    for full in (True, False):
+        fixed = [item for item in (fridge, cooker) if item is not None] if full else []
+        rest = free_m - sum(item.size_m[1] + 0.005 for item in fixed)
+        for share in (1.0, 0.85, 0.7, 0.5):
+            width = rest * share
+            if width < 1.0:
+                continue
+            if full and cooker is not None and width > 2.2:
+                left = round(0.6 * width, 2)
+                parts = [fridge, kit.make("counter", "kitchen", width_m=left, with_sink=True, with_hob=False, looks=looks), cooker,
+                         kit.make("counter", "kitchen", width_m=round(width - left, 2), with_sink=False, with_hob=False, looks=looks)]
+            else:
+                parts = [fridge if full else None,
+                         kit.make("counter", "kitchen", width_m=round(width, 2), with_sink=True, with_hob=cooker is None or not full, looks=looks),
+                         cooker if full else None]
+            run = row(space, kit, [part for part in parts if part is not None], side)
+            if run:
+                for unit in run:
+                    if unit.placed.item.category == "counter":
+                        put_things(space, kit, unit, ("objects", "objects", "plant"), (0.8, 0.5, 0.2))
+                return run
+    return []
+
+
+def _wall_cabinets(space: RoomSpace, kit: Kit, side: Side, run: list[Standing], looks: dict[str, object]) -> None:
+    for unit in run:
+        if unit.placed.item.size_m[2] > 1.2:
+            continue
+        width = min(unit.placed.item.size_m[1], 2.0)
+        lo, hi = unit.rect.span(side)
+        for share in (1.0, 0.6, 0.4):
+            cabinet = kit.make("cabinet", "kitchen_wall", width_m=round(width * share, 2), looks=looks)
+            if cabinet is None or cabinet.mount != "wall":
+                return
+            half = cabinet.size_m[1] / 2
+            spots = (0.5 * (lo + hi), lo + half, hi - half)
+            if any(space.on_wall(kit.rng, cabinet, sides=[side], at=at, bottom_m=1.45, margin_m=0.0) for at in spots):
+                break
+
+
+def _island(space: RoomSpace, kit: Kit) -> None:
+    """A free-standing counter with stools on one side."""
+    island = kit.make("counter", "island", "bar")
+    if island is None:
+        dining_group(space, kit, around_m=0.65)
+        return
+    standing = space.in_middle(kit.rng, island, around_m=0.8)
+    if standing is None:
+        dining_group(space, kit, around_m=0.65)
+        return
+    put_things(space, kit, standing, ("objects", "plant", "objects"), (0.7, 0.4, 0.3))
+    stool = kit.make("stool", "bar", "counter")
+    space.release(standing)
+    if stool is None:
+        return
+    depth, width = island.size_m[:2]
+    count = max(2, min(4, int(width / (stool.size_m[1] + 0.2))))
+    yaw = standing.placed.yaw_rad
+    c, s = math.cos(yaw), math.sin(yaw)
+    for n in range(count):
+        lx, ly = depth / 2 + stool.size_m[0] / 2 + 0.04, (n - 0.5 * (count - 1)) * width / count
+        space.at(stool, standing.placed.x_m + c * lx - s * ly, standing.placed.y_m + s * lx + c * ly, yaw + math.pi)
+
+
+def _dining_room(space: RoomSpace, kit: Kit) -> None:
+    dining_group(space, kit)
+    board = place(space, kit, "cabinet", "sideboard", "display", front_m=0.6)
+    if board is not None:
+        put_things(space, kit, board, ("objects", "plant", "lighting", "objects"), (0.7, 0.4, 0.3, 0.4))
+        hang_over(space, kit, board, "picture")
+    if kit.chance(0.3):
+        place(space, kit, "counter", "bar", "sideboard", front_m=0.7)
+    _extras(space, kit, plants=0.7, pictures=(1, 2))
+
+
+def _studio(space: RoomSpace, kit: Kit) -> None:
+    kitchen_units(space, kit)
+    bed_group(space, kit, large=True)
+    sofa_group(space, kit)
+    place(space, kit, "cabinet", "wardrobe", along="corner", front_m=0.7)
+    dining_group(space, kit, around_m=0.6)
+    if kit.chance(0.5):
+        place(space, kit, "shelving", "bookcase", front_m=0.6)
+    place(space, kit, "chest_of_drawers", "dresser", front_m=0.6)
+    _extras(space, kit, plants=1.0, pictures=(2, 3))
+
+
+def _bathroom(space: RoomSpace, kit: Kit) -> None:
+    """Tub or shower in a corner first, then toilet and basin, mirror above it, towels within reach."""
+    area = space.inner.area_m2
+    tub_first = kit.chance(0.5)
+    wet = ("bathtub", "shower") if tub_first else ("shower", "bathtub")
+    got = place(space, kit, wet[0], along="corner", front_m=0.5, tries=3)
+    if got is None or area > 7.5:
+        place(space, kit, wet[1], along="corner", front_m=0.5, tries=2)
+    place(space, kit, "toilet", front_m=0.5, tries=3)
+    basin = _basin(space, kit)
+    if basin is not None and not hang_over(space, kit, basin, "mirror"):
+        hang(space, kit, "mirror")
+    for _ in range(1 + kit.chance(0.4)):
+        hang(space, kit, "towel", "rail")
+    if area > 5.5 and kit.chance(0.5):
+        place(space, kit, "cabinet", "vanity", front_m=0.5)
+    if kit.chance(0.4):
+        place(space, kit, "stool", "low", "bath", along="corner", front_m=0.2)
+    if kit.clutter_chance(0.4):
+        place(space, kit, "objects", "floor", "basket", along="corner", front_m=0.0)
+    _extras(space, kit, plants=0.3, pictures=(0, 1), lamp=False)
+
+
+def _basin(space: RoomSpace, kit: Kit) -> Standing | None:
+    """A basin on a cabinet of its own, or standing by itself."""
+    uses = ("cabinet", "vanity") if kit.chance(0.55) else ("sink", "standing")
+    return place(space, kit, *uses, front_m=0.6, tries=2) or place(space, kit, "sink", "standing", front_m=0.5, tries=2)
+
+
+def _hallway(space: RoomSpace, kit: Kit) -> None:
+    wide = space.inner.short_m
+    if wide > 1.15:
+        if kit.chance(0.7):
+            hang(space, kit, "clothes", "hooks", "wall")
+        for _ in range(1 + int(space.inner.area_m2 > 12)):
+            board = place(space, kit, *(("cabinet", "sideboard") if kit.chance(0.5) else ("table", "console")), front_m=0.45)
+            if board is not None:
+                put_things(space, kit, board, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))
+                hang_over(space, kit, board, "mirror" if kit.chance(0.6) else "picture")
+        if kit.chance(0.5):
+            place(space, kit, "seating", "bench", front_m=0.45)
+    pictures = 1 + int(space.inner.long_m / 4.0)
+    _extras(space, kit, plants=0.6, pictures=(pictures - 1, pictures), corner_plants=True)
+
+
+def _office(space: RoomSpace, kit: Kit) -> None:
+    desk_group(space, kit)
+    if space.inner.area_m2 > 13:
+        desk_group(space, kit)
+    place(space, kit, "shelving", "bookcase", front_m=0.6)
+    if kit.chance(0.5):
+        place(space, kit, "cabinet", "sideboard", front_m=0.6)
+    if kit.chance(0.4):
+        place(space, kit, "chair", "arm", along="corner", front_m=0.4)
+    if kit.chance(0.5):
+        hang(space, kit, "board_panel")
+    _extras(space, kit, plants=0.8, pictures=(1, 2))
+
+
+def _gym(space: RoomSpace, kit: Kit) -> None:
+    count = 2 + int(space.inner.area_m2 > 15) + int(space.inner.area_m2 > 20)
+    seen: set[str] = set()
+    for _ in range(4 * count):
+        item = kit.make("gym_equipment")
+        if item is None or item.style in seen:
+            continue
+        if item.mount == "floor" and not item.walk_over and space.against_wall(kit.rng, item, front_m=0.6):
+            seen.add(item.style)
+        if len(seen) >= count:
+            break
+    hang(space, kit, "mirror")
+    place(space, kit, "seating", "bench", front_m=0.5)
+    hang(space, kit, "towel", "rail")
+    if kit.chance(0.5):
+        hang(space, kit, "tv_monitor", "wall")
+    _extras(space, kit, plants=0.5, pictures=(1, 1))
+
+
+def _laundry(space: RoomSpace, kit: Kit) -> None:
+    washer = kit.make("appliances", "washer", "washing_machine")
+    if washer is not None:
+        machines = [washer, washer] if kit.chance(0.5) else [washer]
+        for side in sorted(SIDES, key=lambda s: -space.wall_length(s)):
+            if row(space, kit, machines, side, front_m=0.6):
+                break
+    place(space, kit, "counter", "kitchen", width_m=1.0, with_sink=True, with_hob=False, front_m=0.6)
+    place(space, kit, "shelving", "bookcase", front_m=0.5)
+    place(space, kit, "clothes", "rack", "basket", front_m=0.4)
+    _extras(space, kit, plants=0.1, pictures=(0, 0))
+
+
+def _closet(space: RoomSpace, kit: Kit) -> None:
+    place(space, kit, "clothes", "rack", front_m=0.5)
+    place(space, kit, "chest_of_drawers", "dresser", front_m=0.5)
+    place(space, kit, "shelving", "bookcase", front_m=0.5)
+    if kit.chance(0.5):
+        place(space, kit, "stool", "low", along="corner", front_m=0.2)
+    if kit.clutter_chance(0.5):
+        place(space, kit, "objects", "floor", "box", along="corner", front_m=0.0)
+    if kit.chance(0.5):
+        hang(space, kit, "mirror")
+
+
+def _other(space: RoomSpace, kit: Kit) -> None:
+    _extras(space, kit, plants=0.5, pictures=(1, 1))
+
+
+def _extras(
+    space: RoomSpace, kit: Kit, *, plants: float, pictures: tuple[int, int], lamp: bool = True, corner_plants: bool = True
+) -> None:
+    """Plants in corners, pictures on free wall, something on the floor: how much is the clutter's affair."""
+    for chance in (plants, plants - 0.5):
+        if kit.chance(max(0.0, chance)):
+            place(space, kit, "plant", "floor", along="corner" if corner_plants else "any", front_m=0.0)
+    for _ in range(int(kit.rng.integers(pictures[0], pictures[1] + 1))):
+        hang(space, kit, "picture")
+    if lamp and kit.chance(0.25):
+        place(space, kit, "lighting", "floor", along="corner", front_m=0.0)
+    if kit.clutter_chance(0.25):
+        place(space, kit, "objects", "floor", "box", "basket", along="corner", front_m=0.0)
+
+
+def _curtains(space: RoomSpace, kit: Kit) -> None:
+    """The same curtains or blinds at every window of a room; long curtains where nothing stands below, none in some rooms."""
+    drawn = kit.rng.random()
+    looks = kit.looks("curtain", "iron")
+    for side, window in space.windows():
+        width, height = window.span[1] - window.span[0], window.top_m - window.bottom_m
+        tries = [("blinds", width - 0.02, height - 0.02)]
+        if space.kind not in ("bathroom", "laundry", "kitchen", "hallway") and drawn < 0.7:
+            tries = [("curtain", width + 0.4, 2.2), ("curtain", width + 0.4, height + 0.25), *tries]
+        if drawn > 0.88:
+            return
+        for category, wide, high in tries:
+            item = kit.make(category, width_m=round(wide, 2), height_m=round(high, 2), looks=looks)
+            if item is not None and item.mount == "wall" and space.dress_window(item, side, window):
+                break
+
+
+def _ceiling_lamp(space: RoomSpace, kit: Kit) -> None:
+    lamp = kit.make("lighting", "ceiling", "pendant")
+    if lamp is None or lamp.mount != "ceiling":
+        return
+    count = max(1, int(space.inner.long_m / 4.5)) if space.kind == "hallway" else 1
+    for n in range(count):
+        x, y = space.inner.centre
+        if count > 1:
+            along = (n + 0.5) / count
+            if space.inner.width_m > space.inner.depth_m:
+                x = space.inner.x0 + along * space.inner.width_m
+            else:
+                y = space.inner.y0 + along * space.inner.depth_m
+        space.on_ceiling(lamp, x, y)
+
+
+def _has_window(space: RoomSpace, side: Side) -> bool:
+    return any(where == side for where, _ in space.windows())
+
+
+RULES: Mapping[str, Callable[[RoomSpace, Kit], None]] = MappingProxyType(
+    {
+        "bedroom": _bedroom,
+        "living_room": _living_room,
+        "kitchen": _kitchen,
+        "dining_room": _dining_room,
+        "studio": _studio,
+        "bathroom": _bathroom,
+        "hallway": _hallway,
+        "office": _office,
+        "gym": _gym,
+        "laundry": _laundry,
+        "closet": _closet,
+    }
+)
+"""How each kind of room is furnished."""

@@ -1,0 +1,176 @@
+"""A furnished home from a seed: floor plan, openings, structure, furniture, lights, and their check.
+
+Everything is drawn from one stream that the seed, the pool and the number of the try begin, so that the same seed
+and version give the same bytes of XML. A try whose rooms do not fit, or whose check finds a fault, is thrown away and
+the next one begins; the number of tries is bounded and reported.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.errors import HouseError
+from sim.gl import mujoco
+from sim.houses.build import HouseBuilder, Placed, RoomBox
+from sim.houses.check import check_house
+from sim.houses.finish import draw_finish, draw_lamps
+from sim.houses.floorplan import FloorPlan, PlanError, draw_floorplan
+from sim.houses.furnish import furnish
+from sim.houses.furniture.item import Pool
+from sim.houses.kit import Kit
+from sim.houses.openings import HALF_WALL_M, OUTER_WALL_M, cut_openings
+from sim.houses.placement import RoomSpace
+from sim.houses.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
+from sim.houses.structure import build_structure
+from sim.interface import ConfigError
+
+GENERATOR_VERSION = 1
+"""Raised whenever the same seed would give another house."""
+MAX_TRIES = 12
+MAX_PLAN_TRIES = 60
+AREA_M2 = (50.0, 400.0)
+_POOL_STREAM = {"train": 0, "heldout": 1}
+
+
+@dataclass(frozen=True, kw_only=True)
+class HouseConfig:
+    """What may be asked of a house; whatever is None is drawn from the seed."""
+
+    pool: Pool = "train"
+    kind: PlanKind | None = None
+    area_m2: float | None = None
+    """Floor area aimed at, to the middle of the walls."""
+    clutter: float | None = None
+    """0 bare, 1 full of small things."""
+    rooms: tuple[str, ...] = ()
+    """Kinds of private rooms (gym, office, laundry ...) that it should have if the area allows."""
+    name: str = "house"
+    """The model's name in the file."""
+
+    def __post_init__(self) -> None:
+        if self.pool not in _POOL_STREAM:
+            raise ConfigError(f"HouseConfig.pool must be one of {', '.join(_POOL_STREAM)}, got '{self.pool}'.")
+        if self.kind is not None and self.kind not in PLAN_KINDS:
+            raise ConfigError(f"HouseConfig.kind must be one of {', '.join(PLAN_KINDS)}, got '{self.kind}'.")
+        unknown = [room for room in self.rooms if room not in ROOM_RULES]
+        if unknown:
+            raise ConfigError(f"HouseConfig.rooms: no room kind '{unknown[0]}'. There is: {', '.join(ROOM_RULES)}.")
+        if self.area_m2 is not None and not AREA_M2[0] <= self.area_m2 <= AREA_M2[1]:
+            raise ConfigError(f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}.")
+        if self.clutter is not None and not 0.0 <= self.clutter <= 1.0:
+            raise ConfigError(f"HouseConfig.clutter must lie in [0, 1], got {self.clutter}.")
+
+
+@dataclass(frozen=True)
+class GeneratedHouse:
+    """A house that passed its check, and how it came about."""
+
+    spec: mujoco.MjSpec
+    plan: FloorPlan
+    geoms: int
+    tries: int
+    rejects: tuple[str, ...]
+    """Why each earlier try was thrown away."""
+
+
+def generate(
+    seed: int,
+    *,
+    pool: Pool = "train",
+    kind: PlanKind | None = None,
+    area_m2: float | None = None,
+    clutter: float | None = None,
+) -> mujoco.MjSpec:
+    """The specification of a new home; the same seed and version, the same bytes of `to_xml()`.
+
+    Args:
+        seed: any whole number from 0 on.
+        pool: which styles, sizes, colours and textures may appear; "train" and "heldout" share none.
+        kind: shape of the floor plan; drawn when None.
+        area_m2: floor area, 50-400; drawn when None.
+        clutter: 0 bare to 1 full of small things; drawn when None.
+
+    Raises:
+        ConfigError: a value is outside what is allowed.
+        HouseError: no try within the bound gave a house without a fault.
+    """
+    return generate_house(seed, HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter)).spec
+
+
+def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHouse:
+    """A new home with its plan and the story of its tries.
+
+    Args:
+        seed: any whole number from 0 on.
+        config: what is asked of it.
+
+    Raises:
+        ConfigError: the seed is negative.
+        HouseError: no try within the bound gave a house without a fault; the message lists them.
+    """
+    config = config or HouseConfig()
+    if seed < 0:
+        raise ConfigError(f"A house's seed must be 0 or more, got {seed}.")
+    rejects: list[str] = []
+    for attempt in range(MAX_TRIES):
+        rng = np.random.default_rng([seed, _POOL_STREAM[config.pool], attempt])
+        try:
+            spec, plan = _try_house(rng, config)
+        except PlanError as error:
+            rejects.append(str(error))
+            continue
+        faults = check_house(spec)
+        if not faults:
+            return GeneratedHouse(spec, plan, len(spec.geoms), attempt + 1, tuple(rejects))
+        rejects.append("; ".join(faults))
+    raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {' | '.join(rejects)}")
+
+
+def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.MjSpec, FloorPlan]:
+    """One draw of everything.
+
+    Raises:
+        PlanError: no floor plan fits.
+    """
+    area_m2, kind = _draw_size(rng, config)
+    clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
+    ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
+    for attempt in range(MAX_PLAN_TRIES):
+        try:
+            plan = draw_floorplan(rng, kind, area_m2, config.rooms)
+            openings = cut_openings(rng, plan, ceiling_m)
+            break
+        except PlanError:
+            if attempt == MAX_PLAN_TRIES - 1:
+                raise
+    else:
+        raise PlanError("no floor plan")
+    finish = draw_finish(rng, plan, config.pool)
+    builder = HouseBuilder(config.name)
+    builder.add_ground(plan.bounds.grown(OUTER_WALL_M))
+    for room in plan.rooms:
+        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), ceiling_m)
+    for item in build_structure(plan, openings, ceiling_m, finish):
+        builder.add(Placed(item))
+    kit = Kit(rng, config.pool, clutter)
+    for index, room in enumerate(plan.rooms):
+        space = RoomSpace(index, room.kind, room.rect, openings, ceiling_m)
+        furnish(space, kit)
+        for standing in space.standing:
+            builder.add(standing.placed)
+    for lamp in draw_lamps(rng, plan, ceiling_m):
+        builder.add_lamp(lamp)
+    return builder.spec, plan
+
+
+def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:
+    """Area and shape, each drawn to suit the other where it is not given."""
+    kind = config.kind
+    if config.area_m2 is not None:
+        return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)
+    if kind is None:
+        kind = PLAN_KINDS[int(rng.integers(len(PLAN_KINDS)))]
+    low, high = PLAN_AREA_M2[kind]
+    return float(rng.uniform(low, high)), kind

@@ -1,0 +1,215 @@
+"""Pictures to look at: a cut-away top view and robot-height views of houses, and a sheet of all furniture styles.
+
+    python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
+    python tools/gallery.py --sheet --pool heldout --out runs/gallery
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import tyro
+from numpy.typing import NDArray
+
+from sim.freespace import FreeSpace
+from sim.gl import mujoco
+from sim.houses.build import ASSETS_DIR, HouseBuilder, Lamp, Placed
+from sim.houses.furniture import CATALOGUE, make_item
+from sim.houses.furniture.item import Geom, Item, Look, Pool
+from sim.houses.house import Room, read_rooms
+from sim.houses.labels import read_labels
+from sim.interface import CameraModel, ConfigError
+
+Picture = NDArray[np.uint8]
+VIEW_PX = (640, 480)
+TOP_PX = (1400, 1100)
+TILE_PX = (320, 320)
+BACKDROP = (0.86, 0.90, 0.95)
+"""What lies around a house, and behind a piece of furniture."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """What to draw and where."""
+
+    out: Path
+    """Folder for the PNG files; made if missing."""
+    houses: tuple[Path, ...] = ()
+    """House files: a top view and a sheet of room views each."""
+    sheet: bool = False
+    """Draw every furniture style, one sheet a category."""
+    pool: Pool = "train"
+    """Which styles the sheets show."""
+    seed: int = 0
+    """Draws sizes and colours of the sheets."""
+
+
+def main(args: Args) -> None:
+    """Write the pictures and say where they are."""
+    if not args.houses and not args.sheet:
+        raise ConfigError("gallery needs --houses FILE ... or --sheet.")
+    args.out.mkdir(parents=True, exist_ok=True)
+    for path in args.houses:
+        spec = mujoco.MjSpec.from_file(str(path.resolve()))
+        _save(args.out / f"{path.stem}_top.png", draw_top(spec))
+        _save(args.out / f"{path.stem}_views.png", draw_views(spec))
+    if args.sheet:
+        for category in CATALOGUE:
+            sheet = draw_sheet(category, args.pool, np.random.default_rng(args.seed))
+            if sheet is not None:
+                _save(args.out / f"sheet_{args.pool}_{category}.png", sheet)
+
+
+def draw_top(spec: mujoco.MjSpec) -> Picture:
+    """The house from above without its ceilings and what hangs from them, (h, w, 3) RGB."""
+    open_top = spec.copy()
+    _add_backdrop(open_top)
+    for body in list(open_top.worldbody.bodies):
+        if body.name.startswith("ceiling_") or (body.name.startswith("lighting_") and body.pos[2] > 1.8):
+            open_top.delete(body)
+    model = open_top.compile()
+    low, high = _extent(read_rooms(model))
+    width, height = TOP_PX
+    camera = _camera((low + high) / 2, azimuth_deg=90.0, elevation_deg=-89.9)
+    reach = max((high[1] - low[1] + 1.0) / 2, (high[0] - low[0] + 1.0) / 2 * height / width)
+    camera.distance = reach / math.tan(math.radians(15.0)) + 2.6
+    return _render(model, camera, TOP_PX, fovy_deg=30.0)
+
+
+def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
+    """What the robot sees in each room from its freest corner, tiled, (h, w, 3) RGB."""
+    seen = spec.copy()
+    _add_backdrop(seen)
+    model = seen.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    rooms = read_rooms(model)
+    space = FreeSpace(model, data, read_labels(model), rooms=rooms)
+    eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
+    tiles = []
+    for room in rooms:
+        place = _viewpoint(space, room)
+        if place is None:
+            continue
+        x, y, yaw_deg = place
+        camera = _camera(np.array([x, y, eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
+        tile = np.ascontiguousarray(_render(model, camera, VIEW_PX, fovy_deg=fovy))
+        cv2.putText(tile, room.name, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (200, 30, 30), 1, cv2.LINE_AA)
+        tiles.append(tile)
+    return _tiled(tiles, columns)
+
+
+def draw_sheet(category: str, pool: Pool, rng: np.random.Generator, copies: int = 2) -> Picture | None:
+    """All styles of a category in a pool, two draws each, (h, w, 3) RGB; None when the pool has none."""
+    tiles = []
+    for style in CATALOGUE[category].values():
+        if style.pool == pool:
+            for _ in range(copies):
+                item = make_item(category, rng, pool=pool, style=style.name)
+                tile = np.ascontiguousarray(_portrait(item))
+                text = f"{style.name} {item.size_m[0]:.2f}x{item.size_m[1]:.2f}x{item.size_m[2]:.2f}"
+                cv2.putText(tile, text, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (60, 60, 60), 1, cv2.LINE_AA)
+                tiles.append(tile)
+    return _tiled(tiles, 6) if tiles else None
+
+
+def _portrait(item: Item) -> Picture:
+    """One item on a plain ground, seen from its front and a little above."""
+    builder = HouseBuilder("portrait")
+    z = {"floor": 0.0, "top": 0.0, "wall": 0.05, "ceiling": item.size_m[2]}[item.mount]
+    builder.add(Placed(item, 0.0, 0.0, z))
+    ground = Look((0.8, 0.8, 0.78, 1.0))
+    builder.add(Placed(Item("floor", "ground", (6, 6, 0), (Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), ground),))))
+    builder.add_lamp(Lamp((2.0, 1.0, 3.0), (0.55, 0.55, 0.53), (-0.6, -0.35, -0.9)))
+    builder.add_lamp(Lamp((2.0, -1.0, 2.0), (0.2, 0.2, 0.22), (-0.5, 0.8, -0.3)))
+    _add_backdrop(builder.spec)
+    size = np.array(item.size_m)
+    centre = np.array([0.0 if item.mount != "wall" else size[0] / 2, 0.0, z + size[2] / 2])
+    if item.mount == "ceiling":
+        centre[2] = size[2] / 2
+    camera = _camera(centre, azimuth_deg=205.0, elevation_deg=-18.0)
+    camera.distance = 1.75 * float(np.linalg.norm(size)) + 0.1
+    return _render(builder.spec.compile(), camera, TILE_PX, fovy_deg=38.0)
+
+
+def _viewpoint(space: FreeSpace, room: Room) -> tuple[float, float, float] | None:
+    """Where to stand in a room to see most of it, and where to look, degrees: far from the middle of what it holds."""
+    (cx, cy, _), (hx, hy, _) = room.boxes[0]
+    rows, cols = np.nonzero(space.free)
+    points = space.frame.to_metres(np.column_stack([rows, cols]))
+    inside = (np.abs(points[:, 0] - cx) < hx) & (np.abs(points[:, 1] - cy) < hy)
+    points = points[inside]
+    if len(points) == 0:
+        return None
+    away = np.hypot(points[:, 0] - cx, points[:, 1] - cy)
+    x, y = points[int(np.argmax(away))]
+    return float(x), float(y), math.degrees(math.atan2(cy - y, cx - x))
+
+
+def _extent(rooms: tuple[Room, ...]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Lowest and highest corner (3,) of all rooms."""
+    boxes = [box for room in rooms for box in room.boxes]
+    centres, halves = np.array([box[0] for box in boxes]), np.array([box[1] for box in boxes])
+    return (centres - halves).min(axis=0), (centres + halves).max(axis=0)
+
+
+def _add_backdrop(spec: mujoco.MjSpec) -> None:
+    spec.add_texture(
+        name="backdrop", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
+        width=32, height=192, rgb1=list(BACKDROP),
+    )  # fmt: skip
+
+
+def _camera(lookat: NDArray[np.float64], *, azimuth_deg: float, elevation_deg: float) -> mujoco.MjvCamera:
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.lookat[:] = lookat
+    camera.distance, camera.azimuth, camera.elevation = 1e-3, azimuth_deg, elevation_deg
+    return camera
+
+
+def _render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, int], *, fovy_deg: float) -> Picture:
+    """(h, w, 3) RGB with four samples a pixel and no shadows."""
+    width, height = size_px
+    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+    model.vis.global_.fovy = fovy_deg
+    model.stat.extent = 10.0
+    model.vis.map.znear, model.vis.map.zfar = 0.005, 20.0
+    model.vis.headlight.ambient[:], model.vis.headlight.diffuse[:] = 0.34, 0.14
+    model.vis.headlight.specular[:] = 0.0
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    renderer = mujoco.Renderer(model, height, width)
+    option = mujoco.MjvOption()
+    option.sitegroup[:] = 0
+    renderer.update_scene(data, camera, option)
+    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+    picture = renderer.render().copy()
+    renderer.close()
+    return picture
+
+
+def _tiled(tiles: list[Picture], columns: int) -> Picture:
+    blank = np.full_like(tiles[0], 255)
+    tiles = tiles + [blank] * (-len(tiles) % columns)
+    return np.vstack([np.hstack(tiles[i : i + columns]) for i in range(0, len(tiles), columns)])
+
+
+def _save(path: Path, picture: Picture) -> None:
+    cv2.imwrite(str(path), picture[:, :, ::-1])
+    print(path)
+
+
+if __name__ == "__main__":
+    if not (ASSETS_DIR / "textures").is_dir():
+        sys.exit("gallery: assets/mjcf_houses/textures is missing. Run tools/make_textures.py first.")
+    try:
+        main(tyro.cli(Args))
+    except ConfigError as error:
+        sys.exit(f"gallery: {error}")
