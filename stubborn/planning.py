@@ -179,17 +179,26 @@ def march(
     return distance_m
 
 
+def trace(plan: Plan, pose: PlanarPose, max_cells: int) -> list[tuple[int, int]]:
+    """Steepest descent from the robot's cell, at most so many cells on, as rows and columns.
+
+    Steps go to 8 neighbours, diagonally only past two passable cells.
+    """
+    cells = [plan.frame.cell(pose.x_m, pose.y_m)]
+    while len(cells) <= max_cells:
+        step = _lowest_neighbour(plan.distance_m, *cells[-1])
+        if step == cells[-1]:
+            break
+        cells.append(step)
+    return cells
+
+
 def descent_direction(plan: Plan, pose: PlanarPose, length_m: float) -> float:
     """World angle from the robot to where steepest descent, cell by cell, leads it within `length_m`.
 
-    For ways too narrow for a straight forward. Steps go to 8 neighbours, diagonally only past two passable cells.
+    For ways too narrow for a straight forward.
     """
-    row, col = plan.frame.cell(pose.x_m, pose.y_m)
-    for _ in range(max(1, round(length_m / plan.frame.cell_m))):
-        step = _lowest_neighbour(plan.distance_m, row, col)
-        if step == (row, col):
-            break
-        row, col = step
+    row, col = trace(plan, pose, max(1, round(length_m / plan.frame.cell_m)))[-1]
     x_m, y_m = plan.frame.centres(row, col)
     dx, dy = float(x_m) - pose.x_m, float(y_m) - pose.y_m
     return math.atan2(dy, dx) if math.hypot(dx, dy) > 1e-3 else pose.yaw_rad

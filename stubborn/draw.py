@@ -1,0 +1,146 @@
+"""Pictures of what an agent believes, for the README and for finding out why it failed."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from stubborn.agent import StubbornAgent
+from stubborn.exploration import corner_xy_m
+from stubborn.grid import GridFrame, PlanarPose
+from stubborn.navmap import NavMap
+from stubborn.planning import Plan, trace
+
+Colour = tuple[int, int, int]
+
+UNKNOWN: Colour = (214, 214, 214)
+SEEN_FREE: Colour = (252, 252, 250)
+SEEN_OBSTACLE: Colour = (62, 66, 77)
+SWEPT: Colour = (219, 234, 250)
+BUMPED_WIDE: Colour = (246, 178, 107)
+BUMPED_NARROW: Colour = (204, 65, 37)
+CANDIDATE: Colour = (56, 158, 80)
+SET_ASIDE: Colour = (160, 205, 168)
+REJECTED: Colour = (176, 122, 190)
+TRAIL: Colour = (111, 160, 220)
+PLAN: Colour = (32, 84, 190)
+GOAL: Colour = (228, 28, 130)
+ROBOT: Colour = (20, 20, 20)
+
+LEGEND: tuple[tuple[str, Colour], ...] = (
+    ("seen obstacle", SEEN_OBSTACLE),
+    ("bumped, wide", BUMPED_WIDE),
+    ("bumped, narrow", BUMPED_NARROW),
+    ("visited", TRAIL),
+    ("target", CANDIDATE),
+    ("set aside", SET_ASIDE),
+    ("rejected", REJECTED),
+    ("plan", PLAN),
+    ("goal", GOAL),
+)
+
+
+def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -> NDArray[np.uint8]:
+    """The agent's map around the robot, uint8 RGB (size_px, size_px + legend, 3); x is up, y is left.
+
+    `whole` shows all that is known instead of the local window.
+    """
+    pose = agent.pose or PlanarPose(0.0, 0.0, 0.0)
+    window = agent.navmap.frame.window_at(pose.x_m, pose.y_m, agent.config.window_cells)
+    if whole:
+        known = agent.navmap.known_window(margin_cells=10).frame
+        x_m, y_m = known.mesh()
+        edge_cells = min(max(known.shape), min(agent.navmap.frame.shape))
+        window = agent.navmap.frame.window_at(float(x_m.mean()), float(y_m.mean()), edge_cells)
+    view = agent.navmap.view(window)
+    canvas = _Canvas(_paint_layers(view, agent.config.target.candidate_score), view.frame, size_px)
+    if agent.route is not None:
+        plan = agent.route.plan
+        canvas.outline(plan.goal, plan.frame, GOAL)
+        canvas.line(trace_xy_m(plan, pose), PLAN, 2)
+    if agent.route is not None and agent.approach is None:
+        canvas.cross(corner_xy_m(agent.route.plan.frame, agent.explorer.corner, agent.config.exploration.inset), GOAL)
+    canvas.robot(pose, agent.robot.radius_m)
+    caption = f"{agent.goal}, step {agent.step}"
+    return np.hstack([canvas.image, _legend(size_px, caption)])
+
+
+def trace_xy_m(plan: Plan, pose: PlanarPose) -> NDArray[np.float64]:
+    """The way from the robot down the plan, (n, 2) metres."""
+    cells = trace(plan, pose, max_cells=plan.frame.shape[0] * 6)
+    x_m, y_m = plan.frame.centres([c[0] for c in cells], [c[1] for c in cells])
+    return np.stack([x_m, y_m], axis=1)
+
+
+def _paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
+    """One pixel a cell, (rows, cols, 3); later layers cover earlier ones."""
+    image = np.full((*view.frame.shape, 3), UNKNOWN, np.uint8)
+    target = view.score_max > candidate_score
+    for mask, colour in (
+        (view.frames_in_view > 0, SEEN_FREE),
+        (view.visited, SWEPT),
+        (view.bumped_wide & ~view.visited, BUMPED_WIDE),
+        (view.bumped_narrow & ~view.visited, BUMPED_NARROW),
+        (view.trail, TRAIL),
+        (view.seen_obstacle, SEEN_OBSTACLE),
+        (target, CANDIDATE),
+        (target & view.set_aside, SET_ASIDE),
+        (target & view.rejected, REJECTED),
+    ):
+        image[mask] = colour
+    return image
+
+
+class _Canvas:
+    """The enlarged picture; takes world metres. Image up is +x, image left is +y."""
+
+    def __init__(self, cells: NDArray[np.uint8], frame: GridFrame, size_px: int) -> None:
+        self.frame, self.scale = frame, size_px / max(frame.shape)
+        turned = np.ascontiguousarray(cells.transpose(1, 0, 2)[::-1, ::-1])
+        size = (round(frame.shape[0] * self.scale), round(frame.shape[1] * self.scale))
+        enlarged = cv2.resize(turned, size, interpolation=cv2.INTER_NEAREST)
+        self.image = np.full((size_px, size_px, 3), UNKNOWN, np.uint8)
+        self.image[: size[1], : size[0]] = enlarged
+
+    def pixel(self, x_m: float, y_m: float) -> tuple[int, int]:
+        """(u, v) of a world point."""
+        frame = self.frame
+        u_cells = frame.shape[0] - (y_m - frame.origin_xy_m[1]) / frame.cell_m
+        v_cells = frame.shape[1] - (x_m - frame.origin_xy_m[0]) / frame.cell_m
+        return round(u_cells * self.scale), round(v_cells * self.scale)
+
+    def line(self, points_xy_m: NDArray[np.float64], colour: Colour, width_px: int) -> None:
+        points = np.array([self.pixel(float(x), float(y)) for x, y in points_xy_m], np.int32)
+        cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, colour, width_px, cv2.LINE_AA)
+
+    def cross(self, xy_m: tuple[float, float], colour: Colour) -> None:
+        cv2.drawMarker(self.image, self.pixel(*xy_m), colour, cv2.MARKER_CROSS, 18, 3, cv2.LINE_AA)
+
+    def outline(self, mask: NDArray[np.bool_], frame: GridFrame, colour: Colour) -> None:
+        contours, _ = cv2.findContours(mask.view(np.uint8).copy(), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+        for contour in contours:
+            cols_rows = contour.reshape(-1, 2)
+            x_m, y_m = frame.centres(cols_rows[:, 1], cols_rows[:, 0])
+            points = np.array([self.pixel(float(x), float(y)) for x, y in zip(x_m, y_m, strict=True)], np.int32)
+            cv2.polylines(self.image, [points.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
+
+    def robot(self, pose: PlanarPose, radius_m: float) -> None:
+        radius_px = max(4, round(radius_m / self.frame.cell_m * self.scale))
+        middle = self.pixel(pose.x_m, pose.y_m)
+        cv2.circle(self.image, middle, radius_px, (255, 255, 255), -1, cv2.LINE_AA)
+        cv2.circle(self.image, middle, radius_px, ROBOT, 2, cv2.LINE_AA)
+        cv2.arrowedLine(
+            self.image, middle, self.pixel(*pose.ahead(2.0 * radius_m)), ROBOT, 2, cv2.LINE_AA, tipLength=0.35
+        )
+
+
+def _legend(height_px: int, caption: str) -> NDArray[np.uint8]:
+    """The column that says which colour means what."""
+    image = np.full((height_px, 190, 3), 255, np.uint8)
+    cv2.putText(image, caption, (10, 24), cv2.FONT_HERSHEY_SIMPLEX, 0.48, ROBOT, 1, cv2.LINE_AA)
+    for i, (name, colour) in enumerate(LEGEND):
+        top = 44 + 26 * i
+        cv2.rectangle(image, (10, top), (26, top + 16), colour, -1)
+        cv2.putText(image, name, (36, top + 13), cv2.FONT_HERSHEY_SIMPLEX, 0.45, ROBOT, 1, cv2.LINE_AA)
+    return image

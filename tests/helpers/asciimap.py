@@ -1,0 +1,47 @@
+"""Maps of the agent drawn in letters. The top line has the largest y, as on paper; x grows to the right."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stubborn.grid import GridFrame, PlanarPose
+from stubborn.navmap import NavMap
+
+LAYER_OF = {
+    "#": ("seen_obstacle", "seen_at_eye_level"),
+    "o": ("seen_obstacle",),
+    "w": ("bumped_wide",),
+    "n": ("bumped_narrow", "bumped_wide"),
+    "v": ("visited", "trail"),
+    "T": ("score_max",),
+}
+"""# wall, o low obstacle, w pessimistic mark only, n both marks, v visited, T target; R is the robot, . free."""
+
+
+def grid_of(text: str) -> NDArray[np.str_]:
+    """Letters as (rows, cols), row 0 the bottom line."""
+    return np.array([list(line) for line in text.strip("\n").split("\n")][::-1])
+
+
+def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, PlanarPose]:
+    """The map, and the robot in the middle of the cell marked R, looking along +x."""
+    letters = grid_of(text)
+    navmap = NavMap.empty(GridFrame(origin_xy_m=(0.0, 0.0), shape=letters.shape, cell_m=cell_m))
+    for letter, layers in LAYER_OF.items():
+        for layer in layers:
+            getattr(navmap, layer)[letters == letter] = True
+    rows, cols = np.nonzero(letters == "R")
+    x_m, y_m = navmap.frame.centres(rows[0], cols[0]) if rows.size else (0.0, 0.0)
+    return navmap, PlanarPose(float(x_m), float(y_m), 0.0)
+
+
+def mask_of(text: str, letter: str) -> NDArray[np.bool_]:
+    """True where the letter stands."""
+    return grid_of(text) == letter
+
+
+def enlarged(text: str, factor: int) -> str:
+    """Each letter as a block of letters."""
+    lines = text.strip("\n").split("\n")
+    return "\n".join("".join(c * factor for c in line) for line in lines for _ in range(factor))

@@ -1,0 +1,128 @@
+"""The whole agent in a world of boxes."""
+
+import numpy as np
+import pytest
+
+from sim.interface import Action, CameraModel, RobotModel
+from stubborn import agents, draw
+from stubborn.agent import StubbornAgent
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, Trace, boxes_from_plan, run_episode
+
+APARTMENT = boxes_from_plan(
+    """
+################################################
+#           #              #                   #
+#  bbbbb    #              #        p          #
+#  bbbbb                   #    ttttttt        #
+#  bbbbb                        ttttttt        #
+#  bbbbb    #                   ttttttt        #
+#           #      cc      #                   #
+#           #              #                   #
+#####   #####              ########      #######
+#                                              #
+#                                              #
+#                                              #
+#                                              #
+#########   ##########    ######################
+#              #                   #           #
+#              #                   #    u      #
+#   kkk        #                               #
+#                  gg                          #
+#              #                   #           #
+#              #                   #           #
+################################################
+""",
+    0.25,
+)
+
+
+def run(
+    boxes: list[Box], start: tuple[float, float, float], goal: str, max_steps: int = 400
+) -> tuple[Trace, StubbornAgent]:
+    agent = agents.make("stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert isinstance(agent, StubbornAgent)
+    return run_episode(GridWorld(boxes, start, camera=SMALL_CAMERA), agent, goal, max_steps=max_steps), agent
+
+
+@pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "chair", "table"])
+def test_it_finds_each_kind_of_thing_and_stops_within_a_metre(goal: str):
+    start = (10.0, 3.7, 1.9) if goal == "cabinet" else (1.2, 0.7, 1.9)
+    trace, _ = run(APARTMENT, start, goal)
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
+
+
+def test_it_does_not_stop_in_front_of_the_wall_that_the_target_stands_behind():
+    plan = """
+##################
+#       #        #
+#       #        #
+#       #c       #
+#       #        #
+#       #        #
+#                #
+#                #
+#                #
+##################
+"""
+    trace, _ = run(boxes_from_plan(plan, 0.3), (2.0, 2.0, 0.0), "chair")
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
+    x, y, _ = trace.poses[-1]
+    assert x > 8 * 0.3 or y < 4 * 0.3  # past the wall, or in its doorway
+
+
+def test_glass_is_bumped_marked_and_walked_around():
+    plan = """
+####################
+#                  #
+#                  #
+#        g         #
+#        g         #
+#        g      c  #
+#        g         #
+#        g         #
+#                  #
+####################
+"""
+    trace, agent = run(boxes_from_plan(plan, 0.3), (1.2, 1.35, 0.0), "chair")
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
+    assert 1 <= trace.collisions <= 12
+    assert agent.navmap.bumped_wide.any()
+
+
+def test_walled_in_it_keeps_pushing_instead_of_freezing():
+    cage = [Box((-0.5, 0.5), (0.19, 0.4)), Box((-0.5, 0.5), (-0.4, -0.19)), Box((0.19, 0.4), (-0.5, 0.5))]
+    cage.append(Box((-0.4, -0.19), (-0.5, 0.5)))
+    trace, _ = run(cage, (0.0, 0.0, 0.3), "chair", max_steps=80)
+    assert not trace.stopped
+    assert trace.actions.count(Action.MOVE_FORWARD) > 20
+    assert {Action.TURN_LEFT, Action.TURN_RIGHT} & set(trace.actions)
+
+
+def test_the_same_house_turned_by_the_start_heading_is_still_solved():
+    for yaw in np.arange(4) * np.pi / 2 + 0.2:
+        trace, _ = run(APARTMENT, (4.0, 2.9, float(yaw)), "bed")
+        assert trace.stopped
+        assert trace.goal_distance_m < 1.0
+
+
+def test_the_picture_of_a_belief_shows_robot_target_and_legend_and_changes_nothing():
+    _, agent = run(APARTMENT, (1.2, 0.7, 1.9), "chair")
+    before = agent.navmap.seen_obstacle.copy()
+    picture = draw.draw_belief(agent, size_px=480)
+    assert picture.dtype == np.uint8
+    assert picture.shape[0] == 480
+    assert picture.shape[1] > 480
+    for colour in (draw.SEEN_OBSTACLE, draw.CANDIDATE, draw.TRAIL):
+        assert (picture[:, :480] == colour).all(axis=2).any()
+    assert draw.draw_belief(agent, whole=True).shape[0] == 720
+    np.testing.assert_array_equal(agent.navmap.seen_obstacle, before)
+
+
+def test_a_picture_can_be_drawn_before_the_first_step():
+    agent = agents.make("stubborn", camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert isinstance(agent, StubbornAgent)
+    assert draw.draw_belief(agent).ndim == 3

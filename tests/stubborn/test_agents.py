@@ -1,0 +1,128 @@
+"""What holds for every agent that `stubborn.agents.make` knows, and for the example."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from examples import my_agent
+from sim.interface import Action, Agent, ConfigError, RobotModel
+from stubborn import agents
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.untrap import UntrapConfig
+from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+
+PLAN = """
+####################
+#        #         #
+#  bb             u#
+#  bb    #         #
+#        #    tt   #
+####  ########  ####
+#        #         #
+#    g       p     #
+#        #         #
+####################
+"""
+BOXES = boxes_from_plan(PLAN, 0.3)
+STEPS = 70
+
+
+def build(name: str, **options: object) -> Agent:
+    if name == "example":
+        return my_agent.make(camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    return agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), **options)
+
+
+def world() -> GridWorld:
+    return GridWorld(BOXES, (0.75, 0.75, 0.7), camera=SMALL_CAMERA)
+
+
+every_agent = pytest.mark.parametrize("name", [*agents.NAMES, "example"])
+
+
+@every_agent
+def test_actions_are_valid_and_the_same_seed_gives_the_same_episode(name: str):
+    first, second = (run_episode(world(), build(name), "plant", seed=7, max_steps=STEPS) for _ in range(2))
+    assert all(isinstance(action, Action) for action in first.actions)
+    assert first.actions == second.actions
+
+
+@every_agent
+def test_two_episodes_in_a_row_are_those_of_two_fresh_agents(name: str):
+    one, runs = build(name), (("cushion", 3), ("bed", 5))
+    in_a_row = [run_episode(world(), one, goal, seed=seed, max_steps=STEPS).actions for goal, seed in runs]
+    fresh = [run_episode(world(), build(name), goal, seed=seed, max_steps=STEPS).actions for goal, seed in runs]
+    assert in_a_row == fresh
+
+
+@every_agent
+def test_observations_are_not_changed(name: str):
+    agent, ground = build(name), world()
+    agent.reset("bed", 0)
+    for _ in range(6):
+        observation = ground.observe("bed")
+        before = {key: value.copy() for key, value in observation.items()}
+        for value in observation.values():
+            value.setflags(write=False)
+        ground.step(agent.act(observation))
+        for key, value in before.items():
+            np.testing.assert_array_equal(observation[key], value)
+
+
+def test_the_agent_never_stops_without_a_target():
+    trace = run_episode(world(), build("stubborn"), "sofa", max_steps=150)
+    assert not trace.stopped
+
+
+def test_reset_leaves_nothing_of_the_last_episode():
+    agent = build("stubborn")
+    assert isinstance(agent, StubbornAgent)
+    run_episode(world(), agent, "cushion", max_steps=30)
+    agent.reset("bed", 0)
+    layers = vars(agent.navmap)
+    assert not any(np.any(layer) for name, layer in layers.items() if name != "frame")
+    assert (agent.step, agent.pose, agent.last_action, agent.route, agent.approach) == (0, None, None, None, None)
+    assert agent.explorer.corner == agent.config.exploration.first_corner
+    assert not agent.untrap.active
+
+
+def test_the_ablation_rows_switch_on_one_measure_after_the_other():
+    def switches(name: str) -> tuple[bool, ...]:
+        agent = build(name)
+        assert isinstance(agent, StubbornAgent)
+        return tuple(vars(agent.config.avoidance).values())
+
+    rows = [switches(f"stubborn-{row}") for row in ("i", "ii", "iii", "iv", "v")]
+    assert rows == [tuple(i < n for i in range(4)) for n in range(5)]
+    assert switches("stubborn") == rows[-1]
+
+
+def test_options_are_fields_of_the_config():
+    agent = build("stubborn-iv", window_cells=200, untrap=UntrapConfig(failed_forwards=3))
+    assert isinstance(agent, StubbornAgent)
+    assert agent.config.window_cells == 200
+    assert agent.config.untrap.failed_forwards == 3
+    assert not agent.config.avoidance.visited_is_free
+
+
+def test_an_unknown_name_or_option_is_refused_with_what_there_is():
+    with pytest.raises(ConfigError, match=r"No agent 'stuborn'\. Did you mean 'stubborn'\? There is: stubborn, "):
+        build("stuborn")
+    with pytest.raises(ConfigError, match=r"no option 'speed'\. It has: cell_m, "):
+        build("stubborn", speed=2)
+    with pytest.raises(ConfigError, match="window_cells <= map_cells, got 20 and 10"):
+        AgentConfig(window_cells=20, map_cells=10)
+
+
+def test_importing_the_mind_leaves_mujoco_out():
+    code = (
+        "import sys, stubborn.agents, stubborn.agent, stubborn.draw, stubborn.segmentation.ground_truth\n"
+        "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL')]\n"
+        "ours = [m for m in sys.modules if m.startswith('sim.') and m != 'sim.interface']\n"
+        "print(bad + ours)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

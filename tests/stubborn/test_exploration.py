@@ -1,0 +1,164 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.interface import Action, ConfigError
+from stubborn.exploration import CornerExplorer, ExplorationConfig, corner_xy_m, nearest_corner
+from stubborn.grid import GridFrame, PlanarPose
+from stubborn.navmap import NavMap
+from stubborn.planning import Planner, PlanningConfig
+
+FRAME = GridFrame.around_start(240)
+START = PlanarPose(0.0, 0.0, 0.0)
+PLANNER = Planner(PlanningConfig(), trust_visited=True)
+
+
+def explorer(averse: bool = True, bumps: bool = True, **options: float) -> CornerExplorer:
+    return CornerExplorer(ExplorationConfig(**options), PLANNER, averse=averse, bumps=bumps)  # type: ignore[arg-type]
+
+
+def empty() -> NavMap:
+    return NavMap.empty(FRAME)
+
+
+def box_in(layer: np.ndarray, half_m: float) -> None:
+    """A closed square of obstacle cells around the start."""
+    low, _ = FRAME.cell(-half_m, -half_m)
+    high, _ = FRAME.cell(half_m, half_m)
+    layer[low : high + 1, [low, high]] = True
+    layer[[low, high], low : high + 1] = True
+
+
+def close_quarter(layer: np.ndarray, corner: int) -> None:
+    """A wall that cuts a corner of the window off."""
+    middle = FRAME.shape[0] // 2
+    rows = slice(middle + 20, None) if corner in (0, 3) else slice(None, middle - 20)
+    cols = slice(middle + 20, None) if corner in (0, 1) else slice(None, middle - 20)
+    layer[rows, middle + 20 if corner in (0, 1) else middle - 20] = True
+    layer[middle + 20 if corner in (0, 3) else middle - 20, cols] = True
+
+
+def test_corners_lie_ten_percent_inside_and_follow_each_other_clockwise():
+    places = [corner_xy_m(FRAME, corner, 0.10) for corner in range(4)]
+    offset = 0.4 * 240 * 0.05
+    middle = np.mean(places, axis=0)
+    np.testing.assert_allclose(np.abs(np.array(places) - middle), offset)
+    angles = np.unwrap([math.atan2(y - middle[1], x - middle[0]) for x, y in places])
+    np.testing.assert_allclose(np.diff(angles), -math.pi / 2)
+    assert angles[0] == pytest.approx(math.pi / 4)  # ahead and left of the start
+
+
+def test_it_is_stubborn_while_there_is_a_way():
+    explore, navmap = explorer(), empty()
+    for x in np.linspace(0.0, 1.0, 5):
+        route = explore.route(navmap, PlanarPose(x, 0.2 * x, 0.0))
+        assert route is not None
+        assert explore.corner == 0
+
+
+@pytest.mark.parametrize("closed", [(0,), (0, 1), (0, 1, 2)])
+def test_an_infeasible_corner_gives_way_to_the_next_clockwise_at_once(closed: tuple[int, ...]):
+    explore, navmap = explorer(), empty()
+    for corner in closed:
+        close_quarter(navmap.seen_obstacle, corner)
+    assert explore.route(navmap, START) is not None
+    assert explore.corner == len(closed)
+
+
+def test_after_the_last_corner_comes_the_first():
+    explore, navmap = explorer(first_corner=3), empty()
+    close_quarter(navmap.seen_obstacle, 3)
+    explore.route(navmap, START)
+    assert explore.corner == 0
+
+
+def test_a_way_longer_than_the_limit_is_infeasible():
+    explore, navmap = explorer(farthest_way_m=6.6), empty()
+    assert explore.route(navmap, START) is not None
+    assert explore.corner == 0  # 6.3 m off: 4.8 m each way, less the radius of the corner
+    middle = FRAME.shape[0] // 2
+    navmap.seen_obstacle[middle - 60 : middle + 90, middle + 20] = True
+    explore.route(navmap, START)
+    assert explore.corner != 0
+
+
+def test_when_all_four_are_infeasible_it_goes_to_the_reachable_cell_nearest_the_corner():
+    explore, navmap = explorer(), empty()
+    box_in(navmap.seen_obstacle, 1.5)
+    route = explore.route(navmap, START)
+    assert route is not None
+    rows, cols = np.nonzero(route.plan.goal)
+    x_m, y_m = FRAME.centres(rows, cols)
+    assert x_m.max() < 1.5
+    assert y_m.max() < 1.5
+    assert x_m.min() > 1.1
+    assert y_m.min() > 1.1
+
+
+def test_boxed_in_it_never_freezes_and_visits_all_corners_of_its_box():
+    explore, navmap, pose = explorer(), empty(), START
+    box_in(navmap.seen_obstacle, 1.5)
+    quarters = set()
+    for _ in range(150):
+        route = explore.route(navmap, pose)
+        assert route is not None
+        action = PLANNER.next_action(route.plan, route.free, pose)
+        if action is Action.MOVE_FORWARD:
+            pose = PlanarPose(*pose.ahead(0.25), pose.yaw_rad)
+        else:
+            turn = math.radians(30 if action is Action.TURN_LEFT else -30)
+            pose = pose._replace(yaw_rad=math.remainder(pose.yaw_rad + turn, math.tau))
+        assert max(abs(pose.x_m), abs(pose.y_m)) < 1.45
+        if min(abs(pose.x_m), abs(pose.y_m)) > 0.7:
+            quarters.add((pose.x_m > 0, pose.y_m > 0))
+    assert len(quarters) == 4
+
+
+def test_the_optimistic_map_is_tried_when_the_pessimistic_one_closes_all_corners():
+    navmap = empty()
+    box_in(navmap.bumped_wide, 1.5)
+    explore = explorer()
+    route = explore.route(navmap, START)
+    assert route is not None
+    assert explore.corner == 0
+    assert route.plan.length_m > 5.0  # out of the box
+    box_in(navmap.bumped_narrow, 1.5)
+    route = explorer().route(navmap, START)
+    assert route is not None
+    assert route.plan.length_m < 2.5
+
+
+def test_without_aversion_pessimistic_marks_do_not_count_and_without_layers_none_do():
+    navmap = empty()
+    box_in(navmap.bumped_wide, 1.5)
+    close_quarter(navmap.bumped_wide, 0)
+    averse, bold = explorer(), explorer(averse=False)
+    route = bold.route(navmap, START)
+    assert route is not None
+    assert route.plan.length_m < 7.5
+    assert averse.route(navmap, START) is not None
+    box_in(navmap.bumped_narrow, 1.5)
+    blind = explorer(bumps=False).route(navmap, START)
+    assert blind is not None
+    assert blind.plan.length_m > 5.0
+
+
+def test_reset_begins_with_the_first_corner_again():
+    explore, navmap = explorer(), empty()
+    close_quarter(navmap.seen_obstacle, 0)
+    explore.route(navmap, START)
+    assert explore.corner == 1
+    explore.reset()
+    assert explore.corner == 0
+
+
+def test_the_corner_nearest_a_heading():
+    assert [nearest_corner(math.radians(a)) for a in (40, -40, -140, 140)] == [0, 1, 2, 3]
+
+
+def test_an_inset_of_half_the_window_is_refused():
+    with pytest.raises(ConfigError, match=r"got 0\.5"):
+        ExplorationConfig(inset=0.5)
+    with pytest.raises(ConfigError, match="got 4"):
+        ExplorationConfig(first_corner=4)

@@ -1,0 +1,247 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.interface import ConfigError
+from stubborn.grid import GridFrame, PlanarPose, Window
+from stubborn.mapping import Sighting
+from stubborn.navmap import NavMap
+from stubborn.planning import Planner, PlanningConfig
+from stubborn.raster import distance_to, nearest, sight_is_clear
+from stubborn.target import AcceptAll, Features, TargetConfig, TargetSeeker
+from tests.helpers.asciimap import map_of
+
+PLANNER = Planner(PlanningConfig(), trust_visited=True)
+
+
+class RefuseAll:
+    """A verifier that keeps what it was asked."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[str, Features]] = []
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        self.asked.append((goal, features))
+        return False
+
+
+def seeker(verifier: AcceptAll | RefuseAll | None = None, **options: float) -> TargetSeeker:
+    made = TargetSeeker(TargetConfig(**options), PLANNER, verifier or AcceptAll(), bumps=True)  # type: ignore[arg-type]
+    made.reset("sofa")
+    return made
+
+
+def whole(navmap: NavMap) -> Window:
+    return navmap.frame.part(slice(None), slice(None))
+
+
+def known(text: str) -> tuple[NavMap, PlanarPose]:
+    """A drawn map on which everything has been in view once."""
+    navmap, pose = map_of(text)
+    navmap.frames_in_view[:] = 1
+    return navmap, pose
+
+
+def room(width: int = 80, height: int = 60, **places: tuple[int, int]) -> list[list[str]]:
+    """A walled room with letters at (row from below, column)."""
+    rows = [["#" if c in (0, width - 1) else "." for c in range(width)] for _ in range(height)]
+    rows[0] = rows[-1] = ["#"] * width
+    for letter, (row, col) in places.items():
+        rows[height - 1 - row][col] = letter
+    return rows
+
+
+def text_of(rows: list[list[str]]) -> str:
+    return "\n".join("".join(r) for r in rows)
+
+
+def test_without_a_candidate_there_is_no_approach():
+    navmap, pose = known(text_of(room(R=(30, 10))))
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None
+
+
+def test_the_way_leads_to_a_stand_near_the_candidate():
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.cell == (30, 60)
+    rows, cols = np.nonzero(approach.route.plan.goal)
+    assert np.hypot(rows - 30, cols - 60).max() * 0.05 <= 0.85 * 1.03  # the fast distance is good to 2 %
+    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
+
+
+def test_on_a_stand_there_is_nothing_left_to_walk():
+    navmap, pose = known(text_of(room(R=(30, 46), T=(30, 60))))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is None
+    assert approach.bearing_rad == pytest.approx(0.0, abs=1e-6)
+
+
+def test_no_stand_lies_behind_a_wall_however_near():
+    rows = room(R=(30, 30), T=(30, 41))
+    for row in range(60):
+        rows[row][39] = "#"
+    for row in range(2, 14):
+        rows[row][39] = "."
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None  # 0.55 m away in a straight line, and yet the way goes round
+    assert approach.route.plan.length_m > 1.5
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.min() > 39
+
+
+def test_low_furniture_hides_nothing():
+    rows = room(R=(30, 20), T=(30, 45))
+    for row in range(20, 40):
+        for col in range(36, 45):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m < 1.0
+
+
+def enclosed_target() -> tuple[NavMap, PlanarPose]:
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(5, 55):
+        for col in range(35, 79):
+            if row < 8 or row > 51 or col < 38:
+                rows[row][col] = "#"
+    return known(text_of(rows))
+
+
+def test_an_unreachable_candidate_is_set_aside_and_tried_again_later():
+    navmap, pose = enclosed_target()
+    seek = seeker(retry_after_steps=10)
+    assert seek.approach(navmap, whole(navmap), pose, 0) is None
+    assert navmap.set_aside[30, 60]
+    assert not navmap.rejected.any()
+    navmap.seen_obstacle[20:40, 35:38] = navmap.seen_at_eye_level[20:40, 35:38] = False
+    assert seek.approach(navmap, whole(navmap), pose, 9) is None
+    assert seek.approach(navmap, whole(navmap), pose, 10) is not None
+
+
+def test_late_in_the_episode_the_nearest_reachable_place_will_do():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in range(35, 79):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    navmap.score_max[30, 60] = 1.0
+    seek = seeker(last_resort_step=100)
+    assert seek.approach(navmap, whole(navmap), pose, 99) is None
+    late = seek.approach(navmap, whole(navmap), pose, 200)
+    assert late is not None
+    assert late.route is not None
+
+
+def test_pessimistic_marks_that_close_the_way_to_a_target_give_way_to_optimistic_ones():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in (30, 31, 32):
+            rows[row][col] = "w"
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m < 2.0
+    navmap.bumped_narrow[:] = navmap.bumped_wide
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None
+
+
+def test_a_candidate_outside_the_local_window_is_still_approached():
+    navmap, pose = known(text_of(room(width=300, R=(30, 10), T=(30, 280))))
+    window = navmap.frame.window_at(pose.x_m, pose.y_m, 100)
+    approach = seeker().approach(navmap, window, pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.cell == (30, 280)
+    assert approach.route.plan.length_m > 12.0
+
+
+def sighting_at(*places: tuple[int, int, float]) -> Sighting:
+    rows, cols, distance_m = (np.array(v) for v in zip(*places, strict=True))
+    return Sighting(rows, cols, distance_m.astype(np.float32))
+
+
+def test_a_target_point_in_view_within_reach_ends_the_approach():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    seek = seeker()
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2))) is None
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) == (30, 26)
+    navmap.rejected[30, 26] = True
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) is None
+
+
+def test_a_verifier_is_asked_with_the_four_features_and_refusal_takes_the_connected_cells_and_a_margin():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    navmap.score_max[20:25, 40:50] = 0.9
+    navmap.score_max[20:25, 60] = 0.9
+    navmap.score_sum[22, 44], navmap.other_max[22, 44], navmap.frames_in_view[22, 44] = 3.5, 0.4, 7
+    refuse = RefuseAll()
+    seek = seeker(refuse)
+    assert seek.judge(navmap, (22, 44)) is False
+    [(goal, features)] = refuse.asked
+    assert goal == "sofa"
+    assert tuple(features) == pytest.approx((7, 3.5, 0.9, 0.4))
+    assert navmap.rejected[20:25, 40:50].all()
+    assert navmap.rejected[22, 40 - 5]
+    assert not navmap.rejected[22, 40 - 6]
+    assert not navmap.rejected[22, 60]
+    left = seek.candidates(navmap)
+    assert left.any()
+    assert not left[:, :56].any()
+
+
+def test_a_candidate_first_found_after_step_200_is_not_verified():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    navmap.score_max[20:25, 40:50] = 0.9
+    navmap.found_step[20:25, 40:50] = 201
+    refuse = RefuseAll()
+    assert seeker(refuse).judge(navmap, (22, 44)) is True
+    assert refuse.asked == []
+    navmap.found_step[24, 49] = 200
+    assert seeker(refuse).judge(navmap, (22, 44)) is False
+
+
+def test_stands_in_the_wrong_order_are_refused():
+    with pytest.raises(ConfigError, match="stand_m <= far_stand_m"):
+        TargetConfig(stand_m=1.2)
+
+
+def test_sight_ends_at_the_first_blocked_cell_but_not_at_the_targets_own_edge():
+    blocked = np.zeros((20, 20), bool)
+    blocked[10, 12] = True
+    starts, ends = (np.array([10, 10, 5]), np.array([2, 2, 2])), (np.array([10, 10, 5]), np.array([18, 13, 18]))
+    np.testing.assert_array_equal(sight_is_clear(blocked, starts, ends, 1.6), [False, True, True])
+    nothing = np.zeros(0, int)
+    assert sight_is_clear(blocked, (nothing, nothing), (nothing, nothing), 1.0).size == 0
+
+
+def test_nearest_cell_and_distance_agree_with_brute_force():
+    mask = np.zeros((30, 40), bool)
+    cells = [(3, 4), (25, 30), (12, 39)]
+    for cell in cells:
+        mask[cell] = True
+    distance, rows, cols = nearest(mask)
+    exact = distance_to(mask)
+    for row in range(0, 30, 3):
+        for col in range(0, 40, 3):
+            gaps = [math.hypot(row - r, col - c) for r, c in cells]
+            assert exact[row, col] == pytest.approx(min(gaps), abs=1e-3)
+            assert distance[row, col] == pytest.approx(min(gaps), rel=0.03)
+            assert math.hypot(row - rows[row, col], col - cols[row, col]) <= min(gaps) * 1.05 + 1e-6
+
+
+def test_the_known_window_holds_all_that_was_seen():
+    navmap = NavMap.empty(GridFrame.around_start(101))
+    assert navmap.known_window(5).frame.shape == (11, 11)
+    navmap.frames_in_view[20, 30] = navmap.frames_in_view[60, 90] = 1
+    window = navmap.known_window(5)
+    assert (window.rows, window.cols) == (slice(15, 66), slice(25, 96))
