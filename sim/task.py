@@ -64,10 +64,7 @@ class Task:
         self._record = None
         shortest_path_m = self.distance_from(goal, start)
         if shortest_path_m is None:
-            raise EpisodeError(
-                f"House '{self._world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a "
-                f"place where '{goal}' would count as found."
-            )
+            raise self.no_way(goal, start)
         self._record = _Record(goal, start, shortest_path_m, [(start.x_m, start.y_m)])
 
     def look(self, semantic: NDArray[np.uint8]) -> None:
@@ -140,6 +137,13 @@ class Task:
         if distance_m < _SURELY_OUTSIDE_M and target.region.succeeds(pose.x_m, pose.y_m):
             return 0.0
         return distance_m if math.isfinite(distance_m) else None
+
+    def no_way(self, goal: str, start: Pose) -> EpisodeError:
+        """The error that says that a goal cannot be reached from a start."""
+        return EpisodeError(
+            f"House '{self._world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
+            f"where '{goal}' would count as found."
+        )
 
     def metrics(self) -> dict[str, Any]:
         """The contract's metrics as they stand now; `failure` is None until its rules exist."""

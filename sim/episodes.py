@@ -1,0 +1,212 @@
+"""Episodes of a split: which house, which goal, from where, and in which order.
+
+A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see `sim.habitat`):
+`val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from sim import habitat
+from sim.errors import EpisodeError, HouseError
+from sim.houses.house import House
+from sim.houses.load import load_house
+from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.paths import assets_dir
+from sim.pose import Pose
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One search: start here in this house, find one of these."""
+
+    episode_id: str
+    house: str
+    """Name of the house within its split."""
+    goal: str
+    start: Pose
+    shortest_path_m: float | None = None
+    """Geodesic distance from the start to the nearest place that satisfies success, as recorded; None: unknown."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """Houses and the episodes in them, in the order in which they count."""
+
+    name: str
+    version: str
+    """Raised when a house or an episode of the split changes, so that results name what they were made on."""
+    sha256: str
+    """Over the house files and the episodes."""
+    house_paths: Mapping[str, Path]
+    episodes: tuple[Episode, ...]
+    labels_path: Path | None = None
+
+    @property
+    def houses(self) -> tuple[str, ...]:
+        """Names of the houses."""
+        return tuple(self.house_paths)
+
+    def load_house(self, name: str) -> House:
+        """The house of that name.
+
+        Raises:
+            HouseError: there is none, or it breaks the house format.
+        """
+        if name not in self.house_paths:
+            raise HouseError(f"Split '{self.name}' has no house '{name}'. It has: {', '.join(self.houses)}.")
+        return load_house(self.house_paths[name], labels_path=self.labels_path)
+
+    def episode(self, episode_id: str) -> Episode:
+        """The episode of that id.
+
+        Raises:
+            EpisodeError: there is none.
+        """
+        for episode in self.episodes:
+            if episode.episode_id == episode_id:
+                return episode
+        near = difflib.get_close_matches(episode_id, [episode.episode_id for episode in self.episodes], n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
+
+
+def shipped_splits() -> tuple[str, ...]:
+    """Names of the splits that come with the package."""
+    return tuple(sorted(folder.name for folder in assets_dir().iterdir() if _index_of(folder).is_file()))
+
+
+def load_split(name_or_path: str | Path) -> Split:
+    """A shipped split by name, or a folder laid out like one.
+
+    Raises:
+        ConfigError: there is no such split or folder, or its files are not what they should be.
+    """
+    shipped = shipped_splits()
+    folder = assets_dir() / name_or_path if str(name_or_path) in shipped else Path(name_or_path)
+    if not folder.is_dir():
+        there_is = ", ".join(shipped) or "none"
+        raise ConfigError(f"Unknown split '{name_or_path}': neither a shipped one (there is: {there_is}) nor a folder.")
+    folder = folder.resolve()
+    if not _index_of(folder).is_file():
+        raise ConfigError(
+            f"Split '{folder}' has no {_index_of(folder).name}: a split is a folder of house files with its episodes "
+            "beside them (tools/make_episodes.py makes them)."
+        )
+    return _read_split(folder)
+
+
+def one_house(path: str | Path, *, labels: str | Path | None = None) -> Split:
+    """A split of one house file and no episodes: they are drawn.
+
+    Raises:
+        HouseError: there is no such file.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise HouseError(f"House '{path}': there is no such file.")
+    labels_path = None if labels is None else Path(labels)
+    digest = hashlib.sha256(path.read_bytes())
+    if labels_path is not None and labels_path.is_file():
+        digest.update(labels_path.read_bytes())
+    return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path)
+
+
+def write_split(
+    folder: Path,
+    episodes: Sequence[Episode],
+    goals_by_house: Mapping[str, Mapping[str, list[dict[str, Any]]]],
+    *,
+    version: str,
+) -> None:
+    """Write the episodes of the houses in a folder beside them, in Habitat's layout.
+
+    Args:
+        folder: the split's folder, which holds the house files; its name is the split's.
+        episodes: in the order in which they count; it is written down.
+        goals_by_house: for each house, for each goal category, Habitat's goals (`sim.habitat`).
+        version: of the split.
+    """
+    index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
+    habitat.write_json(_index_of(folder), habitat.category_tables() | index)
+    for house, goals in goals_by_house.items():
+        content = habitat.category_tables() | {
+            "goals_by_category": {habitat.goals_key(house, goal): listed for goal, listed in goals.items()},
+            "episodes": [_to_habitat(folder.name, episode) for episode in episodes if episode.house == house],
+        }
+        habitat.write_json(folder / "content" / f"{house}.json.gz", content)
+
+
+def _index_of(folder: Path) -> Path:
+    return folder / f"{folder.name}.json.gz"
+
+
+def _read_split(folder: Path) -> Split:
+    """The split in a folder that has an index."""
+    index_file = _index_of(folder)
+    index = _parsed(index_file, lambda content: content)
+    episodes: dict[str, Episode] = {}
+    for file in sorted((folder / "content").glob("*.json.gz")):
+        episodes |= _parsed(file, _episodes_of)
+    ordered = _parsed(index_file, lambda content: tuple(episodes[i] for i in content.get("order", sorted(episodes))))
+    houses = {path.stem: path for path in sorted(folder.glob("*.xml"))}
+    missing = sorted({episode.house for episode in ordered} - set(houses))
+    if missing:
+        raise ConfigError(f"Split '{folder}' has episodes in '{missing[0]}' but no {missing[0]}.xml.")
+    return Split(folder.name, str(index.get("version", "unknown")), _sha256(houses, ordered), houses, ordered)
+
+
+def _parsed(file: Path, parse: Callable[[habitat.Json], T]) -> T:
+    """What `parse` makes of a file, or a sentence that names the file."""
+    try:
+        return parse(habitat.read_json(file))
+    except (AttributeError, KeyError, TypeError, ValueError, OSError, EOFError) as error:
+        raise ConfigError(f"Episode file '{file}' is not in Habitat's ObjectNav layout: {error!r}.") from None
+
+
+def _episodes_of(content: habitat.Json) -> dict[str, Episode]:
+    episodes = [_from_habitat(entry) for entry in content["episodes"]]
+    return {episode.episode_id: episode for episode in episodes}
+
+
+def _sha256(houses: Mapping[str, Path], episodes: Sequence[Episode]) -> str:
+    digest = hashlib.sha256()
+    for name, path in houses.items():
+        digest.update(name.encode() + path.read_bytes())
+    digest.update(json.dumps([_to_habitat("", episode) for episode in episodes]).encode())
+    return digest.hexdigest()
+
+
+def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:
+    state = habitat.to_agent_state(episode.start)
+    return {
+        "episode_id": episode.episode_id,
+        "scene_id": f"mjcf_houses/{split}/{episode.house}.xml",
+        "start_position": state["position"],
+        "start_rotation": state["rotation"],
+        "object_category": episode.goal,
+        "info": {"geodesic_distance": episode.shortest_path_m},
+        "goals": [],
+    }
+
+
+def _from_habitat(entry: Mapping[str, Any]) -> Episode:
+    goal = entry["object_category"]
+    if goal not in GOAL_CATEGORIES:
+        raise ValueError(f"episode {entry['episode_id']} asks for '{goal}', which is no goal category")
+    return Episode(
+        episode_id=str(entry["episode_id"]),
+        house=Path(entry["scene_id"]).stem,
+        goal=goal,
+        start=habitat.from_agent_state(entry["start_position"], entry["start_rotation"]),
+        shortest_path_m=entry.get("info", {}).get("geodesic_distance"),
+    )
