@@ -57,7 +57,7 @@ class Trapezoid:
         self._acceleration = acceleration
         self._speed = min(speed, math.sqrt(distance * acceleration))
         self._ramp_s = self._speed / acceleration
-        self.duration_s = distance / self._speed + self._ramp_s if distance > 0.0 else 0.0
+        self.duration_s = distance / self._speed + self._ramp_s if self._speed > 0.0 else 0.0
 
     def distance(self, time_s: float) -> float:
         """Distance covered at one time: 0 before the start, all of it after the end."""
