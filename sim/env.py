@@ -205,6 +205,7 @@ class ObjectNavEnv(gymnasium.Env[dict[str, NDArray], int]):
 def observation_space(sensors: Sequence[str], camera: CameraModel) -> spaces.Dict:
     """The space of observations with these image sensors."""
     shape = (camera.height_px, camera.width_px)
+    limit = np.finfo(np.float32).max
     images: dict[str, spaces.Space] = {
         "rgb": spaces.Box(0, 255, (*shape, 3), np.uint8),
         "depth": spaces.Box(0.0, camera.max_depth_m, shape, np.float32),
@@ -213,7 +214,7 @@ def observation_space(sensors: Sequence[str], camera: CameraModel) -> spaces.Dic
     return spaces.Dict(
         {name: images[name] for name in sensors}
         | {
-            "gps": spaces.Box(-np.inf, np.inf, (2,), np.float32),
+            "gps": spaces.Box(-limit, limit, (2,), np.float32),
             "compass": spaces.Box(-np.float32(np.pi), np.float32(np.pi), (1,), np.float32),
             "objectgoal": spaces.Box(0, len(GOAL_CATEGORIES) - 1, (1,), np.int64),
         }
