@@ -29,9 +29,11 @@ class Look:
     texture: str | None = None
     """Name of a texture in `sim.houses.materials`; None for a plain colour."""
     repeat_m: float = 1.0
-    """Edge length of one tile of the texture on the surface."""
+    """Edge length of one tile of the texture on the surface; 0: one picture over the whole face."""
     specular: float = 0.2
     shininess: float = 0.2
+    emission: float = 0.0
+    """Share of its colour that it gives off by itself: lamps, screens, daylight behind a window."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,9 @@ class MeshShape:
     """A small convex-ish triangle mesh, in the geom's frame; shared by name, so equal meshes need equal names."""
 
     name: str
+    """Kind and hash of the content: the same name, the same mesh."""
     vertices_m: NDArray[np.float64]  # (n, 3)
-    faces: NDArray[np.int32]  # (m, 3), counter-clockwise from outside
+    faces: NDArray[np.int32]  # (m, 3), counter-clockwise from outside; (0, 3): the convex hull of the vertices
 
 
 @dataclass(frozen=True)
@@ -91,3 +94,9 @@ class Item:
     mount: Mount = "floor"
     children: Sequence[Child] = field(default_factory=tuple)
     surfaces: Sequence[Surface] = field(default_factory=tuple)
+    mount_height_m: float = 0.0
+    """Where a wall item's origin (the middle of its lower edge) usually is above the floor; 0 for other mounts."""
+    mass_kg: float | None = None
+    """Set where a light thing may be made movable (a chair, a stool, a ball); None: it stays where it is."""
+    walk_over: bool = False
+    """True: flat on the floor and only seen, so that other things may stand on it (a rug, a yoga mat)."""
