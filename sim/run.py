@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
 
 from sim import cli, tables
 from sim.env import ObjectNavEnv
@@ -70,7 +69,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Run what was asked for; returns the exit status."""
-    console = Console()
+    console = tables.make_console()
     if args.list_agents:
         for name in agent_names():
             console.print(name)

@@ -13,6 +13,14 @@ from sim.results import SUMMARY_METRICS
 
 Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
+PLAIN_WIDTH = 120
+"""Columns where no terminal says how many it has (a file, a pipe, a CI log)."""
+
+
+def make_console() -> Console:
+    """The terminal, or plain text wide enough for the tables."""
+    console = Console()
+    return console if console.is_terminal else Console(width=PLAIN_WIDTH)
 
 
 def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: int) -> Iterator[dict[str, Any]]:
@@ -81,7 +89,7 @@ def _episode_table(lines: Sequence[Line]) -> Table:
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    table = Table(title=f"{summary['episodes']} episodes, means with 95 % bootstrap intervals")
+    table = Table(title=f"{summary['episodes']} episodes, mean and bootstrap")
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")

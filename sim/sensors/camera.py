@@ -69,11 +69,9 @@ class Camera:
         self._option.sitegroup[:] = 0
         self._gl = _make_gl_context(self.camera)
         self._gl.make_current()
-        self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples)
-        # Numbers must not be blended at edges; a buffer without samples also makes their pass twice as fast.
-        self._number_context = (
-            _make_context(model, self.camera, self.profile, samples=0) if self.profile.samples else self._color_context
-        )
+        self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples, self.profile.quads)
+        # Numbers must not be blended at edges, and need no vertices inside a flat face: a buffer of their own is faster.
+        self._number_context = _make_context(model, self.camera, self.profile, samples=0, quads=1)
         self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
         self._view = mujoco.MjvCamera()
@@ -177,7 +175,7 @@ def describe_gl() -> str:
 
 
 def _make_context(
-    model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile, samples: int
+    model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile, samples: int, quads: int
 ) -> mujoco.MjrContext:
     """An offscreen frame buffer of the camera's size with the model's meshes and textures."""
     model.stat.extent = 1.0  # clipping planes are given in units of it
@@ -186,6 +184,7 @@ def _make_context(
     model.vis.global_.offwidth = camera.width_px
     model.vis.global_.offheight = camera.height_px
     model.vis.quality.offsamples = samples
+    model.vis.quality.numquads = quads
     model.vis.quality.numslices = profile.slices
     model.vis.quality.numstacks = profile.stacks
     model.vis.quality.shadowsize = profile.shadow_size_px

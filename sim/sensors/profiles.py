@@ -21,14 +21,20 @@ class RenderProfile:
     """Tessellation of round geoms about their axis (`quality/numslices`)."""
     stacks: int
     """Tessellation of round geoms along their axis (`quality/numstacks`)."""
+    quads: int
+    """Squares along each edge of a box's face in the colour pass, whose light is computed at their corners."""
     shadow_size_px: int = 2048
 
 
 PROFILES: dict[str, RenderProfile] = {
     profile.name: profile
     for profile in (
-        RenderProfile(name="fast", shadows=False, reflections=False, skybox=False, samples=0, slices=12, stacks=8),
-        RenderProfile(name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=28, stacks=16),
+        RenderProfile(
+            name="fast", shadows=False, reflections=False, skybox=False, samples=0, slices=12, stacks=8, quads=2
+        ),
+        RenderProfile(
+            name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=28, stacks=16, quads=4
+        ),
     )
 }
 """`fast` is for agents, `good` for pictures and training data."""
