@@ -77,7 +77,7 @@ def draw_top(spec: mujoco.MjSpec) -> Picture:
     width, height = TOP_PX
     camera = _camera((low + high) / 2, azimuth_deg=90.0, elevation_deg=-89.9)
     reach = max((high[1] - low[1] + 1.0) / 2, (high[0] - low[0] + 1.0) / 2 * height / width)
-    camera.distance = reach / math.tan(math.radians(15.0)) + 2.6
+    camera.distance = reach / math.tan(math.radians(15.0)) + 1.5
     return _render(model, camera, TOP_PX, fovy_deg=30.0)
 
 
@@ -93,7 +93,7 @@ def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
     eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
     tiles = []
     for room in rooms:
-        place = _viewpoint(space, room)
+        place = _viewpoint(model, data, space, room)
         if place is None:
             continue
         x, y, yaw_deg = place
@@ -137,18 +137,32 @@ def _portrait(item: Item) -> Picture:
     return _render(builder.spec.compile(), camera, TILE_PX, fovy_deg=38.0)
 
 
-def _viewpoint(space: FreeSpace, room: Room) -> tuple[float, float, float] | None:
-    """Where to stand in a room to see most of it, and where to look, degrees: far from the middle of what it holds."""
+def _viewpoint(
+    model: mujoco.MjModel, data: mujoco.MjData, space: FreeSpace, room: Room
+) -> tuple[float, float, float] | None:
+    """Where to stand in a room and where to look, degrees, to see far: the best of a few hundred guesses."""
     (cx, cy, _), (hx, hy, _) = room.boxes[0]
-    rows, cols = np.nonzero(space.free)
-    points = space.frame.to_metres(np.column_stack([rows, cols]))
-    inside = (np.abs(points[:, 0] - cx) < hx) & (np.abs(points[:, 1] - cy) < hy)
-    points = points[inside]
+    points = space.frame.to_metres(np.argwhere(space.free))
+    points = points[(np.abs(points[:, 0] - cx) < hx) & (np.abs(points[:, 1] - cy) < hy)]
     if len(points) == 0:
         return None
-    away = np.hypot(points[:, 0] - cx, points[:, 1] - cy)
-    x, y = points[int(np.argmax(away))]
-    return float(x), float(y), math.degrees(math.atan2(cy - y, cx - x))
+    rng = np.random.default_rng(0)
+    fan = np.radians(np.arange(0, 360, 10))
+    rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
+    best, found = -1.0, None
+    for x, y in points[rng.integers(len(points), size=40)]:
+        geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
+        eye = np.array([x, y, CameraModel().height_m])
+        mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
+        with np.errstate(divide="ignore"):
+            leave = np.min((np.array([hx, hy]) - np.sign(rays[:, :2]) * (np.array([x - cx, y - cy]))) / np.abs(rays[:, :2]), axis=1)
+        inside = np.minimum(np.where(far < 0, 10.0, far), leave + 0.3)
+        for i in range(0, len(fan), 3):  # nine rays across the field of view
+            view = inside[np.arange(i - 4, i + 5) % len(fan)]
+            score = float(view.mean() + 1.5 * min(view.min(), 1.0))
+            if score > best:
+                best, found = score, (float(x), float(y), math.degrees(fan[i]))
+    return found
 
 
 def _extent(rooms: tuple[Room, ...]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -161,7 +175,7 @@ def _extent(rooms: tuple[Room, ...]) -> tuple[NDArray[np.float64], NDArray[np.fl
 def _add_backdrop(spec: mujoco.MjSpec) -> None:
     spec.add_texture(
         name="backdrop", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
-        width=32, height=192, rgb1=list(BACKDROP),
+        width=32, height=192, rgb1=list(BACKDROP), rgb2=list(BACKDROP),
     )  # fmt: skip
 
 
@@ -180,8 +194,6 @@ def _render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int,
     model.vis.global_.fovy = fovy_deg
     model.stat.extent = 10.0
     model.vis.map.znear, model.vis.map.zfar = 0.005, 20.0
-    model.vis.headlight.ambient[:], model.vis.headlight.diffuse[:] = 0.34, 0.14
-    model.vis.headlight.specular[:] = 0.0
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     renderer = mujoco.Renderer(model, height, width)

@@ -7,14 +7,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from sim.gl import mujoco
 from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape
+from sim.houses.furniture.shapes import named_mesh
+from sim.houses.furniture.workbench import matrix_from_euler
 from sim.houses.geometry import Rect
 from sim.houses.materials import texture_file, texture_mapping
 
 ASSETS_DIR = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses"
 TEXTURE_DIR = "../textures"
 """Where a house file finds its textures, relative to itself."""
+AMBIENT, HEADLIGHT = 0.36, 0.12
+"""Light from everywhere, and from the camera: without some of both, walls that no lamp faces look black."""
+MESH_BOXES = 12
+"""Boxes joined into one mesh at most."""
 _SEEN = "seen"
 """Default class of geoms that nothing touches."""
 _SHAPES = {
@@ -65,6 +73,8 @@ class HouseBuilder:
         self._spec.texturedir = TEXTURE_DIR
         # Only for compiling in memory: the directory a shipped house lies in. It is not written to the file.
         self._spec.modelfiledir = str(ASSETS_DIR / "val")
+        light = self._spec.visual.headlight
+        light.ambient, light.diffuse, light.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3
         seen = self._spec.add_default(_SEEN, self._spec.default)
         seen.geom.contype = 0
         seen.geom.conaffinity = 0
@@ -123,12 +133,10 @@ class HouseBuilder:
         self._counts[category] = number + 1
         return f"{category}_{number:02d}"
 
-    def _add_body(
-        self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float
-    ) -> str:
+    def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
         body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
-        for geom in item.geoms:
+        for geom in merged(item.geoms):
             self._add_geom(body, geom)
         for child in item.children:
             self._add_child(body, child)
@@ -181,6 +189,44 @@ class HouseBuilder:
             if len(mesh.faces):
                 made.userface = mesh.faces.astype(int).ravel().tolist()
         return mesh.name
+
+
+def merged(geoms: Sequence[Geom]) -> list[Geom]:
+    """The same geoms, but plain boxes of one look that are only seen joined into one mesh: fewer things to draw."""
+    kept: list[Geom] = []
+    boxes: dict[Look, list[Geom]] = {}
+    for geom in geoms:
+        if geom.shape == "box" and not geom.solid and geom.look.texture is None:
+            boxes.setdefault(geom.look, []).append(geom)
+        else:
+            kept.append(geom)
+    for look, alike in boxes.items():
+        for n in range(0, len(alike), MESH_BOXES):
+            part = alike[n : n + MESH_BOXES]
+            kept.append(_joined(part, look) if len(part) > 1 else part[0])
+    return kept
+
+
+def _joined(boxes: Sequence[Geom], look: Look) -> Geom:
+    """One visual mesh of some boxes, its origin in the middle of them."""
+    corners = [np.array(b.pos_m) + (_SIGNS * b.size_m) @ matrix_from_euler(*b.euler_rad).T for b in boxes]
+    every = np.vstack(corners)
+    middle = np.round(0.5 * (every.min(axis=0) + every.max(axis=0)), 4)
+    faces = np.vstack([_BOX_FACES + 8 * n for n in range(len(boxes))])
+    mesh = named_mesh("boxes", every - middle, faces)
+    return Geom("mesh", (), (float(middle[0]), float(middle[1]), float(middle[2])), look, solid=False, mesh=mesh)
+
+
+_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
+_BOX_FACES = np.array(
+    [
+        tri
+        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        for tri in ((a, b, c), (a, c, d))
+    ],
+    dtype=np.int32,
+)
+"""Triangles of a box whose corners come in the order of `_SIGNS`, counter-clockwise from outside."""
 
 
 def _r(value: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from sim.houses import materials
@@ -12,19 +14,19 @@ from sim.houses.structure import Finish
 
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
-SKY = {"train": (0.55, 0.75, 0.95, 1.0), "heldout": (0.66, 0.80, 0.92, 1.0)}
-MAX_POINT_LAMPS = 5
-"""Fixed-function OpenGL has eight lights; three shine everywhere."""
+SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
+MAX_POINT_LAMPS = 4
+"""Fixed-function OpenGL has eight lights; four shine everywhere."""
 
 
 def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
     """Paint and floors by room; rooms that flow into each other share theirs."""
     walls, floors = {}, {}
     main_floor = materials.floor_look("living_room", rng, pool)
-    main_wall = materials.wall_look(rng, pool)
+    main_wall = _wall(rng, pool, "hallway")
     shared = _flowing(plan)
     for i, room in enumerate(plan.rooms):
-        own = materials.wall_look(rng, pool, room.kind)
+        own = _wall(rng, pool, room.kind)
         floor = materials.floor_look(room.kind, rng, pool)
         same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
@@ -33,9 +35,17 @@ def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
     frame = trim if rng.random() < 0.6 else door
     return Finish(
-        walls, floors, materials.ceiling_look(rng, pool), Look(OUTSIDE[pool]), trim, door, frame,
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[pool]), trim, door, frame,
         materials.look("metal", rng, pool), Look(SKY[pool], specular=0.0, emission=0.75),
     )  # fmt: skip
+
+
+def _wall(rng: np.random.Generator, pool: Pool, room_kind: str) -> Look:
+    """Paint, more often than not: patterned paper only in every other draw that gives it."""
+    look = materials.wall_look(rng, pool, room_kind)
+    papered = look.texture is not None and look.texture.startswith("paper")
+    plain = (papered and room_kind == "hallway") or (look.texture is not None and rng.random() < 0.5)
+    return replace(look, texture=None) if plain and not (look.texture or "").startswith("tiles") else look
 
 
 def _flowing(plan: FloorPlan) -> set[int]:
@@ -44,7 +54,7 @@ def _flowing(plan: FloorPlan) -> set[int]:
 
 
 def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
-    """Daylight from two sides, a reflection from the floors, and lamps in the largest rooms.
+    """Daylight from three sides, a reflection from the floors, and lamps in the largest rooms.
 
     The light that is the same everywhere casts no shadow: a ceiling would swallow it. Strengths were set by looking.
     """
@@ -54,7 +64,11 @@ def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> l
 
     def towards(angle: float, tilt: float) -> tuple[float, float, float]:
         level = np.cos(tilt)
-        return (round(float(level * np.cos(angle)), 4), round(float(level * np.sin(angle)), 4), round(float(np.sin(tilt)), 4))
+        return (
+            round(float(level * np.cos(angle)), 4),
+            round(float(level * np.sin(angle)), 4),
+            round(float(np.sin(tilt)), 4),
+        )
 
     def light(strength: float) -> tuple[float, float, float]:
         r, g, b = (round(float(v), 3) for v in strength * tint)
@@ -63,9 +77,10 @@ def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> l
     x, y = plan.bounds.centre
     above = (round(x, 2), round(y, 2), ceiling_m + 2.0)
     lamps = [
-        Lamp(above, light(0.34), towards(turn, -0.75)),
-        Lamp(above, light(0.22), towards(turn + 2.3, -0.55)),
-        Lamp((above[0], above[1], 0.1), light(0.30), towards(turn + 1.0, 1.2)),
+        Lamp(above, light(0.30), towards(turn, -0.70)),
+        Lamp(above, light(0.22), towards(turn + 2.0, -0.55)),
+        Lamp(above, light(0.16), towards(turn + 4.1, -0.50)),
+        Lamp((above[0], above[1], 0.1), light(0.40), towards(turn + 1.0, 1.2)),
     ]
     rooms = sorted(plan.rooms, key=lambda room: -room.rect.area_m2)[:MAX_POINT_LAMPS]
     for room in rooms:

@@ -61,7 +61,9 @@ class FloorPlan:
     def bounds(self) -> Rect:
         """The rectangle around all rooms."""
         rects = [room.rect for room in self.rooms]
-        return Rect(min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects))
+        return Rect(
+            min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects)
+        )
 
 
 @dataclass
@@ -128,7 +130,15 @@ def draw_floorplan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wan
     upper, lower = (_Row(tuple(columns), round(depth, 1), scale) for columns, depth in zip(main, depths, strict=True))
     length_m = _common_length(rng, upper, lower, corridor_m)
     hall = draft.add("hallway", Rect(0.0, 0.0, length_m, corridor_m))
-    gaps = _lay_row(rng, draft, hall, upper, length_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, corridor_m + t0, s1, corridor_m + t1))
+    gaps = _lay_row(
+        rng,
+        draft,
+        hall,
+        upper,
+        length_m,
+        corridor_m,
+        lambda s0, s1, t0, t1: Rect(s0, corridor_m + t0, s1, corridor_m + t1),
+    )
     gaps += _lay_row(rng, draft, hall, lower, length_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, -t1, s1, -t0))
     for gap, branch in zip(gaps, branches, strict=True):
         _lay_branch(rng, draft, hall, gap, branch, corridor_m, scale)
@@ -328,7 +338,11 @@ def _lay_public_block(
 ) -> None:
     """Close the main wing with the public rooms, across its whole depth, at the corridor's far end."""
     hall_rect = draft.rects[hall]
-    beside = [r for i, r in enumerate(draft.rects) if i != hall and abs(r.x1 - hall_rect.x1) < 0.01 and r.y1 > hall_rect.y0 - 9]
+    beside = [
+        r
+        for i, r in enumerate(draft.rects)
+        if i != hall and abs(r.x1 - hall_rect.x1) < 0.01 and r.y1 > hall_rect.y0 - 9
+    ]
     y0 = min([r.y0 for r in beside] + [hall_rect.y0])
     y1 = max([r.y1 for r in beside if r.y0 < hall_rect.y1 + 0.01] + [hall_rect.y1])
     depth_m, x0 = y1 - y0, hall_rect.x1
@@ -356,7 +370,11 @@ def _two_deep(order: Sequence[str], shares: np.ndarray, block: Rect) -> list[Rec
     """The living room across one part of the block, the other two rooms side by side in the rest."""
     live = list(order).index("living_room")
     share = float(shares[live] / shares.sum())
-    cut = round((block.y0 + share * block.depth_m) * 20) / 20 if live == 0 else round((block.y1 - share * block.depth_m) * 20) / 20
+    cut = (
+        round((block.y0 + share * block.depth_m) * 20) / 20
+        if live == 0
+        else round((block.y1 - share * block.depth_m) * 20) / 20
+    )
     living = Rect(block.x0, block.y0, block.x1, cut) if live == 0 else Rect(block.x0, cut, block.x1, block.y1)
     rest = Rect(block.x0, cut, block.x1, block.y1) if live == 0 else Rect(block.x0, block.y0, block.x1, cut)
     others = [i for i in range(3) if i != live]
@@ -373,7 +391,10 @@ def _join_public(rng: np.random.Generator, draft: _Draft, hall: int, rooms: Sequ
     for i, a in enumerate(rooms):
         for b in rooms[i + 1 :]:
             if draft.shared_m(a, b) > 1.6:
-                draft.join(a, b, wide if kind == "openplan" or rng.random() < 0.75 else "door")
+                # Where three rooms meet, one wall must stay, or a lone post would be left of all of them.
+                third = len(rooms) == 3 and "living_room" not in (draft.kinds[a], draft.kinds[b])
+                link: JoinKind = "opening" if third and wide == "open" else wide
+                draft.join(a, b, link if kind == "openplan" or rng.random() < 0.75 else "door")
     touching = [room for room in rooms if draft.shared_m(hall, room) > 1.0]
     if not touching:
         raise PlanError("the corridor ends between two public rooms")

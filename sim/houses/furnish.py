@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
+from sim.houses.furniture.item import Item, Look
 from sim.houses.geometry import SIDES, Side
 from sim.houses.groups import (
     bed_group,
@@ -43,7 +44,7 @@ def _bedroom(space: RoomSpace, kit: Kit) -> None:
     if area > 14 and kit.chance(0.5):
         place(space, kit, "chair", "arm", along="corner", front_m=0.4)
     if kit.chance(0.35):
-        hang(space, kit, "tv_monitor", "wall")
+        hang(space, kit, "tv_monitor", "tv_wall")
     if kit.clutter_chance(0.5):
         place(space, kit, "clothes", "rack", "floor", along="corner", front_m=0.3)
     _extras(space, kit, plants=0.5, pictures=(1, 2))
@@ -77,64 +78,75 @@ def _living_room(space: RoomSpace, kit: Kit) -> None:
 def _kitchen(space: RoomSpace, kit: Kit) -> None:
     kitchen_units(space, kit)
     area = space.inner.area_m2
-    if area > 13 and kit.chance(0.6):
+    dining_elsewhere = "dining_room" in kit.home_rooms
+    if area > 13 and kit.chance(0.85 if dining_elsewhere else 0.4):
         _island(space, kit)
-    elif area > 9:
+    elif area > 8 and (not dining_elsewhere or kit.chance(0.25)):
         dining_group(space, kit, around_m=0.65)
     _extras(space, kit, plants=0.4, pictures=(0, 1))
 
 
 def kitchen_units(space: RoomSpace, kit: Kit) -> None:
-    """A run of units along the best wall: fridge, counter with sink, cooker, counter; cabinets above."""
-    sides = sorted(SIDES, key=lambda side: -space.wall_length(side) + (0.8 if _has_window(space, side) else 0.0))
-    looks: dict[str, object] = {}
+    """A run of units along the best wall: fridge, counter with sink, cooker, counter; cabinets above; more round the corner."""
+    sides = sorted(SIDES, key=lambda side: -space.wall_length(side) + (0.5 if _has_window(space, side) else 0.0))
+    looks = kit.looks("lacquer", "stone", "metal", "wood", "steel")
     for side in sides:
-        free = min(space.wall_length(side) - 0.02, 5.2)
-        made = _kitchen_run(space, kit, side, free, looks)
+        made = _kitchen_run(space, kit, side, min(space.wall_length(side) - 0.02, 5.0), looks)
         if made:
             _wall_cabinets(space, kit, side, made, looks)
-            others = [s for s in sides if s != side]
-            if space.inner.area_m2 > 12 and kit.chance(0.6):
-                for other in others:
-                    width = min(space.wall_length(other) - 0.7, 2.4)
-                    item = kit.make("counter", "kitchen", width_m=round(width, 2), looks=looks) if width > 0.9 else None
-                    run = row(space, kit, [item], other) if item else []
-                    if run:
-                        put_things(space, kit, run[0], ("objects", "plant", "objects"), (0.8, 0.2, 0.5))
-                        _wall_cabinets(space, kit, other, run, looks)
-                        break
+            if space.inner.area_m2 > 9 and kit.chance(0.7):
+                _second_run(space, kit, [other for other in sides if other != side], looks)
             return
 
 
-def _kitchen_run(space: RoomSpace, kit: Kit, side: Side, free_m: float, looks: dict[str, object]) -> list[Standing]:
-    """Units side by side on one wall, fewer and narrower ones where the wall is short."""
-    fridge = kit.make("appliances", "fridge", "refrigerator")
-    cooker = kit.make("appliances", "stove", "cooker", "oven")
-    for full in (True, False):
-        fixed = [item for item in (fridge, cooker) if item is not None] if full else []
-        rest = free_m - sum(item.size_m[1] + 0.005 for item in fixed)
-        for share in (1.0, 0.85, 0.7, 0.5):
-            width = rest * share
-            if width < 1.0:
-                continue
-            if full and cooker is not None and width > 2.2:
-                left = round(0.6 * width, 2)
-                parts = [fridge, kit.make("counter", "kitchen", width_m=left, with_sink=True, with_hob=False, looks=looks), cooker,
-                         kit.make("counter", "kitchen", width_m=round(width - left, 2), with_sink=False, with_hob=False, looks=looks)]
-            else:
-                parts = [fridge if full else None,
-                         kit.make("counter", "kitchen", width_m=round(width, 2), with_sink=True, with_hob=cooker is None or not full, looks=looks),
-                         cooker if full else None]
-            run = row(space, kit, [part for part in parts if part is not None], side)
+def _second_run(space: RoomSpace, kit: Kit, sides: Sequence[Side], looks: dict[str, Look]) -> None:
+    """More worktop on another wall."""
+    for side in sides:
+        for share in (0.85, 0.6, 0.4):
+            width = round(min(share * space.wall_length(side), 2.4), 2)
+            item = (
+                kit.make("counter", "run", width_m=width, with_sink=False, with_hob=False, looks=looks)
+                if width > 0.8
+                else None
+            )
+            run = row(space, kit, [item], side) if item else []
             if run:
-                for unit in run:
-                    if unit.placed.item.category == "counter":
-                        put_things(space, kit, unit, ("objects", "objects", "plant"), (0.8, 0.5, 0.2))
-                return run
+                put_things(space, kit, run[0], ("appliances", "objects", "plant", "objects"), (0.4, 0.8, 0.2, 0.5))
+                _wall_cabinets(space, kit, side, run, looks)
+                return
+
+
+def _kitchen_run(space: RoomSpace, kit: Kit, side: Side, free_m: float, looks: dict[str, Look]) -> list[Standing]:
+    """Units side by side on one wall, fewer and narrower ones where the wall is short."""
+    fridge, cooker = kit.make("appliances", "fridge"), kit.make("appliances", "stove")
+
+    def worktop(width_m: float, *, sink: bool, hob: bool) -> Item | None:
+        return kit.make("counter", "run", width_m=round(width_m, 2), with_sink=sink, with_hob=hob, looks=looks)
+
+    for share in (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4):
+        fixed = sum(item.size_m[1] + 0.005 for item in (fridge, cooker) if item is not None)
+        rest = share * free_m - fixed
+        if rest > 1.9:
+            left = 0.6 * rest
+            wanted = [fridge, worktop(left, sink=True, hob=False), cooker, worktop(rest - left, sink=False, hob=False)]
+        elif rest > 0.95:
+            wanted = [fridge, worktop(rest, sink=True, hob=False), cooker]
+        elif share * free_m > 1.3:
+            wanted = [worktop(share * free_m, sink=True, hob=True)]
+        else:
+            break
+        run = row(space, kit, [item for item in wanted if item is not None], side)
+        for unit in run:
+            if unit.placed.item.category == "counter":
+                put_things(space, kit, unit, ("objects", "appliances", "objects", "plant"), (0.8, 0.3, 0.5, 0.2))
+        if run:
+            if len(wanted) == 1 and fridge is not None:
+                space.against_wall(kit.rng, fridge, along="corner", front_m=0.6)
+            return run
     return []
 
 
-def _wall_cabinets(space: RoomSpace, kit: Kit, side: Side, run: list[Standing], looks: dict[str, object]) -> None:
+def _wall_cabinets(space: RoomSpace, kit: Kit, side: Side, run: list[Standing], looks: dict[str, Look]) -> None:
     for unit in run:
         if unit.placed.item.size_m[2] > 1.2:
             continue
@@ -152,16 +164,18 @@ def _wall_cabinets(space: RoomSpace, kit: Kit, side: Side, run: list[Standing], 
 
 def _island(space: RoomSpace, kit: Kit) -> None:
     """A free-standing counter with stools on one side."""
-    island = kit.make("counter", "island", "bar")
+    island = kit.make("counter", "island")
     if island is None:
         dining_group(space, kit, around_m=0.65)
         return
-    standing = space.in_middle(kit.rng, island, around_m=0.8)
+    front = island.size_m[0] / 2 + 0.45
+    spots = [(side * front, y, 0.4) for side in (-1.0, 1.0) for y in (-0.3 * island.size_m[1], 0.3 * island.size_m[1])]
+    standing = space.in_middle(kit.rng, island, spots, around_m=0.9)
     if standing is None:
         dining_group(space, kit, around_m=0.65)
         return
     put_things(space, kit, standing, ("objects", "plant", "objects"), (0.7, 0.4, 0.3))
-    stool = kit.make("stool", "bar", "counter")
+    stool = kit.make("stool", "bar")
     space.release(standing)
     if stool is None:
         return
@@ -181,7 +195,7 @@ def _dining_room(space: RoomSpace, kit: Kit) -> None:
         put_things(space, kit, board, ("objects", "plant", "lighting", "objects"), (0.7, 0.4, 0.3, 0.4))
         hang_over(space, kit, board, "picture")
     if kit.chance(0.3):
-        place(space, kit, "counter", "bar", "sideboard", front_m=0.7)
+        place(space, kit, "counter", "island", front_m=0.7)
     _extras(space, kit, plants=0.7, pictures=(1, 2))
 
 
@@ -211,10 +225,8 @@ def _bathroom(space: RoomSpace, kit: Kit) -> None:
         hang(space, kit, "mirror")
     for _ in range(1 + kit.chance(0.4)):
         hang(space, kit, "towel", "rail")
-    if area > 5.5 and kit.chance(0.5):
-        place(space, kit, "cabinet", "vanity", front_m=0.5)
     if kit.chance(0.4):
-        place(space, kit, "stool", "low", "bath", along="corner", front_m=0.2)
+        place(space, kit, "stool", "low", along="corner", front_m=0.2)
     if kit.clutter_chance(0.4):
         place(space, kit, "objects", "floor", "basket", along="corner", front_m=0.0)
     _extras(space, kit, plants=0.3, pictures=(0, 1), lamp=False)
@@ -230,9 +242,11 @@ def _hallway(space: RoomSpace, kit: Kit) -> None:
     wide = space.inner.short_m
     if wide > 1.15:
         if kit.chance(0.7):
-            hang(space, kit, "clothes", "hooks", "wall")
+            hang(space, kit, "clothes", "hooks", along="any")
         for _ in range(1 + int(space.inner.area_m2 > 12)):
-            board = place(space, kit, *(("cabinet", "sideboard") if kit.chance(0.5) else ("table", "console")), front_m=0.45)
+            board = place(
+                space, kit, *(("cabinet", "sideboard") if kit.chance(0.5) else ("table", "console")), front_m=0.45
+            )
             if board is not None:
                 put_things(space, kit, board, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))
                 hang_over(space, kit, board, "mirror" if kit.chance(0.6) else "picture")
@@ -271,18 +285,18 @@ def _gym(space: RoomSpace, kit: Kit) -> None:
     place(space, kit, "seating", "bench", front_m=0.5)
     hang(space, kit, "towel", "rail")
     if kit.chance(0.5):
-        hang(space, kit, "tv_monitor", "wall")
+        hang(space, kit, "tv_monitor", "tv_wall")
     _extras(space, kit, plants=0.5, pictures=(1, 1))
 
 
 def _laundry(space: RoomSpace, kit: Kit) -> None:
-    washer = kit.make("appliances", "washer", "washing_machine")
+    washer = kit.make("appliances", "washing_machine")
     if washer is not None:
         machines = [washer, washer] if kit.chance(0.5) else [washer]
         for side in sorted(SIDES, key=lambda s: -space.wall_length(s)):
             if row(space, kit, machines, side, front_m=0.6):
                 break
-    place(space, kit, "counter", "kitchen", width_m=1.0, with_sink=True, with_hob=False, front_m=0.6)
+    place(space, kit, "counter", "run", width_m=1.0, with_sink=True, with_hob=False, front_m=0.6)
     place(space, kit, "shelving", "bookcase", front_m=0.5)
     place(space, kit, "clothes", "rack", "basket", front_m=0.4)
     _extras(space, kit, plants=0.1, pictures=(0, 0))
@@ -305,7 +319,13 @@ def _other(space: RoomSpace, kit: Kit) -> None:
 
 
 def _extras(
-    space: RoomSpace, kit: Kit, *, plants: float, pictures: tuple[int, int], lamp: bool = True, corner_plants: bool = True
+    space: RoomSpace,
+    kit: Kit,
+    *,
+    plants: float,
+    pictures: tuple[int, int],
+    lamp: bool = True,
+    corner_plants: bool = True,
 ) -> None:
     """Plants in corners, pictures on free wall, something on the floor: how much is the clutter's affair."""
     for chance in (plants, plants - 0.5):

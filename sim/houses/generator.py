@@ -58,7 +58,9 @@ class HouseConfig:
         if unknown:
             raise ConfigError(f"HouseConfig.rooms: no room kind '{unknown[0]}'. There is: {', '.join(ROOM_RULES)}.")
         if self.area_m2 is not None and not AREA_M2[0] <= self.area_m2 <= AREA_M2[1]:
-            raise ConfigError(f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}.")
+            raise ConfigError(
+                f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."
+            )
         if self.clutter is not None and not 0.0 <= self.clutter <= 1.0:
             raise ConfigError(f"HouseConfig.clutter must lie in [0, 1], got {self.clutter}.")
 
@@ -154,7 +156,7 @@ def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.Mj
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), ceiling_m)
     for item in build_structure(plan, openings, ceiling_m, finish):
         builder.add(Placed(item))
-    kit = Kit(rng, config.pool, clutter)
+    kit = Kit(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms))
     for index, room in enumerate(plan.rooms):
         space = RoomSpace(index, room.kind, room.rect, openings, ceiling_m)
         furnish(space, kit)

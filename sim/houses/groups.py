@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 
 from sim.houses.furniture.item import Item
-from sim.houses.geometry import INWARD_YAW_RAD, OPPOSITE, SIDES, Rect, Side, footprint
+from sim.houses.geometry import INWARD_YAW_RAD, OPPOSITE, SIDES, Side, footprint
 from sim.houses.kit import Kit
 from sim.houses.placement import WALL_GAP_M, Along, RoomSpace, Standing
 
@@ -35,15 +35,19 @@ def place(
     return None
 
 
-def hang(space: RoomSpace, kit: Kit, category: str, *uses: str, along: Along = "any", **hints: object) -> Standing | None:
+def hang(
+    space: RoomSpace, kit: Kit, category: str, *uses: str, along: Along = "any", **hints: object
+) -> Standing | None:
     """One thing on a wall, where the floor before it leaves somebody stand near."""
     item = kit.make(category, *uses, **hints)
     if item is None or item.mount != "wall":
         return None
-    return space.on_wall(kit.rng, item, along=along)
+    return space.on_wall(kit.rng, item, along=along, over_floor=category == "clothes")
 
 
-def hang_over(space: RoomSpace, kit: Kit, host: Standing, category: str, *uses: str, **hints: object) -> Standing | None:
+def hang_over(
+    space: RoomSpace, kit: Kit, host: Standing, category: str, *uses: str, **hints: object
+) -> Standing | None:
     """One thing on the wall right above what stands against it."""
     item = kit.make(category, *uses, **hints)
     if item is None or item.mount != "wall" or host.side is None:
@@ -74,7 +78,9 @@ def beside(
     return Standing(found.placed, found.rect, side) if found else None
 
 
-def before(space: RoomSpace, host: Standing, item: Item, gap_m: float, *, facing: bool, shift_m: float = 0.0) -> Standing | None:
+def before(
+    space: RoomSpace, host: Standing, item: Item, gap_m: float, *, facing: bool, shift_m: float = 0.0
+) -> Standing | None:
     """An item in front of another one, looking back at it (`facing`) or the same way."""
     yaw = host.placed.yaw_rad
     c, s = math.cos(yaw), math.sin(yaw)
@@ -127,7 +133,14 @@ def bed_group(space: RoomSpace, kit: Kit, *, large: bool) -> Standing | None:
 
 def put_things(space: RoomSpace, kit: Kit, host: Standing, categories: Sequence[str], chances: Sequence[float]) -> None:
     """Small things on top of something, each with its usual chance."""
-    uses = {"lighting": ("table",), "objects": (), "plant": ("table", "small", "top"), "tv_monitor": ("monitor", "table"), "cushion": ("throw",)}
+    uses = {
+        "lighting": ("table",),
+        "objects": (),
+        "plant": ("table", "small", "top"),
+        "tv_monitor": ("monitor",),
+        "cushion": ("throw",),
+        "appliances": ("microwave",),
+    }
     for category, usual in zip(categories, chances, strict=True):
         if kit.clutter_chance(usual):
             item = kit.make(category, *uses.get(category, ()))
@@ -140,7 +153,11 @@ def sofa_group(space: RoomSpace, kit: Kit) -> Standing | None:
     sofa_item = kit.make("sofa")
     if sofa_item is None:
         return None
-    sides = sorted(SIDES, key=lambda s: -space.wall_length(s) + kit.uniform(0.0, 1.5))
+
+    def score(side: Side) -> float:
+        return space.wall_length(side) + min(space.wall_length(OPPOSITE[side]), 2.5) + kit.uniform(0.0, 1.5)
+
+    sides = sorted(SIDES, key=score, reverse=True)
     for side in sides:
         depth = space.inner.width_m if side in ("east", "west") else space.inner.depth_m
         away = depth - 3.7
@@ -161,7 +178,7 @@ def sofa_group(space: RoomSpace, kit: Kit) -> Standing | None:
     ahead = sofa.placed.item.size_m[0] / 2 + 0.65
     if kit.chance(0.8):
         lay_rug(space, kit, sofa.placed.x_m + c * ahead, sofa.placed.y_m + s * ahead, yaw + math.pi / 2)
-    easy = kit.make("chair", "arm") if kit.chance(0.75) else kit.make("seating", "ottoman", "pouf")
+    easy = kit.make("chair", "arm") if kit.chance(0.75) else kit.make("seating", "ottoman")
     if easy is not None:
         for end in kit.rng.permutation([1.0, -1.0]).tolist()[: 1 if kit.chance(0.5) else 2]:
             across = sofa.placed.item.size_m[1] / 2 + easy.size_m[0] / 2 + 0.05
@@ -196,67 +213,83 @@ def _screen(space: RoomSpace, kit: Kit, sofa: Standing) -> None:
     host = None
     if board is not None:
         host = space.near_on_wall(board, side, middle, front_m=0.5)
-    hung = kit.chance(0.4)
-    if hung or host is None:
-        screen = kit.make("tv_monitor", "wall")
-        if screen is not None and screen.mount == "wall":
+    ways = ["wall", "stand"] if host is None or kit.chance(0.4) else ["stand", "wall", "wall"]
+    for way in ways:
+        screen = kit.make("tv_monitor", "tv_wall" if way == "wall" else "tv")
+        if screen is None:
+            continue
+        if (
+            way == "stand"
+            and host is not None
+            and screen.mount == "top"
+            and space.on_top(kit.rng, host, screen, face=0.0, back=True)
+        ):
+            return
+        if way == "wall" and screen.mount == "wall":
             at = middle if host is None else 0.5 * sum(host.rect.span(side))
             bottom = max(0.85, (host.placed.item.size_m[2] + 0.12) if host else 0.95)
             if space.on_wall(kit.rng, screen, sides=[side], at=at, bottom_m=bottom):
                 return
-    if host is not None:
-        screen = kit.make("tv_monitor", "table", "tv")
-        if screen is not None and screen.mount == "top":
-            space.on_top(kit.rng, host, screen, face=0.0, back=True)
+    floor = kit.make("tv_monitor", "tv_floor")
+    if floor is not None and floor.mount == "floor":
+        space.near_on_wall(floor, side, middle, front_m=0.4, slide_m=1.5)
+
+
+Seat = tuple[float, float, float]
+"""x, y where a chair meets the table's edge, in the table's frame, and the heading in which it looks."""
 
 
 def dining_group(space: RoomSpace, kit: Kit, *, around_m: float = 0.75) -> Standing | None:
     """A table with chairs on its sides and a lamp above it."""
-    table = None
-    for slack in (around_m, 0.6):
+    chair = kit.make("chair", "dining")
+    for _ in range(2):
         item = kit.make("table", "dining")
-        if item is None:
+        if item is None or chair is None:
             return None
-        table = space.in_middle(kit.rng, item, around_m=slack)
+        seats = _seats(kit, item, chair)
+        half = chair.size_m[1] / 2
+        spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
+        table = space.in_middle(kit.rng, item, spots, around_m=around_m)
         if table is not None:
             break
-    if table is None:
+    else:
         return None
-    chair = kit.make("chair", "dining") or kit.make("chair")
-    if chair is not None:
-        _chairs_around(space, kit, table, chair)
+    for seat in seats:
+        _draw_up(space, kit, table, chair, seat)
     put_things(space, kit, table, ("objects", "plant", "objects"), (0.6, 0.25, 0.3))
-    lamp = kit.make("lighting", "pendant", "ceiling")
+    lamp = kit.make("lighting", "ceiling")
     if lamp is not None and lamp.mount == "ceiling":
         space.on_ceiling(lamp, table.placed.x_m, table.placed.y_m)
-    if kit.chance(0.3):
+    if kit.chance(0.35):
         lay_rug(space, kit, table.placed.x_m, table.placed.y_m, table.placed.yaw_rad)
     return table
 
 
-def _chairs_around(space: RoomSpace, kit: Kit, table: Standing, chair: Item) -> None:
-    """Chairs along the long sides, and at the ends of a long table."""
-    depth, width = table.placed.item.size_m[:2]
-    space.release(table)
-    seats: list[tuple[float, float, float]] = []
+def _seats(kit: Kit, table: Item, chair: Item) -> list[Seat]:
+    """Along the long sides, at the ends of a long table too; round small and square ones."""
+    depth, width = table.size_m[:2]
     if abs(depth - width) < 0.15:
-        seats += [(math.cos(a) * depth / 2, math.sin(a) * depth / 2, a + math.pi) for a in (0.0, math.pi / 2, math.pi, -math.pi / 2)]
-    else:
-        count = max(1, min(4, int((width - 0.25) / (chair.size_m[1] + 0.14))))
-        for n in range(count):
-            y = (n - 0.5 * (count - 1)) * (width - 0.2) / count
-            seats += [(depth / 2, y, math.pi), (-depth / 2, y, 0.0)]
-        if width > 1.7 and kit.chance(0.5):
-            seats += [(0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2)]
+        quarters = (0.0, math.pi / 2, math.pi, -math.pi / 2)
+        return [(math.cos(a) * depth / 2, math.sin(a) * depth / 2, a + math.pi) for a in quarters]
+    seats: list[Seat] = []
+    count = max(1, min(4, int((width - 0.25) / (chair.size_m[1] + 0.14))))
+    for n in range(count):
+        y = (n - 0.5 * (count - 1)) * (width - 0.2) / count
+        seats += [(depth / 2, y, math.pi), (-depth / 2, y, 0.0)]
+    if width > 1.7 and kit.chance(0.5):
+        seats += [(0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2)]
+    return seats
+
+
+def _draw_up(space: RoomSpace, kit: Kit, table: Standing, chair: Item, seat: Seat) -> None:
+    """A chair at its seat, a little under the table and not always straight."""
     c, s = math.cos(table.placed.yaw_rad), math.sin(table.placed.yaw_rad)
-    for lx, ly, turn in seats:
-        if kit.chance(0.06):
-            continue
-        out = chair.size_m[0] / 2 - 0.12
-        px, py = lx - out * math.cos(turn), ly - out * math.sin(turn)
-        x, y = table.placed.x_m + c * px - s * py, table.placed.y_m + s * px + c * py
-        askew = kit.uniform(-0.12, 0.12) if kit.chance(0.4) else 0.0
-        space.tucked(chair, table, x, y, table.placed.yaw_rad + turn + askew)
+    lx, ly, turn = seat
+    out = chair.size_m[0] / 2 - 0.14
+    px, py = lx - out * math.cos(turn), ly - out * math.sin(turn)
+    x, y = table.placed.x_m + c * px - s * py, table.placed.y_m + s * px + c * py
+    askew = kit.uniform(-0.12, 0.12) if kit.chance(0.4) else 0.0
+    space.tucked(chair, table, x, y, table.placed.yaw_rad + turn + askew)
 
 
 def desk_group(space: RoomSpace, kit: Kit) -> Standing | None:
@@ -271,7 +304,7 @@ def desk_group(space: RoomSpace, kit: Kit) -> Standing | None:
         out = desk.placed.item.size_m[0] / 2 + chair.size_m[0] / 2 - 0.15
         x, y = desk.placed.x_m + math.cos(yaw) * out, desk.placed.y_m + math.sin(yaw) * out
         space.tucked(chair, desk, x, y, yaw + math.pi + kit.uniform(-0.2, 0.2))
-    monitor = kit.make("tv_monitor", "monitor", "desk")
+    monitor = kit.make("tv_monitor", "monitor")
     if monitor is not None and monitor.mount == "top":
         space.on_top(kit.rng, desk, monitor, face=0.0, back=True)
     put_things(space, kit, desk, ("lighting", "objects", "objects", "plant"), (0.6, 0.5, 0.3, 0.2))
@@ -279,27 +312,18 @@ def desk_group(space: RoomSpace, kit: Kit) -> Standing | None:
 
 
 def row(space: RoomSpace, kit: Kit, items: Sequence[Item], side: Side, *, front_m: float = AISLE_M) -> list[Standing]:
-    """Items shoulder to shoulder along a wall, as many as fit; the stretch is chosen for the longest run."""
-    best: list[Standing] = []
-    if not items:
-        return best
-    gap = 0.004
-    for reverse in (False, True) if kit.chance(0.5) else (True, False):
-        order = list(reversed(items)) if reverse else list(items)
-        total = sum(item.size_m[1] + gap for item in order)
-        start = space.free_start(side, total, max(item.size_m[0] for item in order), front_m)
-        if start is None:
+    """Items shoulder to shoulder along a wall, in this order or the other way round; none where not all fit."""
+    gap_m = 0.004
+    for order in (list(items), list(reversed(items))) if kit.chance(0.5) else (list(reversed(items)), list(items)):
+        at = space.row_start(order, side, front_m, gap_m) if order else None
+        if at is None:
             continue
-        at = start
+        stood = []
         for item in order:
             found = space.near_on_wall(item, side, at + item.size_m[1] / 2, front_m=front_m, slide_m=0.0)
-            if found:
-                best.append(found)
-            at += item.size_m[1] + gap
-        return best
-    return best
-
-
-def zone_of(rect: Rect, side: Side, length_m: float) -> Rect:
-    """The strip before a side of a rectangle."""
-    return rect.strip(side, rect.span(side), 0.0, length_m)
+            if found is not None:
+                stood.append(found)
+            at += item.size_m[1] + gap_m
+        if stood:
+            return stood
+    return []

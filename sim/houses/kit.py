@@ -17,11 +17,13 @@ T = TypeVar("T")
 class Kit:
     """Makes items for one home. What should look alike all over it (dining chairs, door handles) is made once."""
 
-    def __init__(self, rng: np.random.Generator, pool: Pool, clutter: float) -> None:
+    def __init__(self, rng: np.random.Generator, pool: Pool, clutter: float, home_rooms: frozenset[str]) -> None:
         self.rng = rng
         self.pool: Pool = pool
         self.clutter = clutter
         """0 bare, 1 full of things."""
+        self.home_rooms = home_rooms
+        """Kinds of rooms that the home has."""
 
     def make(self, category: str, *uses: str, **hints: Any) -> Item | None:
         """An item for the first of these uses that the pool has a style for, for any use when none is given.

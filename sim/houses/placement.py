@@ -19,7 +19,17 @@ from numpy.typing import NDArray
 from sim.houses.build import Placed
 from sim.houses.furniture.item import Item, Surface
 from sim.houses.furniture.workbench import bounds
-from sim.houses.geometry import INWARD_YAW_RAD, OPPOSITE, SIDES, Interval, Rect, Side, footprint, rotated_extent, subtract
+from sim.houses.geometry import (
+    INWARD_YAW_RAD,
+    OPPOSITE,
+    SIDES,
+    Interval,
+    Rect,
+    Side,
+    footprint,
+    rotated_extent,
+    subtract,
+)
 from sim.houses.openings import HALF_WALL_M, Opening, leaf_keep_out
 
 Along = Literal["any", "middle", "corner"]
@@ -127,21 +137,53 @@ class RoomSpace:
                     return standing
         return None
 
-    def in_middle(self, rng: np.random.Generator, item: Item, *, around_m: float, yaw_rad: float | None = None) -> Standing | None:
-        """Put an item near the room's middle with free floor all around it."""
-        yaw = yaw_rad if yaw_rad is not None else (0.0 if self.inner.depth_m > self.inner.width_m else math.pi / 2)
-        ex, ey = rotated_extent(item.size_m[0], item.size_m[1], yaw)
+    def in_middle(
+        self, rng: np.random.Generator, item: Item, seats: Sequence[tuple[float, float, float]], *, around_m: float
+    ) -> Standing | None:
+        """Put an item where most of its seats can be used, nearer the room's middle rather than not.
+
+        Args:
+            rng: decides between places.
+            item: floor item.
+            seats: x, y in the item's frame and the radius of the free floor wanted there.
+            around_m: how far from the walls it stays if it can.
+        """
+        best: tuple[int, Standing] | None = None
+        longer = 0.0 if self.inner.depth_m > self.inner.width_m else math.pi / 2
         cx, cy = self.inner.centre
-        spare_x = max(0.0, self.inner.width_m / 2 - ex / 2 - around_m)
-        spare_y = max(0.0, self.inner.depth_m / 2 - ey / 2 - around_m)
-        for n in range(12):
-            grow = n / 11
-            x = cx + float(rng.uniform(-1, 1)) * spare_x * grow
-            y = cy + float(rng.uniform(-1, 1)) * spare_y * grow
+        for n in range(24):
+            yaw = longer if n % 4 else longer - math.pi / 2
+            ex, ey = rotated_extent(item.size_m[0], item.size_m[1], yaw)
+            x = cx + float(rng.uniform(-1, 1)) * max(0.0, self.inner.width_m / 2 - ex / 2 - around_m) * min(1.0, n / 12)
+            y = cy + float(rng.uniform(-1, 1)) * max(0.0, self.inner.depth_m / 2 - ey / 2 - around_m) * min(1.0, n / 12)
             standing = Standing(Placed(item, x, y, 0.0, yaw), footprint(x, y, item.size_m[0], item.size_m[1], yaw))
-            if self.try_put(standing, [standing.rect.grown(around_m)], strict_zones=False):
-                return standing
-        return None
+            if not self._is_clear(standing.rect, 0.0, item.size_m[2], None):
+                continue
+            usable = sum(self._seat_free(standing, seat) for seat in seats)
+            if (best is None or usable > best[0]) and self._allows(standing):
+                best = (usable, standing)
+                if usable == len(seats):
+                    break
+        if best is None or best[0] < min(2, len(seats)) or not self.try_put(best[1], []):
+            return None
+        return best[1]
+
+    def _seat_free(self, host: Standing, seat: tuple[float, float, float]) -> bool:
+        """Whether the floor round a seat of something is free."""
+        c, s = math.cos(host.placed.yaw_rad), math.sin(host.placed.yaw_rad)
+        x, y = host.placed.x_m + c * seat[0] - s * seat[1], host.placed.y_m + s * seat[0] + c * seat[1]
+        spot = Rect(x - seat[2], y - seat[2], x + seat[2], y + seat[2])
+        return (
+            self.inner.contains(spot)
+            and self._is_clear(spot, 0.0, ROBOT_HEIGHT_M, None)
+            and not any(spot.overlaps(zone, 0.01) for _, zone in self._clear)
+        )
+
+    def _allows(self, standing: Standing) -> bool:
+        """Whether the robot still gets everywhere with something there."""
+        raster = self._taken.copy()
+        self._mark(raster, standing.rect)
+        return self._walkable(raster, [standing.rect])
 
     def at(self, item: Item, x_m: float, y_m: float, yaw_rad: float, zones: Sequence[Rect] = ()) -> Standing | None:
         """Put an item exactly there if it fits."""
@@ -150,7 +192,9 @@ class RoomSpace:
         )
         return standing if self.try_put(standing, zones) else None
 
-    def tucked(self, item: Item, host: Standing, x_m: float, y_m: float, yaw_rad: float, out_m: float = 0.3) -> Standing | None:
+    def tucked(
+        self, item: Item, host: Standing, x_m: float, y_m: float, yaw_rad: float, out_m: float = 0.3
+    ) -> Standing | None:
         """Put an item partly under `host` (a chair under a table), drawn back along its own -x until nothing touches."""
         c, s = math.cos(yaw_rad), math.sin(yaw_rad)
         host_boxes = geom_boxes(host.placed)
@@ -182,19 +226,33 @@ class RoomSpace:
                     return standing
         return None
 
-    def free_start(self, side: Side, length_m: float, depth_m: float, front_m: float) -> float | None:
-        """Where a row of this length and depth can begin along a side, a corner if there is one; None: nowhere."""
+    def row_start(self, items: Sequence[Item], side: Side, front_m: float, gap_m: float) -> float | None:
+        """Where a row of items can begin along a side, in a corner if it can be; None where it fits nowhere."""
+        length = sum(item.size_m[1] + gap_m for item in items)
         for lo, hi in sorted(self._stretches(side), key=lambda s: s[0] - s[1]):
-            room = hi - lo - length_m
-            if room < 0:
+            spare = hi - lo - length - 0.006
+            if spare < 0:
                 continue
-            for at in (lo + 0.003, hi - length_m - 0.003, 0.5 * (lo + hi - length_m)):
-                rect = self.inner.strip(side, (at, at + length_m), depth_m + WALL_GAP_M)
-                zone = self.inner.strip(side, (at, at + length_m), depth_m + front_m)
-                free = self._is_clear(rect, 0.0, 1.0, None) and not self._zone_blocked(zone)
-                if free and not any(rect.overlaps(other, 0.01) for _, other in self._clear):
-                    return at
+            steps = np.arange(0.0, spare, 0.1).tolist()
+            for shift in (0.0, spare, *steps[1:]):
+                if self._row_fits(items, side, lo + 0.003 + shift, front_m, gap_m):
+                    return lo + 0.003 + shift
         return None
+
+    def _row_fits(self, items: Sequence[Item], side: Side, start: float, front_m: float, gap_m: float) -> bool:
+        at = start
+        for item in items:
+            standing = self._stand(item, side, at + item.size_m[1] / 2, WALL_GAP_M)
+            zone = _ahead(standing.rect, side, front_m)
+            at += item.size_m[1] + gap_m
+            if (
+                self._blocks_window(side, standing.rect, item.size_m[2])
+                or not self._is_clear(standing.rect, 0.0, item.size_m[2], None)
+                or self._zone_blocked(zone)
+                or any(standing.rect.overlaps(other, 0.01) for _, other in self._clear)
+            ):
+                return False
+        return True
 
     def release(self, standing: Standing) -> None:
         """Give up the free zone of something, for what belongs in it (a table before a sofa, chairs at a table)."""
@@ -210,16 +268,14 @@ class RoomSpace:
         self.standing.append(Standing(Placed(item, x_m, y_m, 0.0, yaw_rad), rect))
         return True
 
-    def try_put(
-        self, standing: Standing, zones: Sequence[Rect], *, ignore: Rect | None = None, strict_zones: bool = True
-    ) -> bool:
+    def try_put(self, standing: Standing, zones: Sequence[Rect], *, ignore: Rect | None = None) -> bool:
         """Add a floor item if nothing is in its way, its zones are clear and the robot still gets everywhere."""
         item, rect = standing.placed.item, standing.rect
         if not self.inner.contains(rect, 0.002) or not self._is_clear(rect, 0.0, item.size_m[2], ignore):
             return False
         if any(rect.overlaps(zone, 0.01) for owner, zone in self._clear if owner != ignore):
             return False
-        if strict_zones and any(self._zone_blocked(zone) for zone in zones):
+        if any(self._zone_blocked(zone) for zone in zones):
             return False
         raster = self._taken.copy()
         self._mark(raster, rect)
@@ -242,10 +298,12 @@ class RoomSpace:
         along: Along = "any",
         at: float | None = None,
         margin_m: float = 0.05,
+        over_floor: bool = False,
     ) -> Standing | None:
         """Hang an item on a wall, its origin at `bottom_m` (the item's usual height when None).
 
-        `at` fixes the place along the wall (of the only side given); `margin_m` keeps others away.
+        `at` fixes the place along the wall (of the only side given); `margin_m` keeps others away; with `over_floor`
+        nothing may stand below it.
         """
         bottom = item.mount_height_m if bottom_m is None else bottom_m
         top = bottom + item.size_m[2]
@@ -260,7 +318,8 @@ class RoomSpace:
                 padded = self.inner.strip(side, (span[0] - margin_m, span[1] + margin_m), item.size_m[0] + 0.02)
                 if not self.inner.contains(rect, 0.002) or self._meets_hole(side, span, bottom, top):
                     continue
-                if not self._is_clear(padded, bottom - margin_m, top + margin_m, None, doorways=bottom < 2.0):
+                lowest = 0.0 if over_floor else bottom - margin_m
+                if not self._is_clear(padded, lowest, top + margin_m, None, doorways=bottom < 2.0):
                     continue
                 x, y = self._on_line(side, place, 0.0)
                 standing = Standing(Placed(item, x, y, bottom, INWARD_YAW_RAD[side]), rect, side)
@@ -289,7 +348,16 @@ class RoomSpace:
         self._add(Standing(Placed(item, x, y, bottom, INWARD_YAW_RAD[side]), rect, side), bottom)
         return True
 
-    def on_top(self, rng: np.random.Generator, host: Standing, item: Item, *, kind: str = "top", face: float | None = None, back: bool = False) -> bool:
+    def on_top(
+        self,
+        rng: np.random.Generator,
+        host: Standing,
+        item: Item,
+        *,
+        kind: str = "top",
+        face: float | None = None,
+        back: bool = False,
+    ) -> bool:
         """Put a small thing on one of the host's surfaces of this kind; False where there is no room left.
 
         Args:
@@ -360,7 +428,14 @@ class RoomSpace:
         return subtract(self.inner.span(side), holes, 0.05)
 
     def _positions(
-        self, rng: np.random.Generator, side: Side, width_m: float, along: Along, beside_m: float, *, hanging: bool = False
+        self,
+        rng: np.random.Generator,
+        side: Side,
+        width_m: float,
+        along: Along,
+        beside_m: float,
+        *,
+        hanging: bool = False,
     ) -> list[float]:
         """Places along a side for something of this width, the best first."""
         places: list[tuple[float, float]] = []
@@ -392,7 +467,10 @@ class RoomSpace:
     def _blocks_window(self, side: Side, rect: Rect, height_m: float) -> bool:
         lo, hi = rect.span(side)
         return any(
-            hole.kind == "window" and height_m > max(hole.bottom_m, LOW_M) + 0.05 and hi > hole.span[0] - 0.02 and lo < hole.span[1] + 0.02
+            hole.kind == "window"
+            and height_m > max(hole.bottom_m, LOW_M) + 0.05
+            and hi > hole.span[0] - 0.02
+            and lo < hole.span[1] + 0.02
             for hole in self._holes[side]
         )
 
@@ -459,7 +537,14 @@ class RoomSpace:
         return True
 
     def _spot(
-        self, rng: np.random.Generator, host: Standing, number: int, surface: Surface, item: Item, face: float | None, back: bool
+        self,
+        rng: np.random.Generator,
+        host: Standing,
+        number: int,
+        surface: Surface,
+        item: Item,
+        face: float | None,
+        back: bool,
     ) -> Standing | None:
         """A free place on a surface, in the host's frame first, then in the world."""
         key = (id(host.placed), number)

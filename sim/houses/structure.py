@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.houses.floorplan import FloorPlan
-from sim.houses.furniture.item import Geom, Item, Look, MeshShape
-from sim.houses.furniture.shapes import named_mesh
+from sim.houses.furniture.item import Geom, Item, Look
 from sim.houses.geometry import EPS_M, SIDES, Interval, Rect, Side, subtract
 from sim.houses.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening, outer_spans
 
@@ -25,8 +24,6 @@ CASING_M = (0.07, 0.014)
 """Width and thickness of the boards around a door."""
 SLAB_M = 0.1
 """Thickness of floors."""
-MESH_BOXES = 12
-"""Boxes in one mesh at most."""
 Box3 = tuple[float, float, float, float, float, float]
 """x0, x1, y0, y1, z0, z1."""
 
@@ -49,9 +46,7 @@ class Finish:
     sky: Look
 
 
-def build_structure(
-    plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: Finish
-) -> list[Item]:
+def build_structure(plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: Finish) -> list[Item]:
     """Everything that is part of the building; positions are the world's."""
     items = []
     rects = [room.rect for room in plan.rooms]
@@ -81,31 +76,18 @@ def oriented_box(box: Box3, look: Look, facing: Side | None = None, *, solid: bo
     if facing in ("north", "south"):  # local x, y, z = world x, z, -y
         return Geom("box", (float(half[0]), float(half[2]), float(half[1])), at, look, (math.pi / 2, 0.0, 0.0), solid)
     # local x, y, z = world y, z, x
-    return Geom("box", (float(half[1]), float(half[2]), float(half[0])), at, look, (math.pi / 2, math.pi / 2, 0.0), solid)
-
-
-def boxes_mesh(kind: str, boxes: Sequence[Box3]) -> MeshShape:
-    """Several boxes as one mesh, for things that are only seen."""
-    vertices, faces = [], []
-    for n, (x0, x1, y0, y1, z0, z1) in enumerate(boxes):
-        vertices += [(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)]
-        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
-            faces += [(8 * n + a, 8 * n + b, 8 * n + c), (8 * n + a, 8 * n + c, 8 * n + d)]
-    return named_mesh(kind, vertices, faces)
+    return Geom(
+        "box", (float(half[1]), float(half[2]), float(half[0])), at, look, (math.pi / 2, math.pi / 2, 0.0), solid
+    )
 
 
 def _item(category: str, style: str, geoms: Sequence[Geom]) -> Item:
     return Item(category, style, (0.0, 0.0, 0.0), tuple(geoms))
 
 
-def _mesh_geom(kind: str, boxes: Sequence[Box3], look: Look) -> Geom:
-    """A visual mesh of boxes given in world coordinates, its vertices about their common middle."""
-    array = np.array(boxes)
-    lo, hi = array[:, 0::2].min(axis=0), array[:, 1::2].max(axis=0)
-    middle = np.round(0.5 * (lo + hi), 4)
-    local = [tuple((np.array(box) - np.repeat(middle, 2)).tolist()) for box in boxes]
-    at = (float(middle[0]), float(middle[1]), float(middle[2]))
-    return Geom("mesh", (), at, look, solid=False, mesh=boxes_mesh(kind, local))
+def _seen_boxes(boxes: Sequence[Box3], look: Look) -> list[Geom]:
+    """Boxes that nothing touches."""
+    return [oriented_box(box, look, solid=False) for box in boxes]
 
 
 def _floor(rect: Rect, look: Look) -> Item:
@@ -137,8 +119,7 @@ def _room_walls(
             walls.append(_item("wall", "side", geoms))
         boards += _baseboards(rect, side, holes)
     if walls:
-        meshes = [_mesh_geom("baseboard", boards[n : n + MESH_BOXES], trim) for n in range(0, len(boards), MESH_BOXES)]
-        walls[0] = _item("wall", "side", [*walls[0].geoms, *meshes])
+        walls[0] = _item("wall", "side", [*walls[0].geoms, *_seen_boxes(boards, trim)])
     return walls
 
 
@@ -214,7 +195,7 @@ def _window(hole: Opening, finish: Finish) -> Item:
     frame = [_across(side, line, span, out - 0.06, out, b, t) for span, b, t in bars]
     frame.append(_across(side, line, (lo - 0.04, hi + 0.04), -HALF_WALL_M - 0.03, out, z0 - 0.025, z0))
     pane = _across(side, line, (lo, hi), out - 0.02, OUTER_WALL_M, z0, z1)
-    return _item("window", "pane", [oriented_box(pane, finish.sky, side), _mesh_geom("window", frame, finish.trim)])
+    return _item("window", "pane", [oriented_box(pane, finish.sky, side), *_seen_boxes(frame, finish.trim)])
 
 
 def _door(hole: Opening, finish: Finish) -> list[Item]:
@@ -228,9 +209,19 @@ def _door(hole: Opening, finish: Finish) -> list[Item]:
         near, far = sorted((face * HALF_WALL_M, face * (HALF_WALL_M + thick)))
         for a, b in ((lo + JAMB_M - wide, lo + JAMB_M - 0.008), (hi - JAMB_M + 0.008, hi - JAMB_M + wide)):
             boards.append(_across(side, line, (a, b), near, far, 0.0, top - JAMB_M + wide))
-        boards.append(_across(side, line, (lo + JAMB_M - 0.008, hi - JAMB_M + 0.008), near, far, top - JAMB_M + 0.008, top - JAMB_M + wide))
+        boards.append(
+            _across(
+                side,
+                line,
+                (lo + JAMB_M - 0.008, hi - JAMB_M + 0.008),
+                near,
+                far,
+                top - JAMB_M + 0.008,
+                top - JAMB_M + wide,
+            )
+        )
     geoms = [oriented_box(box, finish.door_frame) for box in jambs]
-    items = [_item("door", "frame", [*geoms, _mesh_geom("casing", boards, finish.door_frame)])]
+    items = [_item("door", "frame", [*geoms, *_seen_boxes(boards, finish.door_frame)])]
     if hole.kind == "entry":
         items.append(_closed_leaf(hole, finish))
     elif hole.leaf is not None:
@@ -248,7 +239,7 @@ def _leaf_geoms(width_m: float, high_m: float, finish: Finish) -> list[Geom]:
     at = width_m - 0.06
     handle = [(at - 0.012, at + 0.012, -half - 0.05, half + 0.05, 1.01, 1.03)]
     handle += [(at - 0.11, at + 0.012, s - 0.009, s + 0.009, 1.008, 1.032) for s in (-half - 0.05, half + 0.05)]
-    return [*geoms, _mesh_geom("handle", handle, finish.handle)]
+    return [*geoms, *_seen_boxes(handle, finish.handle)]
 
 
 def _closed_leaf(hole: Opening, finish: Finish) -> Item:
@@ -285,7 +276,9 @@ def turned_item(item: Item, x_m: float, y_m: float, yaw_rad: float) -> Item:
     for geom in item.geoms:
         px, py, pz = geom.pos_m
         at = (round(x_m + c * px - s * py, 4), round(y_m + s * px + c * py, 4), pz)
-        geoms.append(Geom(geom.shape, geom.size_m, at, geom.look, _turned_euler(geom.euler_rad, yaw_rad), geom.solid, geom.mesh))
+        geoms.append(
+            Geom(geom.shape, geom.size_m, at, geom.look, _turned_euler(geom.euler_rad, yaw_rad), geom.solid, geom.mesh)
+        )
     return Item(item.category, item.style, item.size_m, tuple(geoms))
 
 
