@@ -45,8 +45,8 @@ class Motion:
 
     @property
     def collided(self) -> bool:
-        """Whether a contact of the body ended the motion before its end."""
-        return self.ended != "reached" and any(contact.stopped for contact in self.contacts)
+        """Whether a contact of the body ended the motion before its end; one that arrived was stopped by none."""
+        return any(contact.stopped for contact in self.contacts)
 
 
 class Trapezoid:

@@ -28,6 +28,7 @@ XML = """
   <default><geom contype="4" conaffinity="4" margin="0.001"/></default>
   <worldbody>
     <geom name="floor_00" type="plane" size="5 5 1"/>
+    <body name="stool_00" pos="0 2 .2"><freejoint/><geom type="cylinder" size=".15 .2" mass="2"/></body>
     <body name="sofa_00" pos="2 0 0" euler="0 0 90">
       <geom type="box" size=".4 .8 .2" pos="0 0 .2"/>
       <body name="cushion_00" pos="0 .3 .5"><geom type="box" size=".2 .2 .1"/></body>
@@ -36,7 +37,6 @@ XML = """
     <body name="plant_00" pos="-2 0 0">
       <geom name="leaf" type="sphere" size=".4" pos="0 0 .5" contype="0" conaffinity="0"/>
     </body>
-    <body name="stool_00" pos="0 2 .2"><freejoint/><geom type="cylinder" size=".15 .2" mass="2"/></body>
     <geom name="artefact" type="box" size=".1 .1 .1" pos="-2 2 .1" group="3"/>
     <site name="room_living_00" type="box" size="5 5 1.25" pos="0 0 1.25"/>
   </worldbody>
@@ -156,6 +156,13 @@ def test_a_rug_is_no_storey():
     assert world.data.body("robot/base").xpos[2] == pytest.approx(0.01, abs=0.001)
 
 
+def test_a_start_on_a_platform_stands_on_it():
+    world = World(with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.025), half_m=(0.5, 0.5, 0.025)))
+    world.reset(ORIGIN)
+    assert world.data.body("robot/base").xpos[2] == pytest.approx(0.05, abs=0.001)
+    assert world.move(Action.TURN_LEFT).ended == "reached"
+
+
 @pytest.mark.parametrize(
     ("start", "name"),
     [(Pose(1.9, 0.0, 0.0), "wall_00"), (Pose(0.0, 0.95, 0.0), "table_00"), (Pose(-1.0, -0.8, 0.0), "chair_00")],
@@ -202,7 +209,7 @@ def test_nan_is_an_error_that_names_house_and_time_and_is_gone_after_reset():
     world = World(room())
     world.reset(ORIGIN)
     world.data.qvel[0] = np.nan
-    with pytest.raises(PhysicsError, match=r"House 'room' at .* s: "):
+    with pytest.raises(PhysicsError, match=r"House 'room' at .* s: Nan, Inf or huge value"):
         world.move(Action.MOVE_FORWARD)
     world.reset(ORIGIN)
     assert world.move(Action.MOVE_FORWARD).ended == "reached"

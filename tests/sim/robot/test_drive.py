@@ -61,6 +61,7 @@ def test_500_free_actions_are_exact_and_do_not_drift(base):
         turned = {FORWARD: 0.0, LEFT: TURN_RAD, RIGHT: -TURN_RAD}[action]
         heading += turned
         assert (motion.ended, motion.contacts, motion.collided) == ("reached", (), False)
+        assert motion.duration_s < (1.15 if action == FORWARD else 0.75)
         assert moved.x_m == pytest.approx(FORWARD_M if action == FORWARD else 0.0, abs=0.001)
         assert moved.y_m == pytest.approx(0.0, abs=0.001)
         assert math.degrees(wrap_angle(moved.yaw_rad - turned)) == pytest.approx(0.0, abs=0.2)
@@ -204,6 +205,14 @@ def test_wheels_that_spin_on_ice_are_blocked_without_a_collision():
         assert motion.ended == "blocked"
         assert not motion.collided
         assert motion.contacts == ()
+
+
+def test_a_blocked_turn_leaves_the_heading_reference_where_it_was():
+    world = world_with(open_floor(friction=0.0))
+    assert world.move(LEFT).ended == "blocked"
+    world.model.geom("floor_00").friction[0] = 1.0
+    world.move(LEFT)
+    assert math.degrees(world.pose.yaw_rad) == pytest.approx(30.0, abs=0.2)
 
 
 def test_on_a_slippery_floor_the_wheels_slip():
