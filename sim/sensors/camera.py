@@ -70,7 +70,7 @@ class Camera:
         self._gl = _make_gl_context(self.camera)
         self._gl.make_current()
         self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples, self.profile.quads)
-        # Numbers must not be blended at edges, and need no vertices inside a flat face: a buffer of their own is faster.
+        # Numbers must not be blended at edges and need no vertices inside a flat face, so they have their own buffer.
         self._number_context = _make_context(model, self.camera, self.profile, samples=0, quads=1)
         self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
@@ -132,6 +132,7 @@ class Camera:
         flags[:] = 0
         flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = 1
         flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = 1
+        mujoco.mjr_restoreBuffer(self._number_context)  # the bound frame buffer belongs to the last pass
         mujoco.mjr_render(self._rect, self._scene, self._number_context)
         depth = self._depth_buffer if "depth" in sensors else None
         mujoco.mjr_readPixels(self._color_buffer, depth, self._rect, self._number_context)
@@ -154,6 +155,7 @@ class Camera:
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = self.profile.reflections
         flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = self.profile.skybox
         flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
+        mujoco.mjr_restoreBuffer(self._color_context)
         mujoco.mjr_render(self._rect, self._scene, self._color_context)
         mujoco.mjr_readPixels(self._color_buffer, None, self._rect, self._color_context)
         return self._color_buffer[::-1].copy()

@@ -126,6 +126,18 @@ def test_the_good_profile_blends_no_numbers(clutter: tuple[Eye, Eye]) -> None:
     assert (fast["rgb"] != good["rgb"]).any()
 
 
+def test_the_good_profile_smooths_edges_whatever_was_drawn_before() -> None:
+    """Between two flat colours lie blended ones, also right after the pass that must not blend."""
+    house = with_box(room(8, 8), "sofa_00", centre_m=(2.5, 0.0, 0.5), half_m=(0.3, 0.3, 0.5), yaw_rad=0.3)
+    eyes = {name: Eye(house, profile=name) for name in ("fast", "good")}
+    shades = {}
+    for name, eye in eyes.items():
+        eye.model.light_active[:] = 0
+        rgb = eye.see(0, 0, 0.05, "rgb", "semantic")["rgb"]
+        shades[name] = len(np.unique(rgb.reshape(-1, 3), axis=0))
+    assert shades["good"] > shades["fast"]
+
+
 def test_dropping_one_camera_leaves_the_others_alone() -> None:
     keeper, dropped = Eye(cluttered_room(20)), Eye(cluttered_room(30))
     dropped.see(0, 0, 0, "rgb")
