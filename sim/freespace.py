@@ -17,7 +17,7 @@ import skfmm
 from numpy.typing import NDArray
 
 from sim.errors import HouseError
-from sim.geometry import UNBOUNDED_M, ConvexPolygon, geom_polytope, plan_polygon
+from sim.geometry import UNBOUNDED_M, ConvexPolygon, geom_polytope, geoms_between, plan_polygon
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels, collidable_geoms, geoms_of
@@ -79,6 +79,12 @@ class FreeSpace:
         if not (_covers(self._extent, here) and (self._ground is None or _covers(self._ground, here))):
             return False
         return self.clearance(x_m, y_m, at_most_m=self.radius_m) >= self.radius_m
+
+    def largest_part(self) -> NDArray[np.bool_]:
+        """(rows, cols) the largest connected part of the free space: the house as a robot in it knows it."""
+        _, parts, stats, _ = cv2.connectedComponentsWithStats(self.free.astype(np.uint8), connectivity=4)
+        areas = stats[1:, cv2.CC_STAT_AREA]
+        return np.asarray(parts) == 1 + int(areas.argmax()) if areas.size else np.zeros_like(self.free)
 
     def clearance(self, x_m: float, y_m: float, *, at_most_m: float = 1.0) -> float:
         """Metres from a place to the nearest obstacle in plan, at most `at_most_m`."""
@@ -185,7 +191,8 @@ def _polygons(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64], heights_m: tuple[float, float]
 ) -> list[ConvexPolygon]:
     """Plan projections of geoms between two heights, of those that reach there."""
-    polygons = (plan_polygon(geom_polytope(model, data, int(geom)), *heights_m) for geom in geoms)
+    near = geoms_between(model, data, geoms, *heights_m).tolist()
+    polygons = (plan_polygon(geom_polytope(model, data, geom), *heights_m) for geom in near)
     return [polygon for polygon in polygons if polygon is not None]
 
 

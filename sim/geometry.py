@@ -31,6 +31,8 @@ MIN_CROSSING_M = 0.001
 JOINT_M = 1e-6
 """How much a polygon grows against lines, so that none slips through the joint of two that meet."""
 _MIN_AREA_M2 = 1e-8
+_MIN_EDGE_M = 1e-7
+_CONVEX_SHARE = 0.995
 _GEOM = mujoco.mjtGeom
 
 
@@ -56,22 +58,26 @@ class ConvexPolygon:
         """The convex hull of points (n, 2); None when it has no area."""
         if len(points_m) < 3:
             return None
-        middle = points_m.mean(axis=0)
+        middle = points_m[0]
         hull = cv2.convexHull((points_m - middle).astype(np.float32))[:, 0].astype(np.float64)
-        ahead = np.roll(hull, -1, axis=0)
-        area_m2 = 0.5 * float(np.sum(hull[:, 0] * ahead[:, 1] - hull[:, 1] * ahead[:, 0]))
+        return cls.of_corners(hull + middle)
+
+    @classmethod
+    def of_corners(cls, corners_m: NDArray[np.float64]) -> ConvexPolygon | None:
+        """The polygon with these corners (k, 2), in order either way round; None when it has no area."""
+        along = np.concatenate((corners_m[1:], corners_m[:1])) - corners_m
+        about = corners_m - corners_m[0]
+        area_m2 = 0.5 * float(about[:, 0] @ along[:, 1] - about[:, 1] @ along[:, 0])
         if abs(area_m2) < _MIN_AREA_M2:
             return None
         if area_m2 < 0.0:
-            hull, ahead = hull[::-1], np.roll(hull[::-1], -1, axis=0)
-        along = ahead - hull
-        length = np.linalg.norm(along, axis=1)
-        kept = length > 1e-7
-        hull, along = hull[kept] + middle, along[kept] / length[kept, None]
-        normals = np.stack([along[:, 1], -along[:, 0]], axis=1)
-        low, high = hull.min(axis=0), hull.max(axis=0)
-        bounds = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
-        return cls(hull, normals, np.sum(normals * hull, axis=1), bounds)
+            return cls.of_corners(corners_m[::-1])
+        length = np.sqrt(np.einsum("ij,ij->i", along, along))
+        if length.min() <= _MIN_EDGE_M:
+            return cls.of_corners(corners_m[length > _MIN_EDGE_M])
+        normals = np.stack((along[:, 1] / length, -along[:, 0] / length), axis=1)
+        low, high = corners_m.min(axis=0).tolist(), corners_m.max(axis=0).tolist()
+        return cls(corners_m, normals, np.einsum("ij,ij->i", normals, corners_m), (*low, *high))
 
     def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) which of the points (n, 2) lie in the polygon or on its edge."""
@@ -136,6 +142,15 @@ def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rend
     return Polytope(vertices @ rotation.T + data.geom_xpos[geom], edges)
 
 
+def geoms_between(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64], low_m: float, high_m: float
+) -> NDArray[np.int64]:
+    """Those of the geoms whose bounding sphere reaches between two heights; planes always."""
+    z, radius = data.geom_xpos[geoms, 2], model.geom_rbound[geoms]
+    reaches = (z - radius <= high_m) & (z + radius >= low_m)
+    return geoms[reaches | (model.geom_type[geoms] == _GEOM.mjGEOM_PLANE)]
+
+
 def plan_polygon(body: Polytope, low_m: float = -math.inf, high_m: float = math.inf) -> ConvexPolygon | None:
     """What a convex body covers in plan between two heights (which may be equal); None: nothing."""
     z = body.vertices_m[:, 2]
@@ -159,6 +174,25 @@ def mesh_triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDA
     faces = model.mesh_face[start : start + int(model.mesh_facenum[mesh])]
     rotation = data.geom_xmat[geom].reshape(3, 3)
     return (_mesh_vertices(model, mesh) @ rotation.T + data.geom_xpos[geom])[faces]
+
+
+def mesh_is_convex(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether a mesh geom looks like the hull that it collides as: its volume is the hull's."""
+    mesh = int(model.geom_dataid[geom])
+    start = int(model.mesh_faceadr[mesh])
+    faces = model.mesh_face[start : start + int(model.mesh_facenum[mesh])]
+    return _is_convex(_mesh_vertices(model, mesh).tobytes(), faces.tobytes())
+
+
+@functools.lru_cache(maxsize=1024)
+def _is_convex(points: bytes, faces: bytes) -> bool:
+    vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
+    a, b, c = vertices[np.frombuffer(faces, dtype=np.int32).reshape(-1, 3)].transpose(1, 0, 2)
+    volume_m3 = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+    try:
+        return abs(volume_m3) >= _CONVEX_SHARE * float(ConvexHull(vertices).volume)
+    except QhullError:
+        return False
 
 
 def lines_blocked(

@@ -17,7 +17,15 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
 from sim.freespace import SAME_STOREY_M, FreeSpace
-from sim.geometry import ConvexPolygon, geom_polytope, lines_blocked, mesh_triangles, plan_polygon
+from sim.geometry import (
+    ConvexPolygon,
+    geom_polytope,
+    geoms_between,
+    lines_blocked,
+    mesh_is_convex,
+    mesh_triangles,
+    plan_polygon,
+)
 from sim.gl import mujoco
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
 from sim.interface import MPCAT40_ID, SUCCESS_DISTANCE_M, CameraModel
@@ -50,6 +58,8 @@ class Footprint:
     boundary_m: KDTree
     """Points (n, 2) on its boundary, `SAMPLE_M` apart or nearer."""
     bounds_m: tuple[float, float, float, float]
+    z_m: tuple[float, float]
+    """Its lowest and highest point."""
     floor_z_m: float
     """Height of the floor it stands on, hangs over or lies on."""
 
@@ -61,9 +71,32 @@ class Footprint:
     def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) which places (n, 2) are in it."""
         inside = np.zeros(len(xy_m), dtype=np.bool_)
-        for part in self.parts:
-            inside |= part.contains(xy_m)
+        candidates = np.flatnonzero(self.near(xy_m, 0.0))
+        for part in self.parts if candidates.size else ():
+            inside[candidates] |= part.contains(xy_m[candidates])
         return inside
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """What does not hang on the goal: the floors of the house, and what hides things on one storey."""
+
+    floors: tuple[_Floor, ...]
+    blockers: tuple[ConvexPolygon, ...]
+
+    @classmethod
+    def of(
+        cls,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        labels: Labels,
+        *,
+        floor_z_m: float = 0.0,
+        sight_height_m: float = SIGHT_HEIGHT_M,
+    ) -> Surroundings:
+        """The surroundings of one storey; kinematics of `data` must be computed."""
+        blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
+        return cls(_floors(model, data, labels), blockers)
 
 
 class GoalRegion:
@@ -77,20 +110,20 @@ class GoalRegion:
         goal: str,
         *,
         floor_z_m: float = 0.0,
-        sight_height_m: float = SIGHT_HEIGHT_M,
+        surroundings: Surroundings | None = None,
         reach_m: float = SUCCESS_DISTANCE_M,
     ) -> None:
         """Gather the footprints of a category; kinematics of `data` must be computed."""
         self.goal = goal
         self.reach_m = reach_m
-        floors = _floors(model, data, labels)
-        footprints = (footprint_of(model, data, instance, floors) for instance in labels.of_category(goal))
+        around = surroundings or Surroundings.of(model, data, labels, floor_z_m=floor_z_m)
+        self._blockers = around.blockers
+        footprints = (footprint_of(model, data, instance, around.floors) for instance in labels.of_category(goal))
         self.footprints = tuple(
             footprint
             for footprint in footprints
             if footprint is not None and abs(footprint.floor_z_m - floor_z_m) < SAME_STOREY_M
         )
-        self._blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m) if self.footprints else ()
 
     def succeeds(self, x_m: float, y_m: float) -> bool:
         """Whether a STOP at this place of the storey succeeds."""
@@ -102,7 +135,7 @@ class GoalRegion:
         for footprint in self.footprints:
             near = np.flatnonzero(~satisfied & footprint.near(xy_m, self.reach_m))
             if near.size:
-                satisfied[near] = self._reaches(footprint, xy_m[near])
+                satisfied[near] = self.reaches(footprint, xy_m[near])
         return satisfied
 
     def mask(self, space: FreeSpace) -> NDArray[np.bool_]:
@@ -115,11 +148,7 @@ class GoalRegion:
         mask[tuple(cells.T)] = self.satisfied(space.frame.to_metres(cells))
         return mask
 
-    def reachable_instances(self, places_m: NDArray[np.float64]) -> tuple[str, ...]:
-        """Names of the instances for which a STOP at some of the places (n, 2) succeeds."""
-        return tuple(fp.instance.name for fp in self.footprints if self._reaches(fp, places_m).any())
-
-    def _reaches(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+    def reaches(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) from which places some point of the footprint is within reach and in sight."""
         x0, y0, x1, y1 = footprint.bounds_m
         r = self.reach_m
@@ -129,7 +158,7 @@ class GoalRegion:
         reached = footprint.contains(xy_m)
         within = np.flatnonzero(~reached & np.isfinite(distance))
         reached[within] = ~lines_blocked(xy_m[within], points[nearest[within]], blockers)
-        for hidden in _chunks(within[~reached[within]]):
+        for hidden in _chunks(_not_shadowed(within[~reached[within]], xy_m, footprint.bounds_m, blockers)):
             place, point = np.nonzero(_distances(xy_m[hidden], points) <= r)
             seen = ~lines_blocked(xy_m[hidden][place], points[point], blockers)
             reached[hidden[place[seen]]] = True
@@ -147,10 +176,11 @@ def footprint_of(
         return None
     bounds = np.array([part.bounds_m for part in parts])
     low, high = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
-    bottom_m = min(float(geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2].min()) for geom in geoms)
-    floor_z_m = _floor_under(floors, 0.5 * (low + high), bottom_m)
+    z = np.concatenate([geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2] for geom in geoms])
+    z_m = (float(z.min()), float(z.max()))
+    floor_z_m = _floor_under(floors, 0.5 * (low + high), z_m[0])
     boundary = KDTree(_boundary_points(parts, low, high))
-    return Footprint(instance, parts, boundary, (*low.tolist(), *high.tolist()), floor_z_m)
+    return Footprint(instance, parts, boundary, (*low.tolist(), *high.tolist()), z_m, floor_z_m)
 
 
 def sight_blockers(
@@ -159,8 +189,8 @@ def sight_blockers(
     """Cross sections, at a height, of the rendered geoms that one cannot see through."""
     opaque = np.isin(labels.geom_category, [MPCAT40_ID[name] for name in SIGHT_BLOCKERS]) & rendered_geoms(model)
     sections: list[ConvexPolygon | None] = []
-    for geom in np.flatnonzero(opaque).tolist():
-        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH:
+    for geom in geoms_between(model, data, np.flatnonzero(opaque), height_m, height_m).tolist():
+        if _is_hollow(model, geom):
             sections += _mesh_section(mesh_triangles(model, data, geom), height_m)
         else:
             body = geom_polytope(model, data, geom, rendered=True)
@@ -171,7 +201,7 @@ def sight_blockers(
 def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
     """Convex pieces of a rendered geom's plan projection: the geom's own, or a hollow mesh's triangles."""
     whole = plan_polygon(geom_polytope(model, data, geom, rendered=True))
-    if whole is None or model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_MESH:
+    if whole is None or not _is_hollow(model, geom):
         return [whole] if whole is not None else []
     corners = mesh_triangles(model, data, geom)[..., :2]
     low = np.array(whole.bounds_m[:2])
@@ -179,8 +209,13 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
     missing = drawn & ~_raster(corners, low, whole.bounds_m[2:])
     if not _eroded(missing, 1).any():
         return [whole]
-    parts = (ConvexPolygon.around(corner) for corner in corners)
+    parts = (ConvexPolygon.of_corners(corner) for corner in corners)
     return [part for part in parts if part is not None]
+
+
+def _is_hollow(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether a geom shows less than its convex hull."""
+    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
 
 
 def _mesh_section(triangles_m: NDArray[np.float64], height_m: float) -> list[ConvexPolygon | None]:
@@ -203,11 +238,11 @@ def _mesh_section(triangles_m: NDArray[np.float64], height_m: float) -> list[Con
     return sections
 
 
-def _floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list[_Floor]:
+def _floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> tuple[_Floor, ...]:
     """All that carries wheels, on any storey."""
     geoms = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
     bodies = [geom_polytope(model, data, geom) for geom in geoms.tolist()]
-    return [_Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies]
+    return tuple(_Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies)
 
 
 def _floor_under(floors: Sequence[_Floor], xy_m: NDArray[np.float64], bottom_m: float) -> float:
@@ -255,6 +290,27 @@ def _raster(
 def _eroded(image: NDArray[np.bool_], radius_px: int) -> NDArray[np.bool_]:
     kernel = np.ones((2 * radius_px + 1, 2 * radius_px + 1), dtype=np.uint8)
     return cv2.erode(image.astype(np.uint8), kernel, borderValue=0).astype(np.bool_)
+
+
+def _not_shadowed(
+    places: NDArray[np.int64],
+    xy_m: NDArray[np.float64],
+    bounds_m: tuple[float, float, float, float],
+    blockers: Sequence[ConvexPolygon],
+) -> NDArray[np.int64]:
+    """Those of the places, indices of points (n, 2), from which no single blocker hides a whole rectangle.
+
+    What a convex thing hides from one place is convex, so a rectangle is hidden when its four corners are.
+    """
+    x0, y0, x1, y1 = bounds_m
+    for blocker in blockers:
+        shadowed = np.ones(len(places), dtype=np.bool_)
+        for corner in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
+            lit = np.flatnonzero(shadowed)
+            ends = np.broadcast_to(np.array(corner), (len(lit), 2))
+            shadowed[lit] = lines_blocked(xy_m[places[lit]], ends, (blocker,))
+        places = places[~shadowed]
+    return places
 
 
 def _overlap(a: Sequence[float], b: Sequence[float]) -> bool:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sim.errors import EpisodeError
 from sim.freespace import FreeSpace
 from sim.gl import mujoco
-from sim.goals import GoalRegion
+from sim.goals import GoalRegion, Surroundings
 from sim.interface import GOAL_CATEGORIES
 from sim.world import World
 
@@ -36,6 +36,7 @@ class GroundTruth:
         self._at_rest = mujoco.MjData(world.model)
         mujoco.mj_kinematics(world.model, self._at_rest)
         self._spaces: dict[float, FreeSpace] = {}
+        self._surroundings: dict[float, Surroundings] = {}
         self._targets: dict[tuple[str, float], Target] = {}
 
     def space(self, floor_z_m: float = 0.0) -> FreeSpace:
@@ -54,7 +55,7 @@ class GroundTruth:
             EpisodeError: there is no such goal category, or the storey has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
-            space, region = self.space(floor_z_m), self._region(goal, floor_z_m)
+            space, region = self.space(floor_z_m), self._region(goal, floor_z_m, self._at_rest)
             reached = region.mask(space)
             self._targets[goal, floor_z_m] = Target(region, reached, space.geodesic(reached))
         return self._targets[goal, floor_z_m]
@@ -67,15 +68,19 @@ class GroundTruth:
         """Whether a STOP at this place succeeds with things where they now are in the world."""
         region = self.target(goal, floor_z_m).region
         if self._may_have_moved(goal):
-            world = self.world
-            region = GoalRegion(world.model, world.data, world.labels, goal, floor_z_m=floor_z_m)
+            region = self._region(goal, floor_z_m, self.world.data)
         return region.succeeds(x_m, y_m)
 
-    def _region(self, goal: str, floor_z_m: float) -> GoalRegion:
-        world = self.world
+    def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
-        region = GoalRegion(world.model, self._at_rest, world.labels, goal, floor_z_m=floor_z_m)
+        world = self.world
+        if floor_z_m not in self._surroundings:
+            self._surroundings[floor_z_m] = Surroundings.of(
+                world.model, self._at_rest, world.labels, floor_z_m=floor_z_m
+            )
+        around = self._surroundings[floor_z_m]
+        region = GoalRegion(world.model, data, world.labels, goal, floor_z_m=floor_z_m, surroundings=around)
         if not region.footprints:
             where = "" if not world.labels.of_category(goal) else f" on the storey at z = {floor_z_m:.2f} m"
             raise EpisodeError(

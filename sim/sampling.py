@@ -61,7 +61,7 @@ def sample_episode(
 
 
 def draw_start(world: World, task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: float = 0.0) -> Pose:
-    """A pose, uniform over the free space from which there is a way to a goal, and a long enough one.
+    """A pose, uniform over the largest connected part of the free space that is far enough from the goal.
 
     In a house too small for `MIN_DISTANCE_M` the farther half of what there is counts as far enough.
 
@@ -69,7 +69,8 @@ def draw_start(world: World, task: Task, goal: str, rng: np.random.Generator, *,
         EpisodeError: the goal is not in the house, or there is no place to start from.
     """
     space = task.truth.space(floor_z_m)
-    cells = np.argwhere(far_enough(task.truth.target(goal, floor_z_m).distance_m))
+    distance_m = task.truth.target(goal, floor_z_m).distance_m
+    cells = np.argwhere(far_enough(np.where(space.largest_part(), distance_m, np.inf)))
     for _ in range(MAX_TRIES if len(cells) else 0):
         x_m, y_m = (
             space.frame.to_metres(cells[rng.integers(len(cells))]) + rng.uniform(-0.5, 0.5, 2) * space.frame.cell_m

@@ -52,7 +52,7 @@ class Task:
             raise ConfigError(f"max_steps must be at least 1, got {max_steps}.")
         self.truth = GroundTruth(world)
         self.max_steps = max_steps
-        self._world = world
+        self.world = world
         self._record: _Record | None = None
 
     def begin(self, goal: str, start: Pose) -> None:
@@ -81,7 +81,7 @@ class Task:
         record = self._running
         if record.end_reason is not None:
             raise EpisodeError(f"The episode has ended ({record.end_reason}): begin another before the next action.")
-        pose = self._world.pose
+        pose = self.world.pose
         record.positions_m.append((pose.x_m, pose.y_m))
         record.path_length_m += motion.displacement_m
         record.collisions += motion.collided
@@ -141,7 +141,7 @@ class Task:
     def no_way(self, goal: str, start: Pose) -> EpisodeError:
         """The error that says that a goal cannot be reached from a start."""
         return EpisodeError(
-            f"House '{self._world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
+            f"House '{self.world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
             f"where '{goal}' would count as found."
         )
 
@@ -171,7 +171,7 @@ class Task:
         return self._record
 
     def _distance_now(self) -> float | None:
-        pose, record = self._world.pose, self._running
+        pose, record = self.world.pose, self._running
         if record.success:
             return 0.0
         if abs(pose.floor_z_m - record.start.floor_z_m) >= SAME_STOREY_M:
