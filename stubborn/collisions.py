@@ -76,3 +76,4 @@ def mark_visited(
     for layer, radius_m in ((navmap.visited, robot_radius_m), (navmap.trail, config.trail_radius_m)):
         index, inside = cells_near_segment(navmap.frame, start, end, radius_m)
         layer[index] |= inside
+        navmap.grow_known(*index)

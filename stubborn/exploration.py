@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.interface import ConfigError
-from stubborn.grid import GridFrame, PlanarPose
+from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
 from stubborn.navmap import NavMap
 from stubborn.planning import Bumps, FreeSpace, Plan, Planner
 
@@ -76,38 +75,35 @@ class CornerExplorer:
 
     def route(self, view: NavMap, pose: PlanarPose) -> Route | None:
         """The way to the corner, to the next feasible one, or to the nearest place to it; None when walled in."""
-        free_spaces = [self.planner.free_space(view, pose, bumps) for bumps in self._maps]
-        for free in free_spaces:
+        for bumps in self._maps:
+            free = self.planner.free_space(view, pose, bumps)
             for turn in range(4):
                 corner = (self.corner + turn) % 4
                 plan = self._plan_to_corner(free, corner, pose)
                 if plan is not None:
                     self.corner = corner
                     return Route(plan, free)
-        return self._nearest_place(free_spaces[0], pose)
+        return self._nearest_place(self.planner.free_space(view, pose, self._maps[0]), pose)
 
     def _plan_to_corner(self, free: FreeSpace, corner: int, pose: PlanarPose) -> Plan | None:
         """The way to a corner, None when it is infeasible."""
-        x_m, y_m = corner_xy_m(free.frame, corner, self.config.inset)
-        plan = self.planner.plan(free, self._gap_m(free.frame, x_m, y_m) <= self.config.corner_radius_m, pose)
-        return plan if plan is not None and plan.length_m <= self.config.farthest_way_m else None
+        xy_m = corner_xy_m(free.frame, corner, self.config.inset)
+        goal = np.zeros(free.frame.shape, np.bool_)
+        index, inside = cells_near_segment(free.frame, xy_m, xy_m, self.config.corner_radius_m)
+        goal[index] = inside
+        return self.planner.plan(free, goal, pose, farthest_m=self.config.farthest_way_m)
 
     def _nearest_place(self, free: FreeSpace, pose: PlanarPose) -> Route | None:
         """The way to the reachable cell nearest the corner; on arrival the turn comes to the next corner."""
+        cell_x_m, cell_y_m = free.frame.mesh()
         for _ in range(4):
             x_m, y_m = corner_xy_m(free.frame, self.corner, self.config.inset)
-            gap_m = np.where(free.reachable, self._gap_m(free.frame, x_m, y_m), np.inf)
-            goal = gap_m == gap_m.min()
-            plan = self.planner.plan(free, goal, pose)
+            gap_m = np.where(free.reachable, np.hypot(cell_x_m - x_m, cell_y_m - y_m), np.inf)
+            plan = self.planner.plan(free, gap_m == gap_m.min(), pose)
             if plan is not None and plan.length_m > self.config.arrived_m:
                 return Route(plan, free)
             self.corner = (self.corner + 1) % 4
         return None
-
-    @staticmethod
-    def _gap_m(frame: GridFrame, x_m: float, y_m: float) -> NDArray[np.float64]:
-        cell_x_m, cell_y_m = frame.mesh()
-        return np.hypot(cell_x_m - x_m, cell_y_m - y_m)
 
 
 def nearest_corner(heading_rad: float) -> int:

@@ -61,13 +61,17 @@ class GroundPoints:
 class Rays:
     """The fixed part of the projection: where every `stride_px`-th pixel looks, from pixel `first_px` on, each way."""
 
-    def __init__(self, camera: CameraModel, first_px: int, stride_px: int) -> None:
+    def __init__(self, camera: CameraModel, first_px: int, stride_px: int, top_m: float = math.inf) -> None:
+        """Rows of the image that cannot see anything below `top_m` are left out."""
         self.camera = camera
-        self.pick = (slice(first_px, None, stride_px), slice(first_px, None, stride_px))
         u_px = np.arange(first_px, camera.width_px, stride_px)
         v_px = np.arange(first_px, camera.height_px, stride_px)
         self.left = ((0.5 * camera.width_px - (u_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
-        self.up = ((0.5 * camera.height_px - (v_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+        up = ((0.5 * camera.height_px - (v_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+        lowest_m = camera.height_m + np.minimum(up * camera.min_depth_m, up * camera.max_depth_m)
+        skipped = int(np.count_nonzero(lowest_m > top_m))  # rows run from top to bottom
+        self.up = up[skipped:]
+        self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
 
     def project(self, depth: NDArray[np.float32], camera_pose: PlanarPose, window: Window) -> GroundPoints:
         """Cells of `window` and heights of the points of a full-size depth image, (height_px, width_px) metres.
@@ -122,7 +126,9 @@ class Mapper:
         self.camera_forward_m = robot.camera_forward_m
         self.config = config
         self._obstacle_top_m = top_m
-        self._obstacle_rays = Rays(camera, config.obstacle_stride_px // 2, config.obstacle_stride_px)
+        stride_px = config.obstacle_stride_px
+        used_top_m = max(top_m, camera.height_m + config.eye_level_halfwidth_m)
+        self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
         self._score_rays: dict[int, Rays] = {}
 
     def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> None:
@@ -147,6 +153,9 @@ class Mapper:
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
         points = rays.project(depth, camera_pose, window)
+        if points.rows.size == 0:
+            return NOTHING_SIGHTED
+        navmap.grow_known(_span(points.rows, window.rows.start), _span(points.cols, window.cols.start))
         low = points.height_m <= self.config.score_max_height_m
         flat = points.rows[low] * np.int32(window.frame.shape[1]) + points.cols[low]
         target = scores.target[score_pick][points.valid][low]
@@ -172,18 +181,20 @@ class Mapper:
         shape = view.frame.shape
         in_view = np.zeros(shape, np.bool_)
         in_view.reshape(-1)[flat] = True
-        frame_target = np.zeros(shape, np.float32)
+        view.frames_in_view += in_view
         frame_other = np.zeros(shape, np.float32)
-        hit = target > 0
-        np.maximum.at(frame_target.reshape(-1), flat[hit], target[hit])
         np.maximum.at(frame_other.reshape(-1), flat, other)
+        np.maximum(view.other_max, frame_other, out=view.other_max)
+        hit = target > 0
+        if not hit.any():
+            return
+        frame_target = np.zeros(shape, np.float32)
+        np.maximum.at(frame_target.reshape(-1), flat[hit], target[hit])
         threshold = self.config.candidate_score
         newly_found = (frame_target > threshold) & (view.score_max <= threshold)
         view.found_step[newly_found] = step
-        view.frames_in_view += in_view
         view.score_sum += frame_target
         np.maximum(view.score_max, frame_target, out=view.score_max)
-        np.maximum(view.other_max, frame_other, out=view.other_max)
 
     def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
         x_m, y_m = pose.ahead(self.camera_forward_m)
@@ -214,3 +225,7 @@ def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
     """Cells of a square around the camera that holds every point nearer than the camera's range."""
     farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
     return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
+
+
+def _span(indices: NDArray[np.int32], offset: int) -> slice:
+    return slice(int(indices.min()) + offset, int(indices.max()) + offset + 1)

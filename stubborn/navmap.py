@@ -44,6 +44,8 @@ class NavMap:
     """True: verification refused a candidate here; it never counts again in this episode."""
     set_aside: NDArray[np.bool_]
     """True: a candidate here could not be reached; it waits until the map has grown."""
+    known: tuple[slice, slice] | None = None
+    """Rows and columns of a rectangle that holds all that was in view or walked on; None: nothing yet."""
 
     @classmethod
     def empty(cls, frame: GridFrame) -> NavMap:
@@ -71,17 +73,22 @@ class NavMap:
 
     def view(self, window: Window) -> NavMap:
         """The part of the map in a window; its layers share memory with this map's."""
-        layers = {f.name: getattr(self, f.name)[window.index] for f in fields(self) if f.name != "frame"}
+        layers = {f.name: getattr(self, f.name)[window.index] for f in fields(self) if f.name not in ("frame", "known")}
         return NavMap(frame=window.frame, **layers)
 
+    def grow_known(self, rows: slice, cols: slice) -> None:
+        """Note that something became known inside this rectangle of cells."""
+        if self.known is not None:
+            rows, cols = (
+                slice(min(old.start, new.start), max(old.stop, new.stop))
+                for old, new in zip(self.known, (rows, cols), strict=True)
+            )
+        self.known = rows, cols
+
     def known_window(self, margin_cells: int) -> Window:
-        """The smallest rectangle that holds all that was ever in view or walked on, with a margin."""
-        known = (self.frames_in_view > 0) | self.trail
-        rows, cols = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
-        if rows.size == 0:
-            middle = self.frame.centres(self.frame.shape[0] // 2, self.frame.shape[1] // 2)
-            return self.frame.window_at(float(middle[0]), float(middle[1]), 2 * margin_cells + 1)
-        return self.frame.part(
-            slice(max(int(rows[0]) - margin_cells, 0), int(rows[-1]) + margin_cells + 1),
-            slice(max(int(cols[0]) - margin_cells, 0), int(cols[-1]) + margin_cells + 1),
+        """What is known with a margin around it; the middle of the map when nothing is."""
+        middle = tuple(slice(n // 2, n // 2 + 1) for n in self.frame.shape)
+        rows, cols = (
+            slice(max(known.start - margin_cells, 0), known.stop + margin_cells) for known in self.known or middle
         )
+        return self.frame.part(rows, cols)

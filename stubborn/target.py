@@ -46,6 +46,8 @@ class TargetConfig:
     """A candidate first found later is not verified: no time is left to look elsewhere."""
     retry_after_steps: int = 15
     """A candidate that could not be reached is tried again after so many steps of exploring."""
+    margin_cells: int = 40
+    """Ground around the known part of the map on which ways to a far candidate may run."""
     target_edge_m: float = 0.08
     """A wall this near the candidate cell is what the object hangs on, not what hides it."""
 
@@ -123,9 +125,9 @@ class TargetSeeker:
 
     def approach(self, navmap: NavMap, window: Window, pose: PlanarPose, step: int) -> Approach | None:
         """The way to the nearest stand; None when there is no candidate or none can be reached now."""
-        if step >= self._retry_step and navmap.set_aside.any():
-            navmap.set_aside[:] = False
-        whole = navmap.known_window(margin_cells=40)
+        whole = navmap.known_window(margin_cells=self.config.margin_cells)
+        if step >= self._retry_step:
+            navmap.view(whole).set_aside[:] = False
         if not self.candidates(navmap.view(whole)).any():
             return None
         for part in (window, whole):
@@ -142,7 +144,7 @@ class TargetSeeker:
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verify the candidate at a map cell; a rejected one never counts again in this episode."""
-        whole = navmap.known_window(margin_cells=40)
+        whole = navmap.known_window(margin_cells=self.config.margin_cells)
         view = navmap.view(whole)
         row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
         instance = connected(view.score_max > self.config.candidate_score, row, col, connectivity=8)
@@ -169,8 +171,7 @@ class TargetSeeker:
         cell = int(nearest_row[here]), int(nearest_col[here])
         x_m, y_m = view.frame.centres(*cell)
         bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
-        free_spaces = [self.planner.free_space(view, pose, bumps) for bumps in self._maps]
-        for free, stands in self._stands(view, free_spaces, gap_m, (nearest_row, nearest_col), late=late):
+        for free, stands in self._stands(view, pose, gap_m, (nearest_row, nearest_col), late=late):
             if stands[here]:
                 return Approach(None, bearing_rad, cell)
             plan = self.planner.plan(free, stands, pose)
@@ -181,24 +182,28 @@ class TargetSeeker:
     def _stands(
         self,
         view: NavMap,
-        free_spaces: list[FreeSpace],
+        pose: PlanarPose,
         gap_m: NDArray[np.float32],
         ends: Cells,
         *,
         late: bool,
     ) -> Iterator[tuple[FreeSpace, NDArray[np.bool_]]]:
         """Reachable cells to stop on, from the best kind to the last resort."""
+        edge_cells = self.config.target_edge_m / view.frame.cell_m
+        rows, cols = np.nonzero(gap_m <= self.config.far_stand_m)
+        seen = ends[0][rows, cols], ends[1][rows, cols]
+        in_sight = np.zeros_like(view.rejected)
+        in_sight[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), seen, edge_cells)
+        free_spaces: dict[Bumps, FreeSpace] = {}
         for within_m in (self.config.stand_m, self.config.far_stand_m):
-            for free in free_spaces:
-                stands = free.reachable & (gap_m <= within_m)
-                rows, cols = np.nonzero(stands)
-                seen = ends[0][rows, cols], ends[1][rows, cols]
-                edge_cells = self.config.target_edge_m / view.frame.cell_m
-                stands[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), seen, edge_cells)
+            for bumps in self._maps:
+                if bumps not in free_spaces:
+                    free_spaces[bumps] = self.planner.free_space(view, pose, bumps)
+                stands = free_spaces[bumps].reachable & in_sight & (gap_m <= within_m)
                 if stands.any():
-                    yield free, stands
+                    yield free_spaces[bumps], stands
         if late:
-            free = free_spaces[-1]
+            free = free_spaces[self._maps[-1]]
             reach_m = np.where(free.reachable, gap_m, np.inf)
             if reach_m.min() <= self.config.last_resort_m:
                 yield free, reach_m <= reach_m.min() + view.frame.cell_m

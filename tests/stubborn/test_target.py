@@ -40,6 +40,7 @@ def known(text: str) -> tuple[NavMap, PlanarPose]:
     """A drawn map on which everything has been in view once."""
     navmap, pose = map_of(text)
     navmap.frames_in_view[:] = 1
+    navmap.grow_known(*(slice(0, n) for n in navmap.frame.shape))
     return navmap, pose
 
 
@@ -239,9 +240,10 @@ def test_nearest_cell_and_distance_agree_with_brute_force():
             assert math.hypot(row - rows[row, col], col - cols[row, col]) <= min(gaps) * 1.05 + 1e-6
 
 
-def test_the_known_window_holds_all_that_was_seen():
+def test_the_known_window_holds_all_that_was_seen_and_a_margin():
     navmap = NavMap.empty(GridFrame.around_start(101))
     assert navmap.known_window(5).frame.shape == (11, 11)
-    navmap.frames_in_view[20, 30] = navmap.frames_in_view[60, 90] = 1
+    navmap.grow_known(slice(20, 25), slice(30, 31))
+    navmap.grow_known(slice(60, 61), slice(28, 91))
     window = navmap.known_window(5)
-    assert (window.rows, window.cols) == (slice(15, 66), slice(25, 96))
+    assert (window.rows, window.cols) == (slice(15, 66), slice(23, 96))
