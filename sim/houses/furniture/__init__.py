@@ -7,25 +7,70 @@ from typing import Any
 import numpy as np
 
 from sim.houses.furniture import (
-    bathroom,
+    appliances,
+    armchairs,
+    baths,
     beds,
+    cabinets,
     chairs,
-    decor,
-    fittings,
+    chests,
+    cloths,
+    counters,
+    cushions,
     gym,
-    kitchen,
+    hearths,
+    lamps,
+    low_tables,
+    objects,
+    office_chairs,
+    pictures,
+    plants,
+    screens,
     seats,
+    shelves,
+    sinks,
     sofas,
-    soft,
-    storage,
+    stools,
+    structure,
     tables,
+    toilets,
+    windows,
 )
 from sim.houses.furniture.catalogue import HINTS, Style
 from sim.houses.furniture.item import Item, Pool
 from sim.houses.furniture.workbench import Workbench
 from sim.interface import ConfigError
 
-_MODULES = (chairs, seats, sofas, tables, beds, storage, kitchen, bathroom, soft, decor, gym, fittings)
+_MODULES = (
+    appliances,
+    armchairs,
+    baths,
+    beds,
+    cabinets,
+    chairs,
+    chests,
+    cloths,
+    counters,
+    cushions,
+    gym,
+    hearths,
+    lamps,
+    low_tables,
+    objects,
+    office_chairs,
+    pictures,
+    plants,
+    screens,
+    seats,
+    shelves,
+    sinks,
+    sofas,
+    stools,
+    structure,
+    tables,
+    toilets,
+    windows,
+)
 
 
 def _catalogue() -> dict[str, dict[str, Style]]:

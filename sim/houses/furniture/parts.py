@@ -14,11 +14,6 @@ GAP_M = 0.004
 Handle = Literal["bar", "knob", "cup", "none"]
 
 
-def carcass(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
-    """The body of a cupboard; its fronts stand before x[1]."""
-    w.box(x, y, z, look)
-
-
 def doors(
     w: Workbench,
     x: float,
@@ -96,3 +91,33 @@ def tap(w: Workbench, at: tuple[float, float, float], reach: float, high: float,
     w.rod((x, y, z), (x, y, z + high), 0.014, look, solid=False)
     w.rod((x, y, z + high), (x + reach, y, z + high - 0.02), 0.010, look, solid=False, round_ends=True)
     w.bar((x, y + 0.004, z + high), (x, y + 0.06, z + high + 0.02), 0.014, 0.01, look, solid=False)
+
+
+def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tuple[Range, Range]:
+    """A rectangular top that things stand on; its x and y ranges."""
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    w.box(x, y, z, look)
+    w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x, y
+
+
+def round_top(w: Workbench, radius: float, z: Range, look: Look) -> None:
+    """A round top that things stand on."""
+    w.cylinder((0.0, 0.0), z, radius, look)
+    half = 0.65 * radius
+    w.top((-half, half), (-half, half), z[1])
+
+
+def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot: float = 0.0) -> tuple[float, Range]:
+    """A closed body from z[0] to z[1] that things stand on; its front plane and y range."""
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    w.box(x, y, z, look)
+    if foot:
+        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (z[0] - foot, z[0]), w.look("dark"))
+    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x[1], y
+
+
+def body(w: Workbench) -> Look:
+    """Painted or plain wood."""
+    return w.look("lacquer") if w.chance(0.45) else w.look("wood")
