@@ -1,7 +1,7 @@
 """Pictures to look at: a cut-away top view and robot-height views of houses, and a sheet of all furniture styles.
 
-    python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
-    python tools/gallery.py --sheet --pool heldout --out runs/gallery
+python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
+python tools/gallery.py --sheet --pool heldout --out runs/gallery
 """
 
 from __future__ import annotations
@@ -124,7 +124,9 @@ def _portrait(item: Item) -> Picture:
     z = {"floor": 0.0, "top": 0.0, "wall": 0.05, "ceiling": item.size_m[2]}[item.mount]
     builder.add(Placed(item, 0.0, 0.0, z))
     ground = Look((0.8, 0.8, 0.78, 1.0))
-    builder.add(Placed(Item("floor", "ground", (6, 6, 0), (Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), ground),))))
+    builder.add(
+        Placed(Item("floor", "ground", (6, 6, 0), (Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), ground),)))
+    )
     builder.add_lamp(Lamp((2.0, 1.0, 3.0), (0.55, 0.55, 0.53), (-0.6, -0.35, -0.9)))
     builder.add_lamp(Lamp((2.0, -1.0, 2.0), (0.2, 0.2, 0.22), (-0.5, 0.8, -0.3)))
     _add_backdrop(builder.spec)
@@ -155,7 +157,9 @@ def _viewpoint(
         eye = np.array([x, y, CameraModel().height_m])
         mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
         with np.errstate(divide="ignore"):
-            leave = np.min((np.array([hx, hy]) - np.sign(rays[:, :2]) * (np.array([x - cx, y - cy]))) / np.abs(rays[:, :2]), axis=1)
+            leave = np.min(
+                (np.array([hx, hy]) - np.sign(rays[:, :2]) * (np.array([x - cx, y - cy]))) / np.abs(rays[:, :2]), axis=1
+            )
         inside = np.minimum(np.where(far < 0, 10.0, far), leave + 0.3)
         for i in range(0, len(fan), 3):  # nine rays across the field of view
             view = inside[np.arange(i - 4, i + 5) % len(fan)]

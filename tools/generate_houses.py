@@ -73,7 +73,7 @@ def main(args: Args) -> int:
     return failed
 
 
-def _jobs(args: Args):  # noqa: ANN202
+def _jobs(args: Args):
     if args.split is not None:
         if args.split not in SPLITS:
             raise ConfigError(f"No split '{args.split}'. There is: {', '.join(SPLITS)}.")

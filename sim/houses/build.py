@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape
-from sim.houses.furniture.shapes import named_mesh
+from sim.houses.furniture.shapes import MAX_VERTICES, named_mesh
 from sim.houses.furniture.workbench import matrix_from_euler
 from sim.houses.geometry import Rect
 from sim.houses.materials import texture_file, texture_mapping
@@ -21,8 +22,10 @@ TEXTURE_DIR = "../textures"
 """Where a house file finds its textures, relative to itself."""
 AMBIENT, HEADLIGHT = 0.36, 0.12
 """Light from everywhere, and from the camera: without some of both, walls that no lamp faces look black."""
-MESH_BOXES = 12
-"""Boxes joined into one mesh at most."""
+REPEATED = frozenset(("lighting",))
+"""Categories whose items a home has many times over, so that their meshes are written once."""
+SLAT_HALF_M = 0.035
+"""Narrower visual boxes lose their texture when they are joined with their like."""
 _SEEN = "seen"
 """Default class of geoms that nothing touches."""
 _SHAPES = {
@@ -136,7 +139,7 @@ class HouseBuilder:
     def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
         body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
-        for geom in merged(item.geoms):
+        for geom in merged(item.geoms, rounds=item.category in REPEATED):
             self._add_geom(body, geom)
         for child in item.children:
             self._add_child(body, child)
@@ -191,32 +194,66 @@ class HouseBuilder:
         return mesh.name
 
 
-def merged(geoms: Sequence[Geom]) -> list[Geom]:
-    """The same geoms, but plain boxes of one look that are only seen joined into one mesh: fewer things to draw."""
+def merged(geoms: Sequence[Geom], *, rounds: bool = False) -> list[Geom]:
+    """The same geoms, but those of one look that are only seen joined into one mesh: fewer things to draw.
+
+    A mesh shows no texture, so only plain geoms and slats too narrow to show their grain are joined; cylinders,
+    whose meshes make long XML, only on request.
+    """
     kept: list[Geom] = []
-    boxes: dict[Look, list[Geom]] = {}
+    groups: dict[Look, list[Geom]] = {}
     for geom in geoms:
-        if geom.shape == "box" and not geom.solid and geom.look.texture is None:
-            boxes.setdefault(geom.look, []).append(geom)
+        slat = geom.shape == "box" and sorted(geom.size_m)[1] < SLAT_HALF_M
+        plain = geom.look.texture is None or slat
+        joins = geom.shape == "box" or (rounds and geom.shape == "cylinder")
+        if joins and plain and not geom.solid:
+            groups.setdefault(replace(geom.look, texture=None), []).append(geom)
         else:
             kept.append(geom)
-    for look, alike in boxes.items():
-        for n in range(0, len(alike), MESH_BOXES):
-            part = alike[n : n + MESH_BOXES]
-            kept.append(_joined(part, look) if len(part) > 1 else part[0])
+    for look, alike in groups.items():
+        part: list[Geom] = []
+        for geom in [*alike, None]:
+            if geom is None or sum(len(_facets(g)[0]) for g in [*part, geom]) > MAX_VERTICES:
+                kept += [_joined(part, look)] if len(part) > 1 else part
+                part = []
+            if geom is not None:
+                part.append(geom)
     return kept
 
 
-def _joined(boxes: Sequence[Geom], look: Look) -> Geom:
-    """One visual mesh of some boxes, its origin in the middle of them."""
-    corners = [np.array(b.pos_m) + (_SIGNS * b.size_m) @ matrix_from_euler(*b.euler_rad).T for b in boxes]
-    every = np.vstack(corners)
+def _joined(geoms: Sequence[Geom], look: Look) -> Geom:
+    """One visual mesh of some geoms, its origin in the middle of them."""
+    points, faces, start = [], [], 0
+    for geom in geoms:
+        corners, triangles = _facets(geom)
+        points.append(np.array(geom.pos_m) + corners @ matrix_from_euler(*geom.euler_rad).T)
+        faces.append(triangles + start)
+        start += len(corners)
+    every = np.vstack(points)
     middle = np.round(0.5 * (every.min(axis=0) + every.max(axis=0)), 4)
-    faces = np.vstack([_BOX_FACES + 8 * n for n in range(len(boxes))])
-    mesh = named_mesh("boxes", every - middle, faces)
+    mesh = named_mesh("joined", every - middle, np.vstack(faces))
     return Geom("mesh", (), (float(middle[0]), float(middle[1]), float(middle[2])), look, solid=False, mesh=mesh)
 
 
+def _facets(geom: Geom) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Corners (n, 3) in the geom's frame and triangles (m, 3) of a box, or of a coarse cylinder."""
+    if geom.shape == "box":
+        return _SIGNS * geom.size_m, _BOX_FACES
+    radius, turns = geom.size_m[0], np.arange(_SEGMENTS) * (2 * np.pi / _SEGMENTS)
+    ring = radius * np.column_stack([np.cos(turns), np.sin(turns)])
+    levels = [(ring, -geom.size_m[1]), (ring, geom.size_m[1])]
+    corners = np.vstack([np.column_stack([xy, np.full(_SEGMENTS, z)]) for xy, z in levels])
+    faces = []
+    for i in range(_SEGMENTS):
+        a, b = i, (i + 1) % _SEGMENTS
+        faces += [(a, b, b + _SEGMENTS), (a, b + _SEGMENTS, a + _SEGMENTS)]
+    for i in range(1, _SEGMENTS - 1):
+        faces += [(0, i + 1, i), (_SEGMENTS, _SEGMENTS + i, _SEGMENTS + i + 1)]
+    return corners, np.array(faces, dtype=np.int32)
+
+
+_SEGMENTS = 8
+"""Corners of a round geom that became part of a mesh."""
 _SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 _BOX_FACES = np.array(
     [

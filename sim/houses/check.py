@@ -46,7 +46,7 @@ def overlaps(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list
     """
     solid = np.flatnonzero(collidable_geoms(model) & (model.geom_group < 3))
     low, high = geom_boxes(model, data, solid)
-    structure = np.array([_category(labels, geom) in STRUCTURE for geom in solid])
+    structure = np.array([_category(labels, geom) in STRUCTURE for geom in solid.tolist()])
     root = model.body_rootid[model.geom_bodyid[solid]]
     worst: dict[tuple[str, str], float] = {}
     for i, j in _close_pairs(low, high, -MAX_OVERLAP_M):

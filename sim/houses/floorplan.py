@@ -7,6 +7,7 @@ rows. Everything is drawn in a frame whose corridor runs along +x, then mirrored
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -176,7 +177,7 @@ def _share_out(
 
 def _between_groups(row: list[Column], at: int) -> int:
     """The nearest place at or after `at` where a corridor does not part a bedroom from the bathroom behind its wall."""
-    while at < len(row) and row[at].back is not None or (at < len(row) and at > 0 and _belongs(row[at - 1], row[at])):
+    while (at < len(row) and row[at].back is not None) or (at < len(row) and at > 0 and _belongs(row[at - 1], row[at])):
         at += 1
     return at
 
@@ -290,7 +291,7 @@ def _join_row(rng: np.random.Generator, draft: _Draft, fronts: list[int | None],
             owner = bedroom if bedroom is not None and draft.kinds[bedroom] == "bedroom" else fronts[i]
             assert owner is not None
             draft.join(owner, back, "door")
-    for left, right in zip(fronts, fronts[1:], strict=False):
+    for left, right in itertools.pairwise(fronts):
         if left is not None and right is not None:
             kinds = {draft.kinds[left], draft.kinds[right]}
             if kinds <= {"living_room", "kitchen", "dining_room"}:
@@ -359,7 +360,7 @@ def _lay_public_block(
     if kind == "studio" or depth_m / width_m > 1.15 * len(order) / 2 or len(order) < 3:
         edges = y0 + np.round(np.cumsum(shares / shares.sum()) * depth_m * 20.0) / 20.0
         edges = [y0, *edges[:-1].tolist(), y1]
-        rects = [Rect(x0, a, x0 + round(width_m, 1), b) for a, b in zip(edges, edges[1:], strict=False)]
+        rects = [Rect(x0, a, x0 + round(width_m, 1), b) for a, b in itertools.pairwise(edges)]
     else:
         rects = _two_deep(order, shares, Rect(x0, y0, x0 + round(width_m, 1), y1))
     rooms = [draft.add(room, rect) for room, rect in zip(order, rects, strict=True)]

@@ -14,7 +14,6 @@ from sim.houses.groups import (
     dining_group,
     hang,
     hang_over,
-    lay_rug,
     place,
     put_things,
     row,
@@ -47,7 +46,7 @@ def _bedroom(space: RoomSpace, kit: Kit) -> None:
         hang(space, kit, "tv_monitor", "tv_wall")
     if kit.clutter_chance(0.5):
         place(space, kit, "clothes", "rack", "floor", along="corner", front_m=0.3)
-    _extras(space, kit, plants=0.5, pictures=(1, 2))
+    _extras(space, kit, plants=0.5, pictures=(0, 1))
 
 
 def _living_room(space: RoomSpace, kit: Kit) -> None:
@@ -87,7 +86,7 @@ def _kitchen(space: RoomSpace, kit: Kit) -> None:
 
 
 def kitchen_units(space: RoomSpace, kit: Kit) -> None:
-    """A run of units along the best wall: fridge, counter with sink, cooker, counter; cabinets above; more round the corner."""
+    """A run of units along the best wall (fridge, counter with sink, cooker, counter), cabinets above."""
     sides = sorted(SIDES, key=lambda side: -space.wall_length(side) + (0.5 if _has_window(space, side) else 0.0))
     looks = kit.looks("lacquer", "stone", "metal", "wood", "steel")
     for side in sides:
@@ -196,7 +195,7 @@ def _dining_room(space: RoomSpace, kit: Kit) -> None:
         hang_over(space, kit, board, "picture")
     if kit.chance(0.3):
         place(space, kit, "counter", "island", front_m=0.7)
-    _extras(space, kit, plants=0.7, pictures=(1, 2))
+    _extras(space, kit, plants=0.7, pictures=(0, 1))
 
 
 def _studio(space: RoomSpace, kit: Kit) -> None:
@@ -252,8 +251,8 @@ def _hallway(space: RoomSpace, kit: Kit) -> None:
                 hang_over(space, kit, board, "mirror" if kit.chance(0.6) else "picture")
         if kit.chance(0.5):
             place(space, kit, "seating", "bench", front_m=0.45)
-    pictures = 1 + int(space.inner.long_m / 4.0)
-    _extras(space, kit, plants=0.6, pictures=(pictures - 1, pictures), corner_plants=True)
+    pictures = int(space.inner.long_m / 4.0)
+    _extras(space, kit, plants=0.6, pictures=(min(1, pictures), min(3, 1 + pictures)))
 
 
 def _office(space: RoomSpace, kit: Kit) -> None:
@@ -267,7 +266,7 @@ def _office(space: RoomSpace, kit: Kit) -> None:
         place(space, kit, "chair", "arm", along="corner", front_m=0.4)
     if kit.chance(0.5):
         hang(space, kit, "board_panel")
-    _extras(space, kit, plants=0.8, pictures=(1, 2))
+    _extras(space, kit, plants=0.8, pictures=(0, 2))
 
 
 def _gym(space: RoomSpace, kit: Kit) -> None:
@@ -330,7 +329,7 @@ def _extras(
     """Plants in corners, pictures on free wall, something on the floor: how much is the clutter's affair."""
     for chance in (plants, plants - 0.5):
         if kit.chance(max(0.0, chance)):
-            place(space, kit, "plant", "floor", along="corner" if corner_plants else "any", front_m=0.0)
+            place(space, kit, "plant", "floor", along="corner", front_m=0.0)
     for _ in range(int(kit.rng.integers(pictures[0], pictures[1] + 1))):
         hang(space, kit, "picture")
     if lamp and kit.chance(0.25):
@@ -340,7 +339,7 @@ def _extras(
 
 
 def _curtains(space: RoomSpace, kit: Kit) -> None:
-    """The same curtains or blinds at every window of a room; long curtains where nothing stands below, none in some rooms."""
+    """The same curtains or blinds at every window of a room; long ones where nothing stands below."""
     drawn = kit.rng.random()
     looks = kit.looks("curtain", "iron")
     for side, window in space.windows():
@@ -357,7 +356,7 @@ def _curtains(space: RoomSpace, kit: Kit) -> None:
 
 
 def _ceiling_lamp(space: RoomSpace, kit: Kit) -> None:
-    lamp = kit.make("lighting", "ceiling", "pendant")
+    lamp = kit.same("lighting", "ceiling")
     if lamp is None or lamp.mount != "ceiling":
         return
     count = max(1, int(space.inner.long_m / 4.5)) if space.kind == "hallway" else 1

@@ -24,6 +24,7 @@ class Kit:
         """0 bare, 1 full of things."""
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
+        self._same: dict[tuple[str, str], Item | None] = {}
 
     def make(self, category: str, *uses: str, **hints: Any) -> Item | None:
         """An item for the first of these uses that the pool has a style for, for any use when none is given.
@@ -36,6 +37,12 @@ class Kit:
             if styles(category, self.pool, use):
                 return make_item(category, self.rng, pool=self.pool, **({"use": use} if use else {}), **hints)
         return None
+
+    def same(self, category: str, use: str) -> Item | None:
+        """The home's one item of this kind: what one buys by the dozen, such as ceiling lamps."""
+        if (category, use) not in self._same:
+            self._same[category, use] = self.make(category, use)
+        return self._same[category, use]
 
     def looks(self, *names: str) -> dict[str, Look]:
         """Fixed looks of some materials, for hint `looks`: things that should match."""

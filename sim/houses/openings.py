@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -73,10 +73,10 @@ def cut_openings(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) ->
         PlanError: two rooms that should be joined share too little wall.
     """
     rects = [room.rect for room in plan.rooms]
-    openings: list[Opening] = []
-    for join in plan.joins:
-        openings.append(_cut_join(rng, plan, join))
-    openings = [_with_leaf(rng, plan, opening) for opening in openings]
+    widths = (round(float(rng.uniform(0.80, 0.88)), 2), round(float(rng.uniform(0.86, 1.0)), 2))
+    openings = [_cut_join(rng, plan, join, widths) for join in plan.joins]
+    for n, opening in enumerate(openings):
+        openings[n] = _with_leaf(rng, plan, opening, openings)
     entry = _cut_entry(rng, plan, rects)
     if entry is not None:
         openings.append(entry)
@@ -94,7 +94,8 @@ def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
     return subtract(rects[room].span(side), holes, 0.01)
 
 
-def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join) -> Opening:
+def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tuple[float, float]) -> Opening:
+    """The hole for a join; `clear_m` are the home's two widths of door, for small rooms and for the others."""
     a, b = plan.rooms[join.a], plan.rooms[join.b]
     shared = shared_side(a.rect, b.rect)
     if shared is None:
@@ -109,7 +110,7 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join) -> Opening:
         at = float(rng.uniform(inner[0] + 0.1, inner[1] - 0.1 - width_m))
         return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, 2.15)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
-    width_m = round(float(rng.uniform(0.8, 0.88) if small else rng.uniform(0.84, 1.0)), 2) + 2 * JAMB_M
+    width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
     if length_m < width_m + 0.16:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
     spare = length_m - width_m - 0.16
@@ -119,8 +120,11 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join) -> Opening:
     return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, DOOR_TOP_M)
 
 
-def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening) -> Opening:
-    """A leaf ajar for some doors, swung into the room that is no hallway, its hinge at the nearer corner."""
+def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening]) -> Opening:
+    """A leaf ajar for some doors, swung into the room that is no hallway, its hinge at the nearer corner.
+
+    None where it would swing before another doorway of that room.
+    """
     if opening.kind != "door" or rng.random() > 0.55:
         return opening
     assert opening.b is not None
@@ -138,10 +142,16 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening) -> O
     # A leaf opens at most to the wall beside it; one in the open may fold back a little further.
     widest = 92.0 if gap_m < 0.6 else 110.0
     angle = np.deg2rad(round(float(rng.uniform(78.0, widest))))
-    return Opening(
-        opening.kind, opening.a, opening.b, opening.side, opening.line_m, opening.span, opening.bottom_m,
-        opening.top_m, Leaf(room, at_start, float(angle)),
-    )  # fmt: skip
+    ajar = replace(opening, leaf=Leaf(room, at_start, float(angle)))
+    zone = leaf_keep_out(ajar, rect)
+    for other in others:
+        if other is opening or room not in (other.a, other.b):
+            continue
+        doorway = rect.strip(other.side_of(room), other.span, 0.75)
+        crossing = other.leaf is not None and other.leaf.room == room and zone.overlaps(leaf_keep_out(other, rect))
+        if zone.overlaps(doorway) or crossing:
+            return opening
+    return ajar
 
 
 def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
@@ -163,7 +173,9 @@ def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect])
     for room in order:
         if plan.rooms[room].kind not in ("hallway", "living_room", "studio", "kitchen"):
             continue
-        spans = [(hi - lo, side, lo, hi) for side in SIDES for lo, hi in outer_spans(rects, room, side)]
+        spans: list[tuple[float, Side, float, float]] = [
+            (hi - lo, side, lo, hi) for side in SIDES for lo, hi in outer_spans(rects, room, side)
+        ]
         for length_m, side, lo, hi in sorted(spans):
             if length_m >= width_m + 2 * HALF_WALL_M + 0.06:
                 middle = 0.5 * (lo + hi) if length_m < 2.5 else float(rng.uniform(lo + 0.8, hi - 0.8))
@@ -190,7 +202,9 @@ def _cut_windows(
         size = {"bathroom": small, "living_room": large, "studio": large, "dining_room": large}.get(room.kind, usual)
         for side in SIDES:
             for lo, hi in outer_spans(rects, i, side):
-                if room.kind == "hallway" and (hi - lo > 2.2 or any(o.a == i and o.kind == "entry" and o.side == side for o in others)):
+                if room.kind == "hallway" and (
+                    hi - lo > 2.2 or any(o.a == i and o.kind == "entry" and o.side == side for o in others)
+                ):
                     continue
                 windows += [
                     Opening("window", i, None, side, room.rect.line(side), span, size[1], top_m)

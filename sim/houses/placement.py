@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import cv2
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sim.houses.build import Placed
 from sim.houses.furniture.item import Item, Surface
-from sim.houses.furniture.workbench import bounds
+from sim.houses.furniture.workbench import euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.houses.geometry import (
     INWARD_YAW_RAD,
     OPPOSITE,
@@ -195,7 +195,7 @@ class RoomSpace:
     def tucked(
         self, item: Item, host: Standing, x_m: float, y_m: float, yaw_rad: float, out_m: float = 0.3
     ) -> Standing | None:
-        """Put an item partly under `host` (a chair under a table), drawn back along its own -x until nothing touches."""
+        """Put an item partly under `host` (a chair, a table), drawn back along its own -x until nothing touches."""
         c, s = math.cos(yaw_rad), math.sin(yaw_rad)
         host_boxes = geom_boxes(host.placed)
         for step in range(int(out_m / 0.04) + 1):
@@ -311,7 +311,7 @@ class RoomSpace:
             return None
         order = list(sides) if sides is not None else [SIDES[i] for i in rng.permutation(4)]
         for side in order:
-            places = [at] if at is not None else self._positions(rng, side, item.size_m[1], along, 0.1, hanging=True)
+            places = [at] if at is not None else self._positions(rng, side, item.size_m[1], along, 0.1)
             for place in places:
                 span = (place - item.size_m[1] / 2, place + item.size_m[1] / 2)
                 rect = self.inner.strip(side, span, item.size_m[0])
@@ -329,7 +329,8 @@ class RoomSpace:
                     if not self._walkable(raster, [rect]):
                         continue
                     self._taken = raster
-                self._add(standing, bottom)
+                self.standing.append(standing)
+                self._blocks.append(Block(rect, 0.0 if over_floor else bottom, top))
                 return standing
         return None
 
@@ -422,9 +423,9 @@ class RoomSpace:
         a, b = sorted(span)
         return rect.strip(opening.side_of(opening.leaf.room), (a - 0.02, b + 0.02), (hi - lo) + 0.08)
 
-    def _stretches(self, side: Side, *, hanging: bool = False) -> list[Interval]:
+    def _stretches(self, side: Side) -> list[Interval]:
         """Parts of a side where something can stand: none where one walks through."""
-        holes = [hole.span for hole in self._holes[side] if hole.kind != "window" or hanging]
+        holes = [hole.span for hole in self._holes[side] if hole.kind != "window"]
         return subtract(self.inner.span(side), holes, 0.05)
 
     def _positions(
@@ -434,12 +435,10 @@ class RoomSpace:
         width_m: float,
         along: Along,
         beside_m: float,
-        *,
-        hanging: bool = False,
     ) -> list[float]:
         """Places along a side for something of this width, the best first."""
         places: list[tuple[float, float]] = []
-        for lo, hi in self._stretches(side, hanging=False if not hanging else False):
+        for lo, hi in self._stretches(side):
             a, b = lo + width_m / 2 + beside_m, hi - width_m / 2 - beside_m
             if b < a:
                 a, b = lo + width_m / 2, hi - width_m / 2
@@ -509,7 +508,7 @@ class RoomSpace:
         return min(max(row, 1), self._taken.shape[0] - 2), min(max(col, 1), self._taken.shape[1] - 2)
 
     def _walkable(self, raster: NDArray[np.uint8], rects: Sequence[Rect]) -> bool:
-        """True where the robot gets from every doorway to every other, and near every rectangle."""
+        """True where the robot gets from each doorway to all others, to nearly all floor, and near every rectangle."""
         taken = raster.copy()
         for x, y in self._gates:  # walls beside a doorway do not stop a robot that passes through it
             row, col = self._cell(x, y)
@@ -526,6 +525,9 @@ class RoomSpace:
             part = names.pop()
         else:
             part = 1 + int(np.argmax(np.bincount(parts.ravel())[1:]))
+        sizes = np.bincount(parts.ravel())[1:]
+        if sizes.sum() - sizes[part - 1] > POCKET_CELLS:
+            return False
         rows, cols = np.nonzero(parts == part)
         xs = self.inner.x0 + (cols - 0.5) * CELL_M
         ys = self.inner.y0 + (rows - 0.5) * CELL_M
@@ -593,13 +595,14 @@ def _ahead(rect: Rect, back: Side, length_m: float) -> Rect:
 
 def geom_boxes(placed: Placed) -> NDArray[np.float64]:
     """(n, 6) axis-aligned boxes x0 y0 z0 x1 y1 z1 of an item's solid geoms in the world, children left out."""
-    from sim.houses.furniture.workbench import _turned  # noqa: PLC0415
-
-    boxes = []
+    turn = matrix_from_euler(0.0, 0.0, placed.yaw_rad)
     shift = np.array([placed.x_m, placed.y_m, placed.z_m])
+    boxes = []
     for geom in placed.item.geoms:
         if geom.solid:
-            low, high = bounds([_turned(geom, placed.yaw_rad)])
+            x, y, z = (float(v) for v in turn @ geom.pos_m)
+            euler = euler_from_matrix(turn @ matrix_from_euler(*geom.euler_rad))
+            low, high = geom_bounds(replace(geom, pos_m=(x, y, z), euler_rad=euler))
             boxes.append(np.concatenate([low + shift, high + shift]))
     return np.array(boxes).reshape(-1, 6)
 
@@ -610,5 +613,7 @@ def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64], margin_m: float)
     return bool((gap.max(axis=2) < margin_m).any())
 
 
+POCKET_CELLS = 60
+"""Floor that the robot would fit on but cannot get to, at most: 0.15 m2."""
 _RADIUS_CELLS = round(ROBOT_M / CELL_M)
 _DISC = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * _RADIUS_CELLS + 1, 2 * _RADIUS_CELLS + 1))

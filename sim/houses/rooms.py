@@ -101,7 +101,7 @@ class Program:
 
 def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
     """A shape that suits the area."""
-    fitting = [kind for kind in PLAN_KINDS if PLAN_AREA_M2[kind][0] <= area_m2 <= PLAN_AREA_M2[kind][1]]
+    fitting: list[PlanKind] = [kind for kind in PLAN_KINDS if PLAN_AREA_M2[kind][0] <= area_m2 <= PLAN_AREA_M2[kind][1]]
     return fitting[int(rng.integers(len(fitting)))]
 
 

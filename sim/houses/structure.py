@@ -229,10 +229,10 @@ def _door(hole: Opening, finish: Finish) -> list[Item]:
     return items
 
 
-def _leaf_geoms(width_m: float, high_m: float, finish: Finish) -> list[Geom]:
-    """A leaf in a frame of its own: hinge at the origin, leaf along +x, 4 cm thick about y = 0."""
+def _leaf_geoms(width_m: float, high_m: float, finish: Finish, gap_m: float = 0.01) -> list[Geom]:
+    """A leaf in a frame of its own: hinge at the origin, leaf along +x, 4 cm thick, `gap_m` over the floor."""
     half = 0.02
-    geoms = [oriented_box((0.0, width_m, -half, half, 0.01, high_m), finish.door, "north")]
+    geoms = [oriented_box((0.0, width_m, -half, half, gap_m, high_m), finish.door, "north")]
     for z0, z1 in ((0.18, 0.88), (1.08, high_m - 0.16)):
         box = (0.13, width_m - 0.13, -half - 0.006, half + 0.006, z0, z1)
         geoms.append(oriented_box(box, finish.door, "north", solid=False))
@@ -244,7 +244,7 @@ def _leaf_geoms(width_m: float, high_m: float, finish: Finish) -> list[Geom]:
 
 def _closed_leaf(hole: Opening, finish: Finish) -> Item:
     lo, hi = hole.clear_span()
-    leaf = _item("door", "leaf", _leaf_geoms(hi - lo, hole.top_m - JAMB_M - 0.005, finish))
+    leaf = _item("door", "leaf", _leaf_geoms(hi - lo, hole.top_m - JAMB_M, finish, 0.0))
     yaw = 0.0 if hole.side in ("north", "south") else math.pi / 2
     sign = 1.0 if hole.side in ("east", "north") else -1.0
     at = hole.line_m + sign * 0.04
