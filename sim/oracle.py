@@ -12,16 +12,14 @@ import itertools
 import math
 from collections import deque
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import cv2
 import numpy as np
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.planframe import CELL_M
-
-if TYPE_CHECKING:
-    from sim.env import ObjectNavEnv
+from sim.task import Stage
 
 HEADINGS = round(math.tau / TURN_RAD)
 GREED = 1.5
@@ -44,10 +42,19 @@ Key = tuple[int, int, int]
 """Nodes within 5 cm and with one heading count as one."""
 
 
+class HasStage(Protocol):
+    """The environment, as far as the oracle looks into it."""
+
+    @property
+    def scene(self) -> Stage:
+        """World and task of the running episode."""
+        ...
+
+
 class Oracle:
     """An `Agent` that reads the truth from the environment it acts in, and ignores its observations."""
 
-    def __init__(self, env: ObjectNavEnv) -> None:
+    def __init__(self, env: HasStage) -> None:
         self._env = env
 
     def reset(self, goal: str, seed: int) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,11 +9,8 @@ from sim.episodes import Episode
 from sim.errors import EpisodeError
 from sim.interface import GOAL_CATEGORIES
 from sim.pose import Pose
-from sim.task import Task
+from sim.task import Stage, Task
 from sim.world import World
-
-if TYPE_CHECKING:
-    from sim.scene import Scene
 
 MIN_DISTANCE_M = 2.0
 """Least geodesic distance from start to goal, where the house is large enough for it."""
@@ -27,7 +22,7 @@ _ROUND_M = 4
 
 
 def sample_episode(
-    scene: Scene,
+    scene: Stage,
     house: str,
     rng: np.random.Generator,
     *,

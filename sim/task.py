@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,3 +177,12 @@ class Task:
         if abs(pose.floor_z_m - record.start.floor_z_m) >= SAME_STOREY_M:
             return None
         return self.distance_from(record.goal, pose)
+
+
+class Stage(Protocol):
+    """World and task of one house: what whoever knows the truth works with."""
+
+    @property
+    def world(self) -> World: ...  # noqa: D102
+    @property
+    def task(self) -> Task: ...  # noqa: D102

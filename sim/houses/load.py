@@ -15,6 +15,10 @@ from sim.interface import MPCAT40_ID
 
 FLOOR_TOLERANCE_M = 0.01
 """How far the top of the ground floor may be from z = 0."""
+_NOT_CONVEX = {
+    int(mujoco.mjtGeom.mjGEOM_HFIELD): "height field",
+    int(mujoco.mjtGeom.mjGEOM_SDF): "signed distance field",
+}
 _FLOOR_SHAPES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_BOX))
 
 
@@ -76,6 +80,11 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
             raise HouseError(f"a house holds no {what}, but this one has {what} {_quoted(names[0].name)}.")
     if model.nflex or model.nskin:
         raise HouseError("a house is made of geoms, but this one has a flex or a skin, which cannot be labelled.")
+    for shape, what in _NOT_CONVEX.items():
+        for geom in np.flatnonzero(model.geom_type == shape).tolist():
+            raise HouseError(
+                f"{describe_geom(model, geom)} is a {what}: a house is made of boxes, meshes and the like."
+            )
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
     _require_floor(model, labels)
     return labels

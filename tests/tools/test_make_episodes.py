@@ -1,0 +1,89 @@
+"""Making the episodes of a split: balanced, playable, the same each time."""
+
+from __future__ import annotations
+
+import collections
+from pathlib import Path
+
+import pytest
+
+from sim import habitat
+from sim.episodes import load_split
+from sim.errors import EpisodeError
+from sim.task import Task
+from sim.world import World
+from tests.helpers.worlds import room, with_box
+from tools.make_episodes import Args, main, take_turns
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    folder = tmp_path / "tiny"
+    folder.mkdir()
+    first = with_box(room(8, 4), "bed_00", centre_m=(3.3, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    first = with_box(first, "picture_00", centre_m=(-0.5, 1.98, 1.5), half_m=(0.3, 0.02, 0.2))
+    second = with_box(room(7, 5), "bed_00", centre_m=(-2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    second = with_box(second, "wall_10", centre_m=(2.2, 0.0, 1.25), half_m=(0.05, 2.5, 1.25))
+    second = with_box(second, "sink_00", centre_m=(3.0, 0.0, 0.4), half_m=(0.2, 0.2, 0.4))  # walled in
+    (folder / "first.xml").write_text(first.spec.to_xml())
+    (folder / "second.xml").write_text(second.spec.to_xml())
+    return folder
+
+
+@pytest.mark.parametrize("count", [3, 7, 20, 60])
+def test_the_first_episodes_are_balanced_over_houses_and_goals(count):
+    goals = {"a": ("bed", "sofa", "sink"), "b": ("bed", "sofa"), "c": ("sink", "bed", "sofa", "plant")}
+    turns = take_turns(goals, count)
+    houses = collections.Counter(house for house, _ in turns)
+    asked = collections.Counter(goal for _, goal in turns)
+    assert all(goal in goals[house] for house, goal in turns)
+    assert max(houses.values()) - min(houses.values()) <= 1
+    assert max(asked[g] for g in ("bed", "sofa", "sink")) - min(asked[g] for g in ("bed", "sofa", "sink")) <= 1
+
+
+def test_a_house_without_goals_is_refused():
+    with pytest.raises(EpisodeError, match="'b' has no goal"):
+        take_turns({"a": ("bed",), "b": ()}, 4)
+
+
+def test_the_episodes_can_be_played_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
+    assert main(Args(split=folder, episodes=6)) == 0
+    assert "second: cannot be reached, and so is no goal: sink_00" in capsys.readouterr().out
+    split = load_split(folder)
+    assert [episode.house for episode in split.episodes] == ["first", "second"] * 3
+    assert {episode.goal for episode in split.episodes} == {"bed", "picture"}
+    for house in split.houses:
+        world = World(split.load_house(house))
+        task = Task(world)
+        for episode in (episode for episode in split.episodes if episode.house == house):
+            world.reset(episode.start)
+            task.begin(episode.goal, episode.start)
+            assert task.metrics()["distance_to_goal"] == pytest.approx(episode.shortest_path_m, abs=1e-6)
+            assert task.metrics()["distance_to_goal"] > 1.9
+
+
+def test_view_points_are_places_where_the_goal_counts(folder):
+    main(Args(split=folder, episodes=2))
+    world = World(load_split(folder).load_house("first"))
+    region = Task(world).truth.target("picture").region
+    (goal,) = habitat.read_json(folder / "content" / "first.json.gz")["goals_by_category"]["first.xml_picture"]
+    assert goal["object_id"] == "picture_00"
+    assert goal["room_name"] == "room_living_00"
+    assert goal["position"] == [-0.5, 1.5, -1.98]
+    places = [habitat.from_position(view["agent_state"]["position"]) for view in goal["view_points"]]
+    assert 5 < len(places) <= 24
+    assert all(region.succeeds(x, y) for x, y, _ in places)
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_other_starts(folder):
+    def made(seed: int) -> list[bytes]:
+        main(Args(split=folder, episodes=4, seed=seed))
+        return [file.read_bytes() for file in sorted(folder.rglob("*.gz"))]
+
+    assert made(0) == made(0)
+    assert made(0) != made(1)
+
+
+def test_a_folder_without_houses_is_refused(tmp_path, capsys):
+    assert main(Args(split=tmp_path)) == 2
+    assert "0 houses" in capsys.readouterr().err
