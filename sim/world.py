@@ -87,7 +87,7 @@ class World:
         for _ in range(3):
             self._body.place(start.x_m, start.y_m, z, start.yaw_rad)
             mujoco.mj_forward(self.model, self.data)
-            sunk = max((-dist for geoms, dist in self._contacts() if not geoms.isdisjoint(self._wheels)), default=0.0)
+            sunk = max((depth for geoms, depth in self._contacts() if not geoms.isdisjoint(self._wheels)), default=0.0)
             if sunk <= 0.0005:
                 break
             z += sunk
@@ -96,9 +96,9 @@ class World:
         """Refuse a start where the hull is inside something."""
         hull = frozenset(self._body.hull_geoms)
         overlaps = [
-            (-dist, geoms - hull)
-            for geoms, dist in self._contacts()
-            if not geoms.isdisjoint(hull) and -dist > self.config.physics.max_overlap_m
+            (depth, geoms - hull)
+            for geoms, depth in self._contacts()
+            if not geoms.isdisjoint(hull) and depth > self.config.physics.max_overlap_m
         ]
         if overlaps:
             depth, (geom,) = max(overlaps, key=lambda overlap: overlap[0])
@@ -108,11 +108,10 @@ class World:
             )
 
     def _contacts(self) -> list[tuple[frozenset[int], float]]:
-        """Pairs of geoms that touch now and their distance, negative inside one another."""
+        """Pairs of geoms that touch now and how deep they are in one another, the hull's skin included."""
         contacts = self.data.contact
-        return [
-            (frozenset(pair), dist) for pair, dist in zip(contacts.geom.tolist(), contacts.dist.tolist(), strict=True)
-        ]
+        depths = (contacts.includemargin - contacts.dist).tolist()
+        return [(frozenset(pair), depth) for pair, depth in zip(contacts.geom.tolist(), depths, strict=True)]
 
     @property
     def _wheels(self) -> frozenset[int]:
@@ -193,7 +192,7 @@ def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
 
 
 def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> None:
-    """Who touches whom (see `sim.robot.body`); what was visual only stays so."""
+    """Who touches whom (see `sim.robot.body`), and how near; what was visual only stays so."""
     movable = bare.body_weldid[bare.geom_bodyid] != 0
     for geom in spec.geoms:
         if geom.contype == 0 and geom.conaffinity == 0:
@@ -205,6 +204,7 @@ def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> Non
         else:
             mask = STATIC_MASK
         geom.contype, geom.conaffinity = mask
+        geom.margin = geom.gap = 0.0  # the hull's skin is the only margin
 
 
 def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:

@@ -142,7 +142,8 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
         hull.add_geom(
             name=f"{name}_hull",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            size=(body.radius_m, 0.5 * (top - bottom), 0),
+            size=(body.radius_m - body.skin_m, 0.5 * (top - bottom) - body.skin_m, 0),
+            margin=body.skin_m,
             pos=(0.0, 0.0, 0.5 * (top + bottom)),
             mass=0.0,
             friction=(body.friction, 0.0, 0.0),

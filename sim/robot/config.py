@@ -34,6 +34,12 @@ class BodyConfig:
     """Bottom of the hull above the floor: what is lower passes under."""
     waist_m: float = 0.20
     """Where the lower cylinder ends and the upper one begins: low obstacles then meet a low, well-conditioned body."""
+    skin_m: float = 0.005
+    """The hull's outermost layer, into which other things may sink; only below it lies the core that MuJoCo collides.
+
+    A core that is never reached is always at a distance, and distances are exact. Cores that touch by micrometres are
+    not: MuJoCo 4.0 then gives one in ten cylinders a normal that is wrong by up to 70 deg and 7 cm of depth.
+    """
     mass_kg: float = 6.9
     """The whole robot, wheels and casters included."""
     com_height_m: float = 0.12
@@ -50,6 +56,11 @@ class BodyConfig:
             raise ConfigError(
                 "BodyConfig needs clearance_m < waist_m < height_m, got "
                 f"{self.clearance_m}, {self.waist_m} and {self.height_m} m."
+            )
+        thinnest = min(self.radius_m, 0.5 * (self.waist_m - self.clearance_m), 0.5 * (self.height_m - self.waist_m))
+        if self.skin_m >= thinnest:
+            raise ConfigError(
+                f"BodyConfig.skin_m must be thinner than either cylinder, {thinnest:.3f} m; got {self.skin_m} m."
             )
 
 

@@ -41,9 +41,10 @@ def test_no_camera_group_shows_the_robot(alone: mujoco.MjModel):
 def test_the_hull_fills_the_declared_cylinder(alone: mujoco.MjModel):
     body = RobotConfig().body
     hull = [alone.geom(f"{name}_hull") for name in ("lower", "upper")]
-    assert min(float(geom.pos[2] - geom.size[1]) for geom in hull) == pytest.approx(body.clearance_m)
-    assert max(float(geom.pos[2] + geom.size[1]) for geom in hull) == pytest.approx(body.height_m)
-    assert all(float(geom.size[0]) == body.radius_m for geom in hull)
+    assert all(float(geom.margin[0]) == body.skin_m for geom in hull)
+    assert min(float(geom.pos[2] - geom.size[1]) for geom in hull) == pytest.approx(body.clearance_m + body.skin_m)
+    assert max(float(geom.pos[2] + geom.size[1]) for geom in hull) == pytest.approx(body.height_m - body.skin_m)
+    assert all(float(geom.size[0]) == pytest.approx(body.radius_m - body.skin_m) for geom in hull)
 
 
 @pytest.mark.parametrize(
