@@ -201,6 +201,13 @@ def test_no_source_means_no_way_and_all_sources_mean_no_distance():
     assert np.isinf(distance[~space.free]).all()
 
 
+def test_the_largest_part_is_the_larger_side_of_a_wall():
+    space = free_space(with_box(room(6, 4), "wall_10", centre_m=(1, 0, 1.25), half_m=(0.05, 2.0, 1.25)))
+    part = space.largest_part()
+    x, _ = space.frame.centres()
+    assert (part == (space.free & (x < 1.0))).all()
+
+
 def test_a_storey_has_its_own_obstacles():
     house = with_box(room(4, 4, height_m=2.5), "floor_01", centre_m=(0, 0, 2.95), half_m=(2, 2, 0.05))
     house = with_box(house, "table_00", centre_m=(0, 0, 3.4), half_m=(0.3, 0.3, 0.4))

@@ -42,6 +42,17 @@ def test_a_drawn_start_is_free_far_enough_and_accepted_by_the_world(seed):
     assert not PLACE.world.move(Action.STOP).contacts
 
 
+def test_nobody_starts_in_a_closet_without_a_door():
+    # A bed on either side of the wall; what is right of it is smaller.
+    house = with_box(room(10, 4), "wall_10", centre_m=(1.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
+    for number, x in enumerate((-4.5, 4.5)):
+        house = with_box(house, f"bed_{number:02d}", centre_m=(x, 0, 0.25), half_m=(0.3, 1.0, 0.25))
+    world = World(house)
+    task = Task(world)
+    starts = [draw_start(world, task, "bed", np.random.default_rng(seed)) for seed in range(20)]
+    assert max(start.x_m for start in starts) < 1.5
+
+
 def test_the_same_stream_draws_the_same_episode_and_another_another():
     def drawn(seed):
         return sample_episode(PLACE, "h", np.random.default_rng(seed))

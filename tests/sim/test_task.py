@@ -97,9 +97,17 @@ def test_blocked_motions_are_collisions_and_the_way_is_what_was_really_moved():
     world = bed_room()
     task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
     result = act(world, task, FORWARD, FORWARD)
-    assert result["collisions"] == 2
+    assert (result["collisions"], result["touches"]) == (2, 0)
     assert result["path_length"] < 0.2
     assert result["distance_to_goal"] == pytest.approx(4.8, abs=0.03)
+
+
+def test_a_thing_that_is_pushed_along_is_touched_and_no_collision():
+    world = World(with_movable(bed_room().house, "stool_00", xy_m=(-0.4, 0.0), mass_kg=1.0))
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    result = act(world, task, FORWARD, FORWARD, LEFT)
+    assert result["collisions"] == 0
+    assert 1 <= result["touches"] <= 2
 
 
 def test_a_new_episode_starts_from_nothing():
