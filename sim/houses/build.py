@@ -78,6 +78,7 @@ class HouseBuilder:
         self._spec.modelfiledir = str(ASSETS_DIR / "val")
         light = self._spec.visual.headlight
         light.ambient, light.diffuse, light.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3
+        self._spec.default.geom.type = mujoco.mjtGeom.mjGEOM_BOX  # most are: shorter XML
         seen = self._spec.add_default(_SEEN, self._spec.default)
         seen.geom.contype = 0
         seen.geom.conaffinity = 0

@@ -48,9 +48,11 @@ def overlaps(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list
     low, high = geom_boxes(model, data, solid)
     structure = np.array([_category(labels, geom) in STRUCTURE for geom in solid.tolist()])
     root = model.body_rootid[model.geom_bodyid[solid]]
+    instance = labels.geom_instance[solid]
     worst: dict[tuple[str, str], float] = {}
     for i, j in _close_pairs(low, high, -MAX_OVERLAP_M):
-        if root[i] == root[j] or (structure[i] and structure[j]):
+        together = root[i] == root[j] and root[i] != 0
+        if together or instance[i] == instance[j] or (structure[i] and structure[j]):
             continue
         a, b = int(solid[i]), int(solid[j])
         depth = -mujoco.mj_geomDistance(model, data, a, b, MAX_OVERLAP_M, None)

@@ -51,8 +51,8 @@ def _bedroom(space: RoomSpace, kit: Kit) -> None:
 
 def _living_room(space: RoomSpace, kit: Kit) -> None:
     area = space.inner.area_m2
-    if kit.chance(0.55):
-        hearth = place(space, kit, "fireplace", along="middle", front_m=0.9)
+    if kit.chance(0.7):
+        hearth = place(space, kit, "fireplace", along="middle", front_m=0.8, tries=3)
         if hearth is not None:
             hang_over(space, kit, hearth, "picture" if kit.chance(0.6) else "mirror")
     sofa_group(space, kit)

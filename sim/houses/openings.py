@@ -107,13 +107,13 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     length_m = inner[1] - inner[0]
     if join.kind == "opening" and length_m > 1.5:
         width_m = min(round(float(rng.uniform(1.3, 2.4)), 2), length_m - 0.2)
-        at = float(rng.uniform(inner[0] + 0.1, inner[1] - 0.1 - width_m))
+        at = inner[0] + 0.1 + float(rng.uniform(0.0, 1.0)) * max(0.0, length_m - 0.2 - width_m)
         return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, 2.15)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
     width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
     if length_m < width_m + 0.16:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
-    spare = length_m - width_m - 0.16
+    spare = max(0.0, length_m - width_m - 0.16)
     # Near a corner of the smaller room: that leaves it a long wall for furniture.
     offset = float(rng.uniform(0.0, min(0.3, spare))) if rng.random() < 0.75 else float(rng.uniform(0.0, spare))
     at = inner[0] + 0.08 + offset if rng.random() < 0.5 else inner[1] - 0.08 - offset - width_m

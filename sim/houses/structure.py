@@ -246,8 +246,7 @@ def _closed_leaf(hole: Opening, finish: Finish) -> Item:
     lo, hi = hole.clear_span()
     leaf = _item("door", "leaf", _leaf_geoms(hi - lo, hole.top_m - JAMB_M, finish, 0.0))
     yaw = 0.0 if hole.side in ("north", "south") else math.pi / 2
-    sign = 1.0 if hole.side in ("east", "north") else -1.0
-    at = hole.line_m + sign * 0.04
+    at = hole.line_m  # where the floor ends: nothing is seen below it
     x, y = (lo, at) if hole.side in ("north", "south") else (at, lo)
     return turned_item(leaf, x, y, yaw)
 
