@@ -86,14 +86,14 @@ class ContactLog:
 
         Args:
             tick_s: time that one sample stands for.
-            since_tick: contacts of this tick or later that pushed against the motion `stopped` it.
+            since_tick: contacts of this tick or later `stopped` it, but for those that pushed with the motion.
             against: direction of the motion in plan; (0, 0) for a turn, which any contact may hold back.
         """
         turning = against == (0.0, 0.0)
         found = []
         for geom, touch in self._touches.items():
             along = float(against[0] * touch.force[0] + against[1] * touch.force[1])
-            stopped = touch.last_tick >= since_tick and (turning or along < 0.0)
+            stopped = touch.last_tick >= since_tick and (turning or along <= 0.0)
             found.append(self._contact(geom, touch, tick_s, stopped=stopped))
         return tuple(found)
 
