@@ -216,10 +216,12 @@ def _bathroom(space: RoomSpace, kit: Kit) -> None:
     tub_first = kit.chance(0.5)
     wet = ("bathtub", "shower") if tub_first else ("shower", "bathtub")
     got = place(space, kit, wet[0], along="corner", front_m=0.5, tries=3)
-    if got is None or area > 7.5:
+    if got is None:
         place(space, kit, wet[1], along="corner", front_m=0.5, tries=2)
     place(space, kit, "toilet", front_m=0.5, tries=3)
     basin = _basin(space, kit)
+    if got is not None and area > 7.5:
+        place(space, kit, wet[1], along="corner", front_m=0.5, tries=2)
     if basin is not None and not hang_over(space, kit, basin, "mirror"):
         hang(space, kit, "mirror")
     for _ in range(1 + kit.chance(0.4)):
@@ -341,7 +343,7 @@ def _extras(
 def _curtains(space: RoomSpace, kit: Kit) -> None:
     """The same curtains or blinds at every window of a room; long ones where nothing stands below."""
     drawn = kit.rng.random()
-    looks = kit.looks("curtain", "iron")
+    looks = kit.looks("curtain", "iron", "wood", "lacquer", "linen", "metal")
     for side, window in space.windows():
         width, height = window.span[1] - window.span[0], window.top_m - window.bottom_m
         tries = [("blinds", width - 0.02, height - 0.02)]
