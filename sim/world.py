@@ -1,24 +1,18 @@
-"""House and robot, compiled once: where an action becomes a motion.
-
-The house is compiled as it is to read its labels; then the masks of `sim.robot.body` are set, static bodies are fused
-(geoms of the world body cost half of what geoms in bodies of their own cost), the robot is attached, and the whole
-is compiled again. Geoms keep their names; an unnamed one is called after its instance.
-"""
+"""House and robot, compiled once: where an action becomes a motion."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import EpisodeError, HouseError, PhysicsError
+from sim.compose import compose
+from sim.errors import EpisodeError, PhysicsError
 from sim.gl import mujoco
-from sim.houses.house import House, Room, read_rooms
-from sim.houses.labels import Instance, Labels, read_labels
+from sim.houses.house import House
+from sim.houses.labels import Labels
 from sim.interface import MPCAT40_ID, Action, wrap_angle
 from sim.pose import Pose
-from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK, Body, robot_spec
+from sim.robot.body import FLOOR_MASK, Body
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
@@ -41,7 +35,7 @@ class World:
         self.config = robot or RobotConfig()
         self.robot = self.config.model
         _keep_log_out_of_working_directory()
-        self.model, self.labels, self.rooms = _compose(house, self.config)
+        self.model, self.labels, self.rooms = compose(house, self.config)
         self.data = mujoco.MjData(self.model)
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body.hull_geoms)
@@ -129,21 +123,24 @@ class World:
 
     def _require_physical(self, z_before: float) -> None:
         """Refuse to go on from a state that no robot could be in."""
+        fault = self._fault(z_before)
+        if fault:
+            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {fault}")
+
+    def _fault(self, z_before: float) -> str:
+        """What is unphysical about the state, "" if nothing is."""
         physics = self.config.physics
         for kind, warning in enumerate(self.data.warning):
             if warning.number:
-                text = mujoco.mju_warningText(kind, int(warning.lastinfo))
-                raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {text}")
+                return mujoco.mju_warningText(kind, int(warning.lastinfo))
         if not np.isfinite(self.data.qpos).all():
-            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: a position is not finite.")
+            return "a position is not finite."
         if self._body.tilt_rad > physics.max_tilt_rad:
-            raise PhysicsError(
-                f"House '{self.house.name}' at {self.data.time:.2f} s: the robot tipped over, it leans "
-                f"{np.degrees(self._body.tilt_rad):.0f} deg."
-            )
+            return f"the robot tipped over, it leans {np.degrees(self._body.tilt_rad):.0f} deg."
         fallen_m = z_before - self._body.z_m
         if fallen_m > physics.max_drop_m:
-            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: the robot fell {fallen_m:.2f} m.")
+            return f"the robot fell {fallen_m:.2f} m."
+        return ""
 
 
 def _keep_log_out_of_working_directory() -> None:
@@ -153,94 +150,10 @@ def _keep_log_out_of_working_directory() -> None:
     config.set()
 
 
-def _compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
-    """The compiled world, its labels and rooms."""
-    spec = house.spec.copy()
-    try:
-        bare = spec.compile()
-    except ValueError as error:
-        raise HouseError(f"House '{house.name}': {' '.join(str(error).split())}") from None
-    labels = read_labels(bare, rules=house.rules, ignore_prefix="")
-    rooms = read_rooms(bare)
-    names = _name_geoms(spec, labels)
-    _set_masks(spec, bare, labels)
-    _set_options(spec, config)
-    spec.attach(robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
-    spec.compiler.fusestatic = True
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise HouseError(f"House '{house.name}' with a robot: {' '.join(str(error).split())}") from None
-    return model, _renumber(labels, names, model), rooms
-
-
-def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
-    """Give each geom a name of its own; names by number in the bare house."""
-    geoms = spec.geoms
-    taken = {geom.name for geom in geoms}
-    for geom in geoms:
-        if geom.name:
-            continue
-        instance = int(labels.geom_instance[geom.id])
-        stem = labels.instances[instance].name if instance >= 0 else "geom"
-        number = geom.id
-        while f"{stem}:{number}" in taken:
-            number += len(geoms)
-        geom.name = f"{stem}:{number}"
-        taken.add(geom.name)
-    return [geom.name for geom in sorted(geoms, key=lambda geom: geom.id)]
-
-
-def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> None:
-    """Who touches whom (see `sim.robot.body`), and how near; what was visual only stays so."""
-    movable = bare.body_weldid[bare.geom_bodyid] != 0
-    for geom in spec.geoms:
-        if geom.contype == 0 and geom.conaffinity == 0:
-            continue
-        if movable[geom.id]:
-            mask = MOVABLE_MASK
-        elif labels.geom_category[geom.id] == _FLOOR:
-            mask = FLOOR_MASK
-        else:
-            mask = STATIC_MASK
-        geom.contype, geom.conaffinity = mask
-        geom.margin = geom.gap = 0.0  # the hull's skin is the only margin
-
-
-def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
-    """One set of physics options for every house."""
-    option = spec.option
-    option.timestep = config.physics.timestep_s
-    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
-    option.iterations, option.ls_iterations = 20, 20
-    option.impratio, option.noslip_iterations = 1.0, 0
-    option.gravity, option.wind = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
-    option.density, option.viscosity = 0.0, 0.0
-    option.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-    # multiccd gives wrong normals for a cylinder on a box's corner; a state reset in silence would hide a NaN.
-    option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_MULTICCD) | int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-
-
-def _renumber(labels: Labels, names: list[str], model: mujoco.MjModel) -> Labels:
-    """Labels of the bare house, whose geoms had these names, for the world's model."""
-    new_id = np.array([model.geom(name).id for name in names], dtype=np.int64)
-    category = np.zeros(model.ngeom, dtype=np.uint8)
-    category[new_id] = labels.geom_category
-    owner = np.full(model.ngeom, -1, dtype=np.int32)
-    owner[new_id] = labels.geom_instance
-    instances = tuple(
-        Instance(instance.name, instance.category, tuple(sorted(new_id[list(instance.geom_ids)].tolist())))
-        for instance in labels.instances
-    )
-    return replace(labels, instances=instances, geom_category=category, geom_instance=owner)
-
-
 def _storey_floors(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
     """Heights of the storeys' floors, lowest first; a rug or a threshold is no storey."""
     floors: list[float] = []
-    for top in sorted(_floor_tops(model, labels)):
+    for top in sorted(_floor_tops(model, labels).tolist()):
         if not floors or top - floors[-1] >= SAME_STOREY_M:
             floors.append(top)
     return tuple(floors) or (0.0,)

@@ -127,8 +127,18 @@ class DriveConfig:
     """The same for turns."""
     stall_speed_rad_s: float = 0.15
     stall_s: float = 0.1
+    touch_memory_s: float = 0.1
+    """A body that bounces along something still touches it for this long after the last contact."""
     back_off_m: float = 0.004
-    """Way back after a block, so that the hull rests against nothing."""
+    """Way back after a block, so that the hull rests against nothing ..."""
+    back_off_speed_m_s: float = 0.04
+    """... at this speed ..."""
+    back_off_max_s: float = 0.2
+    """... and for no longer than this."""
+    realign_max_s: float = 0.6
+    """Time given to turn back to the heading reference after a block."""
+    rest_max_s: float = 0.4
+    """Time given to brake at the end of an action."""
     position_tolerance_m: float = 0.0005
     """A forward motion has arrived when it is this near its end ..."""
     touching_tolerance_m: float = 0.005

@@ -16,15 +16,9 @@ from sim.interface import Action, wrap_angle
 from sim.robot.body import Body
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import Contact, ContactLog
+from sim.robot.profile import Trapezoid
 
 Ended = Literal["reached", "blocked", "timeout"]
-
-_BACK_OFF_SPEED_M_S = 0.04
-_BACK_OFF_MAX_S = 0.2
-_REALIGN_MAX_S = 0.6
-_REST_MAX_S = 0.4
-_TOUCH_MEMORY_S = 0.1
-"""A body that bounces along something still touches it for this long after the last contact."""
 
 
 @dataclass(frozen=True)
@@ -49,35 +43,6 @@ class Motion:
         return any(contact.stopped for contact in self.contacts)
 
 
-class Trapezoid:
-    """Distance over time that speeds up, cruises and slows down; a triangle where the way is short."""
-
-    def __init__(self, distance: float, speed: float, acceleration: float) -> None:
-        self._distance = distance
-        self._acceleration = acceleration
-        self._speed = min(speed, math.sqrt(distance * acceleration))
-        self._ramp_s = self._speed / acceleration
-        self.duration_s = distance / self._speed + self._ramp_s if self._speed > 0.0 else 0.0
-
-    def distance(self, time_s: float) -> float:
-        """Distance covered at one time: 0 before the start, all of it after the end."""
-        left_s = self.duration_s - time_s
-        if time_s <= 0.0:
-            return 0.0
-        if left_s <= 0.0:
-            return self._distance
-        if time_s < self._ramp_s:
-            return 0.5 * self._acceleration * time_s**2
-        if left_s < self._ramp_s:
-            return self._distance - 0.5 * self._acceleration * left_s**2
-        return self._speed * (time_s - 0.5 * self._ramp_s)
-
-    def speed(self, time_s: float) -> float:
-        """Speed at one time: 0 before the start and after the end."""
-        ramp = self._acceleration * min(time_s, self.duration_s - time_s)
-        return max(0.0, min(self._speed, ramp))
-
-
 class Driver:
     """Drives one robot in one world; remembers only the heading reference and where it stood."""
 
@@ -95,7 +60,7 @@ class Driver:
         # ... and this much pushes half-way between what blocks and what the motors can do.
         push_n = 0.5 * (self._drive.blocking_force_n + wheels.max_push_n)
         self._push_slip = self._full_slip * push_n / wheels.max_push_n
-        self._touch_ticks = math.ceil(_TOUCH_MEMORY_S / self._tick_s)
+        self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
         self._start_yaw = 0.0
         self._turns = 0
         self._ticks = 0
@@ -155,8 +120,8 @@ class Driver:
             heading_error = wrap_angle(reference - yaw)
             if time_s >= profile.duration_s and self._at_rest(lag, heading_error, speed, rate):
                 return "reached", None
-            force = -(cos * self._push_x() + sin * self._push_y())
-            pushed_ticks = pushed_ticks + 1 if force > drive.blocking_force_n else 0
+            resistance_n = cos * body.touch[1] + sin * body.touch[2]
+            pushed_ticks = pushed_ticks + 1 if resistance_n > drive.blocking_force_n else 0
             stalled_s = stalled_s + self._tick_s if lag > drive.stall_lag_m and speed < drive.stall_speed_m_s else 0.0
             if pushed_ticks >= drive.blocking_ticks or stalled_s >= drive.stall_s:
                 return "blocked", (cos, sin)
@@ -211,12 +176,14 @@ class Driver:
         if back_off:
             x0, y0, _, _, _ = body.state()
             cos, sin = math.cos(reference), math.sin(reference)
-            for _ in range(round(_BACK_OFF_MAX_S / self._tick_s)):
+            for _ in range(round(drive.back_off_max_s / self._tick_s)):
                 x, y, yaw, speed, rate = body.state()
                 if (x - x0) * cos + (y - y0) * sin <= -drive.back_off_m:
                     break
-                self._command(-_BACK_OFF_SPEED_M_S, drive.heading_gain_1_s * wrap_angle(reference - yaw), speed, rate)
-        for _ in range(round(_REALIGN_MAX_S / self._tick_s)):
+                self._command(
+                    -drive.back_off_speed_m_s, drive.heading_gain_1_s * wrap_angle(reference - yaw), speed, rate
+                )
+        for _ in range(round(drive.realign_max_s / self._tick_s)):
             _, _, yaw, speed, rate = body.state()
             error = wrap_angle(reference - yaw)
             if abs(error) <= drive.heading_tolerance_rad and abs(rate) <= drive.rest_speed_rad_s:
@@ -226,7 +193,7 @@ class Driver:
     def _come_to_rest(self) -> None:
         """Brake until nothing moves."""
         drive = self._drive
-        for _ in range(round(_REST_MAX_S / self._tick_s)):
+        for _ in range(round(drive.rest_max_s / self._tick_s)):
             _, _, _, speed, rate = self._body.state()
             if abs(speed) <= drive.rest_speed_m_s and abs(rate) <= drive.rest_speed_rad_s:
                 break
@@ -246,12 +213,6 @@ class Driver:
     @property
     def _touching(self) -> bool:
         return self._ticks < self._touched_until
-
-    def _push_x(self) -> float:
-        return -float(self._body.touch[1])
-
-    def _push_y(self) -> float:
-        return -float(self._body.touch[2])
 
     def _command(self, speed_m_s: float, rate_rad_s: float, actual_speed: float, actual_rate: float) -> None:
         """Hold one command of speed and turn rate for a tick.

@@ -13,7 +13,8 @@ from sim.houses.house import House
 from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.pose import Pose
 from sim.robot.config import Base, RobotConfig
-from sim.robot.drive import Motion, Trapezoid
+from sim.robot.drive import Motion
+from sim.robot.profile import Trapezoid
 from sim.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
 

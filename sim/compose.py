@@ -1,0 +1,110 @@
+"""A house and a robot as one compiled model, its labels kept.
+
+The house is compiled as it is to read its labels; then the masks of `sim.robot.body` are set, static bodies are fused
+(geoms of the world body cost half of what geoms in bodies of their own cost), the robot is attached, and the whole
+is compiled again. Geoms keep their names; an unnamed one is called after its instance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim.errors import HouseError
+from sim.gl import mujoco
+from sim.houses.house import House, Room, read_rooms
+from sim.houses.labels import Instance, Labels, read_labels
+from sim.interface import MPCAT40_ID
+from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK, robot_spec
+from sim.robot.config import RobotConfig
+
+_FLOOR = MPCAT40_ID["floor"]
+
+
+def compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
+    """The world's model, its labels and its rooms. The house's own specification is not touched.
+
+    Raises:
+        HouseError: a visible geom has no label, or the house cannot be compiled, alone or with a robot.
+    """
+    spec = house.spec.copy()
+    try:
+        bare = spec.compile()
+    except ValueError as error:
+        raise HouseError(f"House '{house.name}': {' '.join(str(error).split())}") from None
+    labels = read_labels(bare, rules=house.rules, ignore_prefix="")
+    rooms = read_rooms(bare)
+    names = _name_geoms(spec, labels)
+    _set_masks(spec, bare, labels)
+    _set_options(spec, config)
+    spec.attach(robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
+    spec.compiler.fusestatic = True
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise HouseError(f"House '{house.name}' with a robot: {' '.join(str(error).split())}") from None
+    return model, _renumber(labels, names, model), rooms
+
+
+def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
+    """Give each geom a name of its own; names by number in the bare house."""
+    geoms = spec.geoms
+    taken = {geom.name for geom in geoms}
+    for geom in geoms:
+        if geom.name:
+            continue
+        instance = int(labels.geom_instance[geom.id])
+        stem = labels.instances[instance].name if instance >= 0 else "geom"
+        number = geom.id
+        while f"{stem}:{number}" in taken:
+            number += len(geoms)
+        geom.name = f"{stem}:{number}"
+        taken.add(geom.name)
+    return [geom.name for geom in sorted(geoms, key=lambda geom: geom.id)]
+
+
+def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> None:
+    """Who touches whom (see `sim.robot.body`), and how near; what was visual only stays so."""
+    movable = bare.body_weldid[bare.geom_bodyid] != 0
+    for geom in spec.geoms:
+        if geom.contype == 0 and geom.conaffinity == 0:
+            continue
+        if movable[geom.id]:
+            mask = MOVABLE_MASK
+        elif labels.geom_category[geom.id] == _FLOOR:
+            mask = FLOOR_MASK
+        else:
+            mask = STATIC_MASK
+        geom.contype, geom.conaffinity = mask
+        geom.margin = geom.gap = 0.0  # the hull's skin is the only margin
+
+
+def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
+    """One set of physics options for every house."""
+    option = spec.option
+    option.timestep = config.physics.timestep_s
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.solver = mujoco.mjtSolver.mjSOL_NEWTON
+    option.iterations, option.ls_iterations = 20, 20
+    option.impratio, option.noslip_iterations = 1.0, 0
+    option.gravity, option.wind = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
+    option.density, option.viscosity = 0.0, 0.0
+    option.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    # multiccd gives wrong normals for a cylinder on a box's corner; a state reset in silence would hide a NaN.
+    option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_MULTICCD) | int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+
+
+def _renumber(labels: Labels, names: list[str], model: mujoco.MjModel) -> Labels:
+    """Labels of the bare house, whose geoms had these names, for the world's model."""
+    new_id = np.array([model.geom(name).id for name in names], dtype=np.int64)
+    category = np.zeros(model.ngeom, dtype=np.uint8)
+    category[new_id] = labels.geom_category
+    owner = np.full(model.ngeom, -1, dtype=np.int32)
+    owner[new_id] = labels.geom_instance
+    instances = tuple(
+        Instance(instance.name, instance.category, tuple(sorted(new_id[list(instance.geom_ids)].tolist())))
+        for instance in labels.instances
+    )
+    return replace(labels, instances=instances, geom_category=category, geom_instance=owner)

@@ -1,0 +1,34 @@
+"""The plan of a motion over time, in metres or in radians."""
+
+from __future__ import annotations
+
+import math
+
+
+class Trapezoid:
+    """Distance over time that speeds up, cruises and slows down; a triangle where the way is short."""
+
+    def __init__(self, distance: float, speed: float, acceleration: float) -> None:
+        self._distance = distance
+        self._acceleration = acceleration
+        self._speed = min(speed, math.sqrt(distance * acceleration))
+        self._ramp_s = self._speed / acceleration
+        self.duration_s = distance / self._speed + self._ramp_s if self._speed > 0.0 else 0.0
+
+    def distance(self, time_s: float) -> float:
+        """Distance covered at one time: 0 before the start, all of it after the end."""
+        left_s = self.duration_s - time_s
+        if time_s <= 0.0:
+            return 0.0
+        if left_s <= 0.0:
+            return self._distance
+        if time_s < self._ramp_s:
+            return 0.5 * self._acceleration * time_s**2
+        if left_s < self._ramp_s:
+            return self._distance - 0.5 * self._acceleration * left_s**2
+        return self._speed * (time_s - 0.5 * self._ramp_s)
+
+    def speed(self, time_s: float) -> float:
+        """Speed at one time: 0 before the start and after the end."""
+        ramp = self._acceleration * min(time_s, self.duration_s - time_s)
+        return max(0.0, min(self._speed, ramp))
