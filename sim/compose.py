@@ -29,6 +29,9 @@ def compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, 
         HouseError: a visible geom has no label, or the house cannot be compiled, alone or with a robot.
     """
     spec = house.spec.copy()
+    spec.compiler.discardvisual = False  # what only cameras see belongs to the house
+    spec.compiler.settotalmass = -1.0  # would scale the robot as well
+    spec.memory = -1  # as much as the world needs
     try:
         bare = spec.compile()
     except ValueError as error:

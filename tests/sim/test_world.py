@@ -112,6 +112,18 @@ def test_a_houses_own_physics_options_do_not_count():
     assert option.disableflags & mujoco.mjtDisableBit.mjDSBL_MULTICCD
 
 
+@pytest.mark.filterwarnings("ignore:compiler attribute 'settotalmass'")
+@pytest.mark.parametrize("setting", ["settotalmass='50'", "discardvisual='true'", "inertiafromgeom='true'"])
+def test_a_houses_compiler_settings_change_neither_robot_nor_what_is_seen(setting):
+    plain = World(furnished())
+    world = World(House("set", mujoco.MjSpec.from_string(XML.replace("<option", f"<compiler {setting}/>\n<option"))))
+    base = world.model.body("robot/base").id
+    assert world.model.body_subtreemass[base] == pytest.approx(RobotConfig().body.mass_kg)
+    assert world.model.ngeom == plain.model.ngeom
+    world.reset(ORIGIN)
+    assert world.move(Action.MOVE_FORWARD).displacement_m == pytest.approx(0.25, abs=0.001)
+
+
 def test_the_house_itself_is_never_changed():
     house = furnished()
     before = house.spec.to_xml()
