@@ -40,7 +40,7 @@ def play_episode(
         try:
             observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
         except PhysicsError as broken:
-            error = f"House '{episode.house}', step {steps}: {broken}"
+            error = f"Step {steps + 1}: {broken}"
             break
         steps += 1
         done = terminated or truncated

@@ -14,15 +14,32 @@ ROOT = Path(__file__).parents[1]
 
 
 def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
-    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=False)
+    tracked = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if tracked.returncode:
         pytest.skip("no git checkout")
     for name in filter(None, tracked.stdout.split("\0")):
         copy = tmp_path / "source" / name
         copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_bytes((ROOT / name).read_bytes())
-    build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", tmp_path, "./source"]
-    subprocess.run(list(map(str, build)), cwd=tmp_path, check=True, capture_output=True)
+    build = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--no-index",
+        "--no-deps",
+        "--no-build-isolation",
+        "-w",
+        tmp_path,
+        "./source",
+    ]
+    subprocess.run(list(map(str, build)), cwd=tmp_path, check=True)
     (wheel,) = tmp_path.glob("*.whl")
     packed = set(zipfile.ZipFile(wheel).namelist())
     shipped = [file for file in (ROOT / "assets/mjcf_houses").rglob("*") if file.suffix in {".xml", ".gz", ".png"}]
