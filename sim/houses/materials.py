@@ -90,6 +90,8 @@ MATERIALS: dict[str, Material] = {
     ),
     "towel": _material("e9e6df 2f8f9a c0594a 8aa6c0 5b6f5a d9b34a", "d9a6b4 6a5a8a 3f4f5f a9cfc0 b98a5a"),
     "curtain": _material("d8cfbd 2f6f78 8a9aa5 a85a4a e8e6e0 6b705c", "c9a95a 5a4a6a cfd9d0 3f4f6a b07a8a"),
+    "sheer": _material("f4f1ea90 e6ebee90", "efe6d690 e9e4f090"),
+    "cardboard": _material("c2a077 b08c60", "a9906f cdb596"),
     "chrome": _material("c9ccd0 b4b7bb", "d8d4cc a4a9b0", specular=0.9, shininess=0.8),
     "metal": _material("8d9094 a9abac 2b2c2e 5a5d60", "b08d57 3a3330 7a828a dcdcd6", specular=0.5, shininess=0.5),
     "dark": _material("1f2022 2b2b2d 26282c", "161a20 302a28 20262a", specular=0.3, shininess=0.3),

@@ -143,7 +143,7 @@ def make_item(category: str, rng: np.random.Generator, *, pool: Pool, style: str
     other hints       meaning
     ================= ============================================================================================
     width_m           the outer width along y: exact for curtain, blinds, counter, cabinet kitchen_wall, railing, floor,
-                      picture, mirror, board_panel, shelving, towel; nearly so for most others
+                      picture, mirror, board_panel, shelving; nearly so for most others
     depth_m, height_m likewise along x and z; curtains and columns take `height_m` from the floor up. A blind is as long
                       as it is let down: hang it with its upper edge at the window's, at z = top - item.size_m[2]
     with_sink         counter run: True, False; None draws. The sink is a child labelled sink

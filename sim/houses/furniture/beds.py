@@ -73,9 +73,9 @@ def platform(w: Workbench) -> None:
     length, width = _mattress_size(w)
     wood, top = w.look("wood"), w.length(0.42, 0.48)
     half = 0.5 * width + 0.14
-    w.box((-0.04, length + 0.14), (-half, half), (0.12, 0.24), wood)
+    w.box((-0.04, length + 0.14), (-half, half), (0.12, top - _MATTRESS + 0.01), wood)
     w.box((0.12, length - 0.05), (-half + 0.18, half - 0.18), (0.0, 0.12), w.look("dark"))
-    w.box((-0.08, -0.04), (-half, half), (0.12, w.length(0.75, 0.90)), wood)
+    w.box((-0.08, -0.03), (-half, half), (0.12, w.length(0.75, 0.90)), wood)
     _bedding(w, 0.0, length, width, top)
 
 

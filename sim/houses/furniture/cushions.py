@@ -5,6 +5,9 @@ Usual retail dimensions: throw cushions 0.40-0.50 m, floor cushions 0.45-0.70 m,
 
 from __future__ import annotations
 
+import itertools
+import math
+
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.shapes import (
     Ring,
@@ -68,6 +71,87 @@ def round_rug(w: Workbench) -> None:
         w.cylinder((0.0, 0.0), (0.0, 0.006 + 0.002 * i), share * r, w.new_look("fabric"), solid=False)
 
 
+def round_cushion(w: Workbench) -> None:
+    """Round throw cushion with a button, standing on its edge."""
+    r = 0.5 * w.choice((0.38, 0.42))
+    tilt = 1.25
+    w.mesh(
+        loft([Ring(-0.055, 0.6 * r, 0.6 * r), Ring(0.0, r, r), Ring(0.055, 0.6 * r, 0.6 * r)], 16, hull=True),
+        (0.0, 0.0, r),
+        w.look("bright"),
+        tilt=tilt,
+    )
+    x, z = 0.055 * math.sin(tilt), r + 0.055 * math.cos(tilt)
+    w.ellipsoid((x, 0.0, z), (0.02, 0.02, 0.008), w.look("dark"), solid=False, tilt=tilt)
+
+
+def banded_cushion(w: Workbench) -> None:
+    """Square throw cushion with a broad band of another cloth."""
+    side = w.choice((0.42, 0.46, 0.50))
+    w.mesh(pillow((side, side, 0.14)), (0.0, 0.0, 0.5 * side), w.look("bright"), tilt=1.25)
+    w.mesh(
+        pillow((1.01 * side, 0.30 * side, 0.148), 6.0),
+        (0.0, 0.0, 0.5 * side),
+        w.new_look("bright"),
+        tilt=1.25,
+        solid=False,
+    )
+
+
+def knot_cushion(w: Workbench) -> None:
+    """Knot of thick rolls."""
+    r = 0.055
+    look = w.look("bright")
+    points = [
+        (0.0, -0.12, 0.06),
+        (0.05, 0.0, 0.06),
+        (0.0, 0.12, 0.07),
+        (-0.06, 0.07, 0.13),
+        (0.0, -0.06, 0.16),
+        (0.06, 0.05, 0.16),
+        (0.0, 0.12, 0.20),
+        (-0.05, -0.03, 0.22),
+        (0.03, -0.12, 0.16),
+        (0.0, -0.12, 0.06),
+    ]
+    for a, b in itertools.pairwise(points):
+        w.rod(a, b, r, look, round_ends=True)
+
+
+def runner(w: Workbench) -> None:
+    """Long narrow striped rug for halls."""
+    width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
+    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.007), w.look("fabric"), solid=False)
+    band = w.look("bright")
+    for side in (-1, 1):
+        c = side * (0.5 * depth - 0.10)
+        w.box((c - 0.03, c + 0.03), (-0.5 * width + 0.08, 0.5 * width - 0.08), (0.0, 0.010), band, solid=False)
+
+
+def shag(w: Workbench) -> None:
+    """Thick plain rug with a border."""
+    width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
+    w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.new_look("fabric"), solid=False)
+    w.box(
+        (-0.5 * depth + 0.09, 0.5 * depth - 0.09),
+        (-0.5 * width + 0.09, 0.5 * width - 0.09),
+        (0.0, 0.012),
+        w.new_look("fabric"),
+        solid=False,
+    )
+
+
+def oriental(w: Workbench) -> None:
+    """Patterned rug with fringes at both ends."""
+    width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
+    w.box(
+        (-0.5 * depth, 0.5 * depth), (-0.5 * width + 0.06, 0.5 * width - 0.06), (0.0, 0.009), w.look("rug"), solid=False
+    )
+    for side in (-1, 1):
+        low, high = sorted((side * (0.5 * width - 0.065), side * 0.5 * width))
+        w.box((-0.5 * depth, 0.5 * depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
+
+
 STYLES = (
     Style("cushion", "square", "train", square_cushion, ("throw",), "top"),
     Style("cushion", "lumbar", "train", lumbar_cushion, ("throw",), "top"),
@@ -76,4 +160,10 @@ STYLES = (
     Style("cushion", "floor_round", "heldout", floor_round, ("floor",)),
     Style("floor", "rug_rectangle", "train", rug, ("rug",), walk_over=True),
     Style("floor", "rug_round", "heldout", round_rug, ("rug",), walk_over=True),
+    Style("cushion", "round", "train", round_cushion, ("throw",), "top"),
+    Style("cushion", "banded", "train", banded_cushion, ("throw",), "top"),
+    Style("cushion", "knot", "heldout", knot_cushion, ("throw",), "top"),
+    Style("floor", "rug_runner", "train", runner, ("rug",), walk_over=True),
+    Style("floor", "rug_bordered", "train", shag, ("rug",), walk_over=True),
+    Style("floor", "rug_fringed", "heldout", oriental, ("rug",), walk_over=True),
 )

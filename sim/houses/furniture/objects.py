@@ -10,6 +10,8 @@ import math
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.shapes import (
     Ring,
+    chamfered_box,
+    hoop,
     loft,
 )
 from sim.houses.furniture.workbench import Workbench
@@ -131,15 +133,183 @@ def fruit_bowl(w: Workbench) -> None:
 def box_crate(w: Workbench) -> None:
     """Cardboard box, taped."""
     dx, dy, dz = 0.5 * w.length(0.28, 0.42), 0.5 * w.length(0.34, 0.55), w.length(0.24, 0.38)
-    w.box((-dx, dx), (-dy, dy), (0.0, dz), w.look("wicker"))
+    w.box((-dx, dx), (-dy, dy), (0.0, dz), w.look("cardboard"))
     w.box((-dx - 0.001, dx + 0.001), (-0.025, 0.025), (dz - 0.08, dz + 0.002), w.look("paper"), solid=False)
 
 
+def basket(w: Workbench) -> None:
+    """Wicker basket with a blanket or toys."""
+    r, high = w.length(0.17, 0.24), w.length(0.24, 0.38)
+    w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
+    w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
+    w.ellipsoid((0.02, 0.0, high), (0.75 * r, 0.8 * r, 0.06), w.look("bright"), solid=False)
+    for side in _BOTH:
+        w.rod(
+            (0.0, side * (r + 0.012), high - 0.05),
+            (0.0, side * (r + 0.012), high + 0.06),
+            0.010,
+            w.look("leather"),
+            solid=False,
+        )
+
+
+def kettle(w: Workbench) -> None:
+    """Kettle on its base."""
+    look, dark = w.look("steel") if w.chance(0.5) else w.look("appliance"), w.look("dark")
+    w.cylinder((0.0, 0.0), (0.0, 0.02), 0.085, dark)
+    w.mesh(
+        loft(
+            [Ring(0.02, 0.08, 0.08), Ring(0.06, 0.085, 0.085), Ring(0.19, 0.06, 0.06), Ring(0.21, 0.03, 0.03)],
+            14,
+            hull=True,
+        ),
+        (0.0, 0.0, 0.0),
+        look,
+    )
+    w.rod((0.06, 0.0, 0.12), (0.11, 0.0, 0.18), 0.014, look, solid=False)
+    w.rod((-0.055, 0.0, 0.20), (-0.11, 0.0, 0.18), 0.012, dark, solid=False, round_ends=True)
+    w.rod((-0.11, 0.0, 0.18), (-0.10, 0.0, 0.06), 0.012, dark, solid=False, round_ends=True)
+    w.ball((0.0, 0.0, 0.215), 0.014, dark, solid=False)
+
+
+def place_setting(w: Workbench) -> None:
+    """Plate, bowl, cup."""
+    white = w.look("ceramic")
+    w.mesh(
+        loft([Ring(0.0, 0.07, 0.07), Ring(0.02, 0.13, 0.13), Ring(0.02, 0.12, 0.12), Ring(0.006, 0.06, 0.06)], 16),
+        (0.0, 0.0, 0.0),
+        white,
+    )
+    w.mesh(
+        loft(
+            [Ring(0.006, 0.035, 0.035), Ring(0.065, 0.075, 0.075), Ring(0.065, 0.068, 0.068), Ring(0.02, 0.03, 0.03)],
+            14,
+        ),
+        (0.0, 0.0, 0.0),
+        w.look("pot"),
+    )
+    w.cylinder((0.02, 0.19), (0.0, 0.085), 0.04, w.look("bright"))
+    w.rod((0.02, 0.23, 0.025), (0.02, 0.23, 0.065), 0.006, w.look("bright"), solid=False)
+
+
+def clock(w: Workbench) -> None:
+    """Mantel clock."""
+    wood = w.look("wood")
+    w.box((-0.05, 0.05), (-0.12, 0.12), (0.0, 0.12), wood)
+    w.rod((-0.045, 0.0, 0.12), (0.045, 0.0, 0.12), 0.095, wood)
+    w.rod((0.04, 0.0, 0.12), (0.052, 0.0, 0.12), 0.075, w.look("paper"), solid=False)
+    w.bar((0.054, 0.0, 0.12), (0.054, 0.03, 0.155), 0.006, 0.003, w.look("dark"), solid=False)
+    w.bar((0.054, 0.0, 0.12), (0.054, -0.01, 0.18), 0.005, 0.003, w.look("dark"), solid=False)
+
+
+def photo_stand(w: Workbench) -> None:
+    """Framed photograph on a stand beside a candle."""
+    w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
+    w.box((0.004, 0.012), (-0.07, 0.07), (0.03, 0.205), w.look("paint"), tilt=-0.22, solid=False)
+    w.bar((-0.10, 0.0, 0.0), (-0.015, 0.0, 0.15), 0.03, 0.008, w.look("wood"))
+    w.cylinder((0.0, 0.17), (0.0, 0.10), 0.035, w.look("linen"))
+
+
+def bottles(w: Workbench) -> None:
+    """Two bottles and a jar on a tray."""
+    w.box((-0.10, 0.10), (-0.17, 0.17), (0.0, 0.015), w.look("wood"))
+    glass = w.new_look("paint")
+    for y, high in ((-0.10, 0.26), (0.0, 0.30)):
+        w.mesh(
+            loft(
+                [
+                    Ring(0.015, 0.036, 0.036),
+                    Ring(0.6 * high, 0.036, 0.036),
+                    Ring(0.75 * high, 0.014, 0.014),
+                    Ring(high, 0.014, 0.014),
+                ],
+                12,
+                hull=True,
+            ),
+            (0.0, y, 0.0),
+            glass,
+        )
+        glass = w.new_look("paint")
+    w.cylinder((0.0, 0.10), (0.015, 0.13), 0.05, w.look("ceramic"))
+    w.cylinder((0.0, 0.10), (0.13, 0.145), 0.045, w.look("wood"), solid=False)
+
+
+def waste_bin(w: Workbench) -> None:
+    """Pedal bin."""
+    r, high, look = w.length(0.12, 0.16), w.length(0.32, 0.60), w.look("appliance")
+    w.cylinder((0.0, 0.0), (0.02, high - 0.05), r, look)
+    w.cylinder((0.0, 0.0), (0.0, 0.03), r + 0.005, w.look("dark"))
+    w.ellipsoid((0.0, 0.0, high - 0.05), (r + 0.004, r + 0.004, 0.05), w.look("dark"))
+    w.box((r - 0.01, r + 0.045), (-0.03, 0.03), (0.008, 0.02), w.look("dark"), solid=False)
+
+
+def suitcase(w: Workbench) -> None:
+    """Wheeled suitcase with ribs and a drawn-out handle."""
+    high, look, dark = w.length(0.55, 0.68), w.look("bright"), w.look("dark")
+    w.mesh(chamfered_box((0.25, 0.42, high), 0.04), (0.0, 0.0, 0.05 + 0.5 * high), look)
+    for i in range(4):
+        y = (i - 1.5) * 0.09
+        w.box((0.12, 0.132), (y - 0.018, y + 0.018), (0.12, high - 0.02), look, solid=False)
+    for sx in _BOTH:
+        for sy in _BOTH:
+            w.ball((sx * 0.09, sy * 0.16, 0.03), 0.03, dark)
+    for y in (-0.08, 0.08):
+        w.rod((-0.08, y, high + 0.03), (-0.08, y, high + 0.38), 0.008, w.look("chrome"))
+    w.rod((-0.08, -0.10, high + 0.38), (-0.08, 0.10, high + 0.38), 0.015, dark, round_ends=True)
+
+
+def digital_piano(w: Workbench) -> None:
+    """Keyboard on crossed legs with a music rest and a bench cushion's height of air below."""
+    half, dark, metal = 0.5 * w.length(1.20, 1.35), w.look("dark"), w.look("metal")
+    w.mesh(chamfered_box((0.32, 2 * half, 0.12), 0.02), (0.0, 0.0, 0.74), dark)
+    w.box((0.0, 0.145), (-half + 0.06, half - 0.06), (0.795, 0.806), w.look("ceramic"), solid=False)
+    w.box((0.0, 0.08), (-half + 0.08, half - 0.08), (0.80, 0.814), w.look("char"), solid=False)
+    w.box((-0.10, -0.08), (-0.28, 0.28), (0.79, 1.0), dark, tilt=-0.25, solid=False)
+    for side in _BOTH:
+        y = side * (half - 0.22)
+        w.bar((-0.02, y - side * 0.28, 0.02), (-0.02, y + side * 0.10, 0.69), 0.04, 0.04, metal)
+        w.bar((0.03, y + side * 0.10, 0.02), (0.03, y - side * 0.28, 0.69), 0.04, 0.04, metal)
+        for dy in (-0.28, 0.10):
+            w.box((-0.17, 0.17), (y + side * dy - 0.02, y + side * dy + 0.02), (0.0, 0.035), metal)
+
+
+def shoji_screen(w: Workbench) -> None:
+    """Room divider: four upright lattice panels of wood and paper in zigzag."""
+    panels, each, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
+    wood, paper = w.look("wood"), w.look("paper")
+    run = each * math.cos(fold)
+    for i in range(panels):
+        sign = 1 if i % 2 == 0 else -1
+        c = (i + 0.5 - 0.5 * panels) * run
+        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
+        w.box((-0.004, 0.004), (c - 0.5 * each, c + 0.5 * each), (0.05, high - 0.02), paper, turn=sign * fold)
+        for t in (-0.5 * each + 0.012, 0.0, 0.5 * each - 0.012):
+            w.box(
+                (t * dx - 0.011, t * dx + 0.011),
+                (c + t * dy - 0.011, c + t * dy + 0.011),
+                (0.0 if t else 0.05, high),
+                wood,
+                turn=sign * fold,
+            )
+        for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
+            w.box((-0.010, 0.010), (c - 0.5 * each, c + 0.5 * each), (z, z + 0.03), wood, turn=sign * fold)
+
+
 STYLES = (
-    Style("furniture", "upright_piano", "train", upright_piano, ("piano",)),
-    Style("furniture", "folding_screen", "heldout", folding_screen, ("screen",)),
     Style("objects", "book_stack", "train", book_stack, ("top",), "top"),
     Style("objects", "vase", "heldout", vase, ("top",), "top"),
-    Style("objects", "fruit_bowl", "train", fruit_bowl, ("kitchen", "top"), "top"),
-    Style("objects", "crate", "train", box_crate, ("floor",)),
+    Style("objects", "crate", "train", box_crate, ("floor",), "floor"),
+    Style("objects", "fruit_bowl", "train", fruit_bowl, ("kitchen",), "top"),
+    Style("objects", "kettle", "train", kettle, ("kitchen",), "top"),
+    Style("objects", "clock", "train", clock, ("top",), "top"),
+    Style("objects", "photo_stand", "train", photo_stand, ("top",), "top"),
+    Style("objects", "basket", "train", basket, ("floor",)),
+    Style("objects", "place_setting", "heldout", place_setting, ("kitchen", "top"), "top"),
+    Style("objects", "bottles", "heldout", bottles, ("kitchen", "top"), "top"),
+    Style("objects", "waste_bin", "heldout", waste_bin, ("floor",)),
+    Style("objects", "suitcase", "heldout", suitcase, ("floor",)),
+    Style("furniture", "digital_piano", "heldout", digital_piano, ("piano",)),
+    Style("furniture", "upright_piano", "train", upright_piano, ("piano",)),
+    Style("furniture", "folding_screen", "train", folding_screen, ("screen",)),
+    Style("furniture", "shoji_screen", "heldout", shoji_screen, ("screen",)),
 )

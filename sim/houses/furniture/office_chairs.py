@@ -86,7 +86,7 @@ def executive(w: Workbench) -> None:
     _star_base(w, 0.33, w.look("chrome"), seat - 0.08)
     w.mesh(chamfered_box((0.50, 2 * half - 0.06, 0.12), 0.04), (0.02, 0.0, seat - 0.06), leather)
     w.box((-0.14, 0.14), (-0.14, 0.14), (seat - 0.14, seat - 0.10), dark)
-    for i, (low, high) in enumerate(((0.0, 0.24), (0.24, 0.45), (0.45, height - seat))):
+    for i, (low, high) in enumerate(((-0.07, 0.24), (0.24, 0.45), (0.45, height - seat))):
         size = (0.11 - 0.01 * i, 2 * half - 0.04 - 0.04 * i, high - low + 0.01)
         w.mesh(
             chamfered_box(size, 0.035),

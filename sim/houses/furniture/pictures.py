@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.item import Look
+from sim.houses.furniture.shapes import (
+    named_mesh,
+)
 from sim.houses.furniture.workbench import Workbench
 
 _BOTH = (-1, 1)
@@ -102,6 +105,205 @@ def whiteboard(w: Workbench) -> None:
     w.box((0.0, 0.07), (-0.25 * width, 0.25 * width), (-0.012, 0.0), metal)
 
 
+def triptych(w: Workbench) -> None:
+    """Three unframed canvases side by side that share one composition of bands."""
+    width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
+    w.mount_height_m = 1.52 - 0.5 * height
+    each, gap = (width - 0.08) / 3, 0.04
+    ground, bands = w.new_look("paint"), [w.new_look("paint") for _ in range(2)]
+    for i in range(3):
+        y0 = -0.5 * width + i * (each + gap)
+        w.box((0.0, 0.030), (y0, y0 + each), (0.0, height), ground)
+        level = height * (0.62 - 0.12 * i)
+        w.box((0.025, 0.033), (y0, y0 + each), (0.0, level), bands[0], solid=False)
+        w.box((0.025, 0.036), (y0, y0 + each), (0.0, 0.45 * level), bands[1], solid=False)
+    w.rod(
+        (0.025, 0.30 * width, 0.75 * height),
+        (0.033, 0.30 * width, 0.75 * height),
+        0.09 * height + 0.02,
+        bands[1],
+        solid=False,
+    )
+
+
+def portrait(w: Workbench) -> None:
+    """Portrait: head and shoulders in a broad gilt frame."""
+    width, height = w.width(0.40, 0.65), w.height(0.55, 0.85)
+    w.mount_height_m = 1.52 - 0.5 * height
+    border = 0.065
+    _frame(w, width, height, border, 0.045, w.look("brass"))
+    w.box(
+        (0.0, 0.012),
+        (-0.5 * width + border, 0.5 * width - border),
+        (border, height - border),
+        w.new_look("paint"),
+        solid=False,
+    )
+    inner = 0.5 * width - border
+    coat, skin = w.new_look("paint"), w.look("linen")
+    w.ellipsoid((0.012, 0.0, border + 0.06), (0.008, 0.82 * inner, 0.24 * height), coat, solid=False)
+    w.box((0.0, 0.045), (-0.5 * width + border, 0.5 * width - border), (0.002, border), w.look("brass"), solid=False)
+    w.ellipsoid((0.014, 0.0, 0.58 * height), (0.008, 0.34 * inner + 0.01, 0.14 * height), skin, solid=False)
+    w.ellipsoid(
+        (0.013, 0.0, 0.645 * height), (0.008, 0.36 * inner + 0.012, 0.10 * height), w.new_look("book"), solid=False
+    )
+
+
+def photo_group(w: Workbench) -> None:
+    """Four to six small frames hung as one group."""
+    columns, rows = w.whole(2, 3), 2
+    width, height = w.width(0.70, 1.10), w.height(0.60, 0.80)
+    w.mount_height_m = 1.52 - 0.5 * height
+    frame, paper = w.look("dark") if w.chance(0.5) else w.look("wood"), w.look("paper")
+    cell_y, cell_z = width / columns, height / rows
+    for i in range(columns):
+        for j in range(rows):
+            y0, z0 = -0.5 * width + i * cell_y, j * cell_z
+            pad_y, pad_z = (0.0 if i == 0 else 0.02), (0.0 if j == 0 else 0.02)
+            y, z = (
+                (y0 + pad_y, y0 + cell_y - (0.0 if i == columns - 1 else 0.02)),
+                (z0 + pad_z, z0 + cell_z - (0.0 if j == rows - 1 else 0.02)),
+            )
+            w.box((0.0, 0.022), y, z, frame)
+            w.box((0.018, 0.024), (y[0] + 0.018, y[1] - 0.018), (z[0] + 0.018, z[1] - 0.018), paper, solid=False)
+            w.box(
+                (0.020, 0.026), (y[0] + 0.06, y[1] - 0.06), (z[0] + 0.06, z[1] - 0.06), w.new_look("paint"), solid=False
+            )
+
+
+def still_life(w: Workbench) -> None:
+    """Framed still life: a table's edge, a vase, fruit."""
+    width, height = w.width(0.50, 0.90), w.height(0.45, 0.75)
+    w.mount_height_m = 1.52 - 0.5 * height
+    border = 0.04
+    _frame(w, width, height, border, 0.03, w.look("wood"))
+    y, z = (-0.5 * width + border, 0.5 * width - border), (border, height - border)
+    w.box((0.0, 0.012), y, z, w.look("linen"), solid=False)
+    table = border + 0.28 * height
+    w.box((0.0, 0.014), y, (border, table), w.new_look("book"), solid=False)
+    w.ellipsoid(
+        (0.014, -0.16 * width, table + 0.13 * height),
+        (0.005, 0.09 * width, 0.17 * height),
+        w.new_look("paint"),
+        solid=False,
+    )
+    w.box(
+        (0.0, 0.017),
+        (-0.19 * width, -0.13 * width),
+        (table + 0.26 * height, table + 0.36 * height),
+        w.new_look("paint"),
+        solid=False,
+    )
+    for i, c in enumerate((0.06, 0.18, 0.30)):
+        w.rod(
+            (0.0, c * width, table + 0.05 * height),
+            (0.016 + 0.002 * i, c * width, table + 0.05 * height),
+            0.07 * height,
+            w.new_look("paint"),
+            solid=False,
+        )
+
+
+def scroll(w: Workbench) -> None:
+    """Hanging scroll: cloth between two rods with a sun over mountains."""
+    width, height = w.width(0.40, 0.70), w.height(0.90, 1.30)
+    w.mount_height_m = 1.45 - 0.5 * height
+    wood, y = w.look("wood"), 0.5 * width
+    for z in (0.02, height - 0.02):
+        w.rod((0.02, -y, z), (0.02, y, z), 0.018, wood)
+    w.box((0.0, 0.02), (-y + 0.03, y - 0.03), (0.02, height - 0.02), w.look("paper"))
+    w.box((0.018, 0.024), (-y + 0.07, y - 0.07), (0.18 * height, 0.86 * height), w.look("linen"), solid=False)
+    w.rod(
+        (0.018, 0.2 * width, 0.72 * height),
+        (0.028, 0.2 * width, 0.72 * height),
+        0.11 * width,
+        w.new_look("paint"),
+        solid=False,
+    )
+    for i, (c, high) in enumerate(((-0.12, 0.34), (0.14, 0.24))):
+        hill = named_mesh(
+            "hill",
+            [
+                (dx, dy, dz)
+                for dx in (0.0, 0.004)
+                for dy, dz in ((-0.24 * width, 0.0), (0.24 * width, 0.0), (0.0, high * height))
+            ],
+        )
+        w.mesh(hill, (0.022 + 0.003 * i, c * width, 0.18 * height), w.new_look("paint"), solid=False)
+
+
+def tondo(w: Workbench) -> None:
+    """Round picture of nested circles in a thick ring."""
+    r = 0.5 * w.width(0.50, 0.90)
+    w.mount_height_m = 1.52 - r
+    w.rod((0.0, 0.0, r), (0.030, 0.0, r), r, w.look("wood"))
+    w.rod((0.0, 0.0, r), (0.033, 0.0, r), 0.88 * r, w.new_look("paint"), solid=False)
+    w.rod((0.0, 0.2 * r, 1.1 * r), (0.036, 0.2 * r, 1.1 * r), 0.55 * r, w.new_look("paint"), solid=False)
+    w.rod((0.0, -0.25 * r, 0.8 * r), (0.039, -0.25 * r, 0.8 * r), 0.32 * r, w.new_look("paint"), solid=False)
+
+
+def standing_mirror(w: Workbench) -> None:
+    """Full-length mirror leaning on a stand."""
+    width, height, wood = w.width(0.42, 0.60), w.height(1.50, 1.75), w.look("wood")
+    y = 0.5 * width
+    lean = 0.12
+    for side in _BOTH:
+        w.bar((0.14, side * (y - 0.02), 0.0), (0.14 - lean, side * (y - 0.02), height), 0.04, 0.03, wood)
+    for z in (0.12, height - 0.03):
+        x = 0.14 - lean * z / height
+        w.box((x - 0.015, x + 0.015), (-y, y), (z - 0.025, z + 0.025), wood)
+    w.bar((0.137, 0.0, 0.12), (0.143 - lean, 0.0, height - 0.04), 2 * y - 0.06, 0.012, w.look("mirror"))
+    w.bar((-0.22, 0.0, 0.0), (0.04, 0.0, 0.72 * height), 0.05, 0.02, wood)
+    w.box((0.04, 0.07), (-y + 0.02, y - 0.02), (0.70 * height, 0.73 * height), wood)
+
+
+def arched_mirror(w: Workbench) -> None:
+    """Full-length mirror with a round top leaning on the wall."""
+    width, height = w.width(0.50, 0.70), w.height(1.50, 1.80)
+    r, metal = 0.5 * width, w.look("metal")
+    straight = height - r
+    w.box((0.0, 0.03), (-r, r), (0.0, straight), metal)
+    w.rod((0.0, 0.0, straight), (0.03, 0.0, straight), r, metal)
+    w.box((0.02, 0.034), (-r + 0.02, r - 0.02), (0.02, straight), w.look("mirror"), solid=False)
+    w.rod((0.02, 0.0, straight), (0.034, 0.0, straight), r - 0.02, w.look("mirror"), solid=False)
+
+
+def chalk_board(w: Workbench) -> None:
+    """Black board in a wooden frame with scribbles and a ledge."""
+    width, height = w.width(0.60, 1.10), w.height(0.50, 0.80)
+    w.mount_height_m = 1.05
+    _frame(w, width, height, 0.035, 0.025, w.look("wood"))
+    w.box((0.0, 0.012), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.03, height - 0.03), w.look("char"))
+    for i in range(3):
+        z = height * (0.72 - 0.17 * i)
+        w.box(
+            (0.008, 0.014),
+            (-0.36 * width, w.length(0.0, 0.36) * width),
+            (z - 0.008, z + 0.008),
+            w.look("paper"),
+            solid=False,
+        )
+    w.box((0.0, 0.06), (-0.4 * width, 0.4 * width), (0.0, 0.015), w.look("wood"), solid=False)
+
+
+def planner(w: Workbench) -> None:
+    """Wall planner: a grid of coloured cards on a steel sheet."""
+    width, height, steel = w.width(0.60, 1.00), w.height(0.50, 0.75), w.look("steel")
+    w.mount_height_m = 1.10
+    w.box((0.0, 0.012), (-0.5 * width, 0.5 * width), (0.0, height), steel)
+    for i in range(4):
+        for j in range(3):
+            if w.chance(0.75):
+                y, z = (i - 1.5) * 0.22 * width, (0.22 + 0.28 * j) * height
+                w.box(
+                    (0.010, 0.015),
+                    (y - 0.08 * width, y + 0.08 * width),
+                    (z - 0.09 * height, z + 0.09 * height),
+                    w.new_look("paint"),
+                    solid=False,
+                )
+
+
 STYLES = (
     Style("picture", "framed_abstract", "train", framed_abstract, (), "wall"),
     Style("picture", "canvas_landscape", "heldout", canvas_landscape, (), "wall"),
@@ -109,4 +311,14 @@ STYLES = (
     Style("mirror", "round", "heldout", round_mirror, ("wall",), "wall"),
     Style("board_panel", "cork_board", "train", cork_board, (), "wall"),
     Style("board_panel", "whiteboard", "heldout", whiteboard, (), "wall"),
+    Style("picture", "triptych", "train", triptych, (), "wall"),
+    Style("picture", "portrait", "train", portrait, (), "wall"),
+    Style("picture", "photo_group", "train", photo_group, (), "wall"),
+    Style("picture", "still_life", "train", still_life, (), "wall"),
+    Style("picture", "scroll", "heldout", scroll, (), "wall"),
+    Style("picture", "tondo", "heldout", tondo, (), "wall"),
+    Style("mirror", "standing", "train", standing_mirror, ("standing",)),
+    Style("mirror", "arched", "heldout", arched_mirror, ("standing",), "wall"),
+    Style("board_panel", "chalk_board", "train", chalk_board, (), "wall"),
+    Style("board_panel", "planner", "heldout", planner, (), "wall"),
 )

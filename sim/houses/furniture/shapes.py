@@ -93,7 +93,7 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> Me
 
     With `hull` the faces are left to the convex hull, which halves the XML of a convex loft.
     """
-    angles = (np.arange(segments) + 0.5) * (math.tau / segments)
+    angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)  # a corner of a rounded square is a vertex
     vertices = []
     for ring in rings:
         cos, sin = np.cos(angles), np.sin(angles)
@@ -113,11 +113,34 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> Me
     return named_mesh("loft", np.vstack(vertices), faces)
 
 
-def pillow(size_m: tuple[float, float, float], power: float = 3.5) -> MeshShape:
+def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -> MeshShape:
+    """A flat band about the z axis, its middle at z = 0, `radius_m` outside."""
+    angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)
+    inner = radius_m - thick_m
+    vertices = np.vstack(
+        [
+            np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(segments, z)])
+            for r, z in (
+                (radius_m, -0.5 * height_m),
+                (radius_m, 0.5 * height_m),
+                (inner, 0.5 * height_m),
+                (inner, -0.5 * height_m),
+            )
+        ]
+    )
+    faces: list[tuple[int, int, int]] = []
+    for level in range(4):
+        for i in range(segments):
+            j, up = (i + 1) % segments, (level + 1) % 4
+            faces += _quad(level * segments + i, level * segments + j, up * segments + j, up * segments + i)
+    return named_mesh("hoop", vertices, faces)
+
+
+def pillow(size_m: tuple[float, float, float], power: float = 4.5) -> MeshShape:
     """A stuffed cushion of full size `size_m` about the origin, thick in the middle and thin at its seam."""
     dx, dy, dz = (0.5 * side for side in size_m)
-    levels = ((-1.0, 0.45), (-0.72, 0.78), (0.0, 1.0), (0.72, 0.78), (1.0, 0.45))
-    return loft([Ring(z * dz, s * dx, s * dy, power=power) for z, s in levels], 12, hull=True)
+    levels = ((-1.0, 0.50), (-0.62, 0.82), (0.0, 1.0), (0.62, 0.82), (1.0, 0.50))
+    return loft([Ring(z * dz, s * dx, s * dy, power=power) for z, s in levels], 16, hull=True)
 
 
 def strip(path_m: Sequence[tuple[float, float]], thickness_m: float, width_m: float) -> MeshShape:

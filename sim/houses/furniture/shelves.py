@@ -9,7 +9,9 @@ from sim.houses.furniture import parts
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.item import Look
 from sim.houses.furniture.shapes import (
+    Ring,
     chamfered_box,
+    loft,
 )
 from sim.houses.furniture.workbench import Range, Workbench
 
@@ -52,35 +54,6 @@ def bookcase(w: Workbench) -> None:
     w.box((x[0], x[1] - 0.02), (y[0] + 0.022, y[1] - 0.022), (0.0, 0.06), look)
     for z in levels:
         _books(w, (x[0], x[1]), (y[0] + 0.03, y[1] - 0.03), z + 0.022, step - 0.022)
-
-
-def cubes(w: Workbench) -> None:
-    """Square pigeonholes: boxes in some, books in others."""
-    look = parts.body(w)
-    columns, rows = w.whole(2, 4), w.whole(2, 4)
-    cell, depth = 0.36, 0.38
-    width, height = columns * cell + 0.04, rows * cell + 0.04
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    for i in range(columns + 1):
-        c = y[0] + 0.02 + i * cell
-        w.box(x, (c - 0.015, c + 0.015), (0.0, height), look)
-    for j in range(rows + 1):
-        c = 0.02 + j * cell
-        w.box(x, y, (c - 0.015, c + 0.015), look)
-    w.box((x[0], x[0] + 0.006), y, (0.0, height), look)
-    for i in range(columns):
-        for j in range(rows):
-            y0, z0 = y[0] + 0.035 + i * cell, 0.035 + j * cell
-            if w.chance(0.45):
-                w.mesh(
-                    chamfered_box((0.33, 0.31, 0.30), 0.02),
-                    (0.0, y0 + 0.165, z0 + 0.15),
-                    w.new_look("fabric"),
-                    solid=False,
-                )
-            elif w.chance(0.6):
-                _books(w, x, (y0, y0 + cell - 0.03), z0, cell - 0.03)
-    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
 
 
 def ladder_shelf(w: Workbench) -> None:
@@ -147,11 +120,63 @@ def etagere(w: Workbench) -> None:
             w.cylinder((0.0, -0.14), (z + 0.012, z + 0.17), 0.045, w.look("ceramic"), solid=False)
 
 
+def corner_niche(w: Workbench) -> None:
+    """Open boxes of different sizes on the wall, books and vases in them."""
+    width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.body(w)
+    w.mount_height_m = 1.10
+    y0 = -0.5 * width
+    cells = ((y0, y0 + 0.55 * width, 0.0, 0.36), (y0 + 0.45 * width, y0 + width, 0.36, 0.72))
+    for low, high, z0, z1 in cells:
+        for z in (z0, z1 - 0.018):
+            w.box((0.0, depth), (low, high), (z, z + 0.018), look)
+        for c in (low, high - 0.018):
+            w.box((0.0, depth), (c, c + 0.018), (z0 + 0.018, z1 - 0.018), look)
+        w.box((0.0, 0.008), (low, high), (z0, z1), look)
+        _books(w, (0.008, depth), (low + 0.03, high - 0.10), z0 + 0.018, z1 - z0 - 0.04)
+    w.mesh(
+        loft([Ring(0.0, 0.04, 0.04), Ring(0.10, 0.06, 0.06), Ring(0.17, 0.03, 0.03)], 12, hull=True),
+        (0.5 * depth, y0 + 0.18 * width, 0.36),
+        w.look("pot"),
+        solid=False,
+    )
+
+
+def cubes(w: Workbench) -> None:
+    """Square pigeonholes: boxes in some, books in others; hint `width_m` sets how many."""
+    look = parts.body(w)
+    width = w.width(0.74, 1.50)
+    columns, rows = max(1, round((width - 0.04) / 0.36)), w.whole(2, 4)
+    cell, depth = (width - 0.03) / columns, 0.38
+    height = rows * 0.36 + 0.04
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    for i in range(columns + 1):
+        c = y[0] + 0.015 + i * cell
+        w.box(x, (c - 0.015, c + 0.015), (0.0, height), look)
+    for j in range(rows + 1):
+        c = 0.02 + j * 0.36
+        w.box(x, y, (c - 0.015, c + 0.015), look)
+    w.box((x[0], x[0] + 0.006), y, (0.0, height), look)
+    for i in range(columns):
+        for j in range(rows):
+            y0, z0 = y[0] + 0.035 + i * cell, 0.035 + j * 0.36
+            if w.chance(0.45):
+                w.mesh(
+                    chamfered_box((0.33, round(cell - 0.05, 2), 0.30), 0.02),
+                    (0.0, y0 + 0.5 * cell - 0.02, z0 + 0.15),
+                    w.new_look("fabric"),
+                    solid=False,
+                )
+            elif w.chance(0.6):
+                _books(w, x, (y0, y0 + cell - 0.04), z0, 0.33)
+    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
+
+
 STYLES = (
     Style("shelving", "bookcase", "train", bookcase, ("bookcase",)),
-    Style("shelving", "cubes", "train", cubes, ("bookcase",)),
     Style("shelving", "ladder_shelf", "train", ladder_shelf, ("bookcase",)),
     Style("shelving", "wall_boards", "train", wall_boards, ("wall",), "wall"),
     Style("shelving", "pipe_shelf", "heldout", pipe_shelf, ("bookcase",)),
     Style("shelving", "etagere", "heldout", etagere, ("bookcase",)),
+    Style("shelving", "niches", "heldout", corner_niche, ("wall",), "wall"),
+    Style("shelving", "cubes", "train", cubes, ("bookcase",)),
 )

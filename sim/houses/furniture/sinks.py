@@ -131,6 +131,54 @@ def inset_stone(w: Workbench) -> None:
     parts.tap(w, (-0.19, 0.06, 0.18), 0.20, 0.30, w.look("brass"))
 
 
+def utility(w: Workbench) -> None:
+    """Deep laundry tub of plastic on a steel stand."""
+    half, rim = 0.5 * w.width(0.50, 0.60), w.length(0.84, 0.88)
+    depth, white, metal = w.depth(0.46, 0.52), w.look("ceramic"), w.look("metal")
+    x = (-0.5 * depth, 0.5 * depth)
+    parts.basin(w, x, (-half, half), rim, 0.34, 0.03, white)
+    w.legs((x[0] + 0.02, x[1] - 0.02), (-half + 0.02, half - 0.02), (0.0, rim - 0.33), 0.03, metal)
+    for side in _BOTH:
+        w.box(
+            (x[0] + 0.03, x[1] - 0.03),
+            (side * (half - 0.035) - 0.01, side * (half - 0.035) + 0.01),
+            (0.16, 0.19),
+            metal,
+        )
+    w.cylinder((0.0, 0.0), (rim - 0.42, rim - 0.33), 0.025, w.look("dark"), solid=False)
+    w.box((x[0] - 0.02, x[0] + 0.01), (-half, half), (rim - 0.02, rim + 0.12), white)
+    parts.tap(w, (x[0] + 0.02, 0.0, rim + 0.02), 0.20, 0.12, w.look("chrome"))
+
+
+def trough(w: Workbench) -> None:
+    """Wide wash trough of stone on two brackets, two taps from the wall."""
+    width, depth = w.width(0.85, 1.10), w.depth(0.42, 0.48)
+    w.mount_height_m = 0.62
+    stone, brass = w.look("stone"), w.look("brass")
+    parts.basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), 0.22, 0.14, 0.04, stone)
+    for side in _BOTH:
+        y = side * 0.36 * width
+        w.box((0.0, 0.03), (y - 0.02, y + 0.02), (0.0, 0.08), w.look("iron"))
+        w.bar((0.015, y, 0.02), (depth - 0.10, y, 0.08), 0.03, 0.02, w.look("iron"))
+        w.rod((0.0, side * 0.22 * width, 0.34), (0.17, side * 0.22 * width, 0.34), 0.012, brass, solid=False)
+        w.rod((0.16, side * 0.22 * width, 0.35), (0.16, side * 0.22 * width, 0.30), 0.012, brass, solid=False)
+        w.rod(
+            (0.0, side * 0.22 * width + 0.07, 0.34), (0.04, side * 0.22 * width + 0.07, 0.34), 0.022, brass, solid=False
+        )
+
+
+def double_steel(w: Workbench) -> None:
+    """One steel plate with a large and a small bowl."""
+    steel = w.look("steel")
+    parts.basin(w, (-0.20, 0.20), (-0.24, 0.05), 0.18, 0.18, 0.012, steel)
+    parts.basin(w, (-0.20, 0.20), (0.05, 0.24), 0.18, 0.14, 0.012, steel)
+    w.box((-0.215, -0.195), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
+    w.box((0.195, 0.215), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
+    for side in _BOTH:
+        w.box((-0.215, 0.215), (side * 0.246 - 0.009, side * 0.246 + 0.009), (0.178, 0.185), steel, solid=False)
+    parts.tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
+
+
 STYLES = (
     Style("sink", "pedestal", "train", pedestal_sink, ("standing",)),
     Style("sink", "wall_basin", "train", wall_basin, ("standing",), "wall"),
@@ -139,4 +187,7 @@ STYLES = (
     Style("sink", "vessel_square", "heldout", vessel_square, ("vessel",), "top"),
     Style("sink", "console", "heldout", console_sink, ("standing",)),
     Style("sink", "inset_stone", "heldout", inset_stone, ("inset",), "top"),
+    Style("sink", "utility", "train", utility, ("standing",)),
+    Style("sink", "double_steel", "train", double_steel, ("inset",), "top"),
+    Style("sink", "trough", "heldout", trough, ("standing",), "wall"),
 )

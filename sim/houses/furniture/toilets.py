@@ -97,8 +97,79 @@ def high_cistern(w: Workbench) -> None:
         w.box((x0, x0 + 0.05), (-0.03, 0.03), (z, z + 0.02), brass, solid=False)
 
 
+def low_level(w: Workbench) -> None:
+    """Cistern on the wall at shoulder height joined to the pan by a bent pipe; lever."""
+    white, chrome, half, seat = w.look("ceramic"), w.look("chrome"), 0.5 * w.length(0.36, 0.39), w.length(0.40, 0.43)
+    x0 = -0.34
+    w.mesh(chamfered_box((0.18, 0.46, 0.34), 0.03), (x0 + 0.09, 0.0, 0.86), white)
+    w.mesh(chamfered_box((0.20, 0.48, 0.03), 0.012), (x0 + 0.10, 0.0, 1.04), white)
+    w.rod((x0 + 0.18, -0.15, 0.96), (x0 + 0.20, -0.15, 0.96), 0.012, chrome, solid=False)
+    w.bar((x0 + 0.205, -0.15, 0.96), (x0 + 0.205, -0.07, 0.94), 0.012, 0.012, chrome, solid=False)
+    w.rod((x0 + 0.09, 0.0, 0.28), (x0 + 0.09, 0.0, 0.72), 0.022, chrome)
+    w.rod((x0 + 0.09, 0.0, 0.30), (x0 + 0.22, 0.0, 0.30), 0.022, chrome, round_ends=True)
+    w.box((x0 + 0.03, x0 + 0.2), (-0.09, 0.09), (0.0, 0.28), white)
+    _pan(w, x0 + 0.10, 0.32, half, seat, white)
+    _seat_and_lid(w, x0 + 0.16, 0.32, half, seat, white, open_=w.chance(0.5))
+
+
+def square_modern(w: Workbench) -> None:
+    """Rounded block with a flat lid, straight sides down to the floor, cistern as wide as the pan."""
+    white, half, seat = w.look("ceramic"), 0.5 * w.length(0.35, 0.38), w.length(0.41, 0.44)
+    depth = w.length(0.62, 0.68)
+    x0 = -0.5 * depth
+    w.mesh(
+        loft(
+            [
+                Ring(0.0, 0.5 * (depth - 0.12), 0.92 * half, 0.02, power=5),
+                Ring(seat - 0.04, 0.5 * (depth - 0.02), half, 0.01, power=5),
+            ],
+            16,
+            hull=True,
+        ),
+        (0.0, 0.0, 0.0),
+        white,
+    )
+    w.box((x0, x0 + 0.15), (-half, half), (seat - 0.05, seat + 0.36), white)
+    w.mesh(
+        loft(
+            [
+                Ring(seat - 0.035, 0.5 * (depth - 0.16), half, 0.08, power=5),
+                Ring(seat + 0.012, 0.5 * (depth - 0.17), 0.98 * half, 0.08, power=5),
+            ],
+            16,
+            hull=True,
+        ),
+        (0.0, 0.0, 0.0),
+        white,
+    )
+    w.box((x0 + 0.03, x0 + 0.12), (-0.06, 0.06), (seat + 0.36, seat + 0.366), w.look("chrome"), solid=False)
+
+
+def one_piece(w: Workbench) -> None:
+    """Skirted one-piece: tank flows into the pan in one curve."""
+    white, half, seat = w.look("ceramic"), 0.5 * w.length(0.37, 0.41), w.length(0.40, 0.43)
+    x0 = -0.35
+    rings = [
+        Ring(0.0, 0.30, 0.75 * half, 0.0, power=3),
+        Ring(0.22, 0.29, 0.78 * half, -0.01, power=3),
+        Ring(seat - 0.04, 0.345, half, 0.0, power=2.4),
+    ]
+    w.mesh(loft(rings, 16, hull=True), (0.0, 0.0, 0.0), white)
+    tank = [
+        Ring(seat - 0.06, 0.13, half, x0 + 0.13, power=4),
+        Ring(seat + 0.14, 0.10, 0.96 * half, x0 + 0.10, power=4),
+        Ring(seat + 0.30, 0.10, half, x0 + 0.10, power=4),
+    ]
+    w.mesh(loft(tank, 16, hull=True), (0.0, 0.0, 0.0), white)
+    w.cylinder((x0 + 0.10, 0.0), (seat + 0.298, seat + 0.306), 0.03, w.look("chrome"), solid=False)
+    _seat_and_lid(w, x0 + 0.22, 0.345, half, seat, white, open_=w.chance(0.4))
+
+
 STYLES = (
     Style("toilet", "close_coupled", "train", close_coupled),
     Style("toilet", "wall_hung", "train", wall_hung),
     Style("toilet", "high_cistern", "heldout", high_cistern),
+    Style("toilet", "low_level", "train", low_level),
+    Style("toilet", "square_modern", "train", square_modern),
+    Style("toilet", "one_piece", "heldout", one_piece),
 )
