@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -20,7 +20,7 @@ from sim.sampling import sample_episode
 from sim.scene import Scene, SceneCache
 
 
-class ObjectNavEnv(gymnasium.Env[dict[str, NDArray], int]):
+class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what they hold, not by what they are
     """Find an object of a category in an apartment you have not seen.
 
     ## Actions
@@ -71,7 +71,7 @@ class ObjectNavEnv(gymnasium.Env[dict[str, NDArray], int]):
         HouseError: a house that breaks the house format.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 4}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012 - Gymnasium declares it so
 
     def __init__(
         self,

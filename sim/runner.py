@@ -13,9 +13,10 @@ import multiprocessing as mp
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 Line = dict[str, Any]
+ItemT = TypeVar("ItemT", bound="Item")
 MAX_TRIES = 2
 """How often an episode is started before a dying worker makes it an error."""
 
@@ -50,7 +51,7 @@ class PlayerSpec:
 
 
 def run_items(
-    spec: PlayerSpec, items: Sequence[Item], *, workers: int, on_death: Callable[[Item], Line]
+    spec: PlayerSpec, items: Sequence[ItemT], *, workers: int, on_death: Callable[[ItemT], Line]
 ) -> Iterator[Line]:
     """Yield a result line for each item, in the order in which they end.
 
@@ -76,12 +77,12 @@ def run_items(
 
 
 @dataclass
-class _Queue:
+class _Queue(Generic[ItemT]):
     """Items that wait, handed out house by house."""
 
-    items: list[Item]
+    items: list[ItemT]
 
-    def take(self, house: str | None, busy_houses: set[str]) -> Item | None:
+    def take(self, house: str | None, busy_houses: set[str]) -> ItemT | None:
         """The next item for a worker: of its own house, else of one nobody plays, else of any."""
         if not self.items:
             return None
@@ -97,22 +98,22 @@ class _Queue:
 
 
 @dataclass
-class _Worker:
+class _Worker(Generic[ItemT]):
     process: Any
     connection: Connection
-    item: Item | None = None
+    item: ItemT | None = None
     house: str | None = None
 
 
 @dataclass
-class _Pool:
+class _Pool(Generic[ItemT]):
     spec: PlayerSpec
-    queue: _Queue
+    queue: _Queue[ItemT]
     size: int
-    workers: list[_Worker] = field(default_factory=list)
+    workers: list[_Worker[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
 
-    def lines(self, on_death: Callable[[Item], Line]) -> Iterator[Line]:
+    def lines(self, on_death: Callable[[ItemT], Line]) -> Iterator[Line]:
         for _ in range(self.size):
             self._hand_out(self._spawn())
         while busy := {worker.connection: worker for worker in self.workers if worker.item is not None}:
@@ -129,17 +130,17 @@ class _Pool:
             worker.process.join()
             worker.connection.close()
 
-    def _spawn(self) -> _Worker:
+    def _spawn(self) -> _Worker[ItemT]:
         context = mp.get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=_work, args=(self.spec, theirs), daemon=True)
         process.start()
         theirs.close()
-        worker = _Worker(process, ours)
+        worker: _Worker[ItemT] = _Worker(process, ours)
         self.workers.append(worker)
         return worker
 
-    def _hand_out(self, worker: _Worker) -> None:
+    def _hand_out(self, worker: _Worker[ItemT]) -> None:
         busy = {other.house for other in self.workers if other.item is not None and other.house is not None}
         worker.item = self.queue.take(worker.house, busy)
         if worker.item is None:
@@ -148,7 +149,7 @@ class _Pool:
         with contextlib.suppress(OSError):  # it died while idle: `_receive` finds the pipe closed
             worker.connection.send(worker.item)
 
-    def _receive(self, worker: _Worker, on_death: Callable[[Item], Line]) -> Line | None:
+    def _receive(self, worker: _Worker[ItemT], on_death: Callable[[ItemT], Line]) -> Line | None:
         item = worker.item
         assert item is not None
         try:
@@ -161,7 +162,7 @@ class _Pool:
             raise outcome
         return outcome
 
-    def _bury(self, worker: _Worker, item: Item, on_death: Callable[[Item], Line]) -> Line | None:
+    def _bury(self, worker: _Worker[ItemT], item: ItemT, on_death: Callable[[ItemT], Line]) -> Line | None:
         """Replace a dead worker; its episode is tried again, or becomes an error."""
         worker.process.join()
         worker.connection.close()

@@ -18,7 +18,8 @@ from sim.env import ObjectNavEnv
 from sim.interface import ConfigError
 from sim.palette import with_legend
 from sim.rollout import episode_seed
-from stubborn import agents, draw
+from stubborn import draw
+from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 
@@ -56,7 +57,7 @@ def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
     """Camera, segmentation and map at the same height, uint8 (h, w, 3) each."""
     episode = env.split.episode(args.episode_id) if args.episode_id else env.split.episodes[0]
     observation, _ = env.reset(options={"episode": episode})
-    agent = agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
+    agent = StubbornAgent(camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
     agent.reset(episode.goal, episode_seed(0, episode.episode_id))
     action, done, steps = agent.act(observation), False, 0
     while not done and steps < args.step:
@@ -68,7 +69,7 @@ def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
     height = observation["rgb"].shape[0]
     belief = draw.draw_belief(agent)
     width = round(belief.shape[1] * height / belief.shape[0])
-    belief = cv2.resize(belief, (width, height), interpolation=cv2.INTER_AREA)
+    belief = np.asarray(cv2.resize(belief, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
     return [observation["rgb"], with_legend(observation["semantic"]), belief]
 
 

@@ -70,7 +70,7 @@ def test_gps_and_compass_are_relative_to_the_start_whatever_its_heading(house: P
 def test_stop_within_a_metre_of_the_goal_terminates_with_reward_1(env: ObjectNavEnv) -> None:
     env.reset(seed=0)
     for _ in range(9):
-        _, reward, terminated, truncated, info = env.step(Action.MOVE_FORWARD)
+        _, reward, terminated, truncated, _ = env.step(Action.MOVE_FORWARD)
         assert (reward, terminated, truncated) == (0.0, False, False)
     _, reward, terminated, truncated, info = env.step(Action.STOP)
     assert (reward, terminated, truncated) == (1.0, True, False)
@@ -88,10 +88,11 @@ def test_stop_far_from_the_goal_terminates_with_reward_0(env: ObjectNavEnv) -> N
 
 def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) -> None:
     env.reset(seed=0)
-    for step in range(1, 21):
-        _, _, terminated, truncated, info = env.step(Action.TURN_LEFT)
-        assert (terminated, truncated) == (False, step == 20)
-    assert info["end_reason"] == "max_steps"
+    steps = [env.step(Action.TURN_LEFT) for _ in range(20)]
+    assert [(terminated, truncated) for _, _, terminated, truncated, _ in steps] == [(False, False)] * 19 + [
+        (False, True)
+    ]
+    assert steps[-1][4]["end_reason"] == "max_steps"
 
 
 def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_none(env: ObjectNavEnv) -> None:
