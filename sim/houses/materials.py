@@ -38,6 +38,7 @@ class Material:
     heldout: Swatches
     specular: float = 0.1
     shininess: float = 0.1
+    emission: float = 0.0
 
     def swatches(self, pool: Pool) -> Swatches:
         """The swatches of a pool."""
@@ -51,7 +52,7 @@ _PLAIN: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
 
 def _material(
     train: str, heldout: str, textures: tuple[tuple[str, ...], tuple[str, ...]] = _PLAIN, *, specular: float = 0.1,
-    shininess: float = 0.1,
+    shininess: float = 0.1, emission: float = 0.0,
 ) -> Material:  # fmt: skip
     """A material from hex colours, and textures, of the train and the held-out pool."""
     return Material(
@@ -59,6 +60,7 @@ def _material(
         Swatches(tuple(heldout.split()), textures[1] or (None,)),
         specular,
         shininess,
+        emission,
     )
 
 
@@ -90,6 +92,7 @@ MATERIALS: dict[str, Material] = {
     ),
     "towel": _material("e9e6df 2f8f9a c0594a 8aa6c0 5b6f5a d9b34a", "d9a6b4 6a5a8a 3f4f5f a9cfc0 b98a5a"),
     "curtain": _material("d8cfbd 2f6f78 8a9aa5 a85a4a e8e6e0 6b705c", "c9a95a 5a4a6a cfd9d0 3f4f6a b07a8a"),
+    "skin": _material("e3b98f b98560 8a5a3e", "f0cdb0 a06a48"),
     "sheer": _material("f4f1ea90 e6ebee90", "efe6d690 e9e4f090"),
     "cardboard": _material("c2a077 b08c60", "a9906f cdb596"),
     "chrome": _material("c9ccd0 b4b7bb", "d8d4cc a4a9b0", specular=0.9, shininess=0.8),
@@ -105,7 +108,7 @@ MATERIALS: dict[str, Material] = {
     ),
     "glass": _material("a8cfd640 b9d3cf48", "c6d9ee3a a6bfb050", specular=0.9, shininess=0.9),
     "screen": _material("0c0e12 11161f", "090b0e 171a1c", specular=0.6, shininess=0.8),
-    "glow": _material("fff3d6 fdf6e6", "ffe9bd f4f7ff"),
+    "glow": _material("fff3d6 fdf6e6", "ffe9bd f4f7ff", emission=0.7),
     "shade": _material("efe4cc e8e6e2 c9b48f 3f4a55", "d9c1a0 f4efe8 8f4f3a 5f7a70"),
     "rubber": _material("232427 2d2e30", "1b1e22 363234"),
     "paper": _material("f0ece0 e4ddcc", "f4efe6 d9d2c6"),
@@ -143,7 +146,7 @@ MATERIALS: dict[str, Material] = {
         textures=(("rug_stripes", "rug_diamonds", "rug_lattice", "rug_kilim"), ("rug_medallion", "rug_rings")),
     ),
     "mirror": _material("cfe0e8 c6d6df", "d9e4e4 bccbd9", specular=0.9, shininess=0.9),
-    "fire": _material("f08a2a e8641f", "f2a33c d94f2a"),
+    "fire": _material("f08a2a e8641f", "f2a33c d94f2a", emission=0.6),
     "char": _material("17151a 1d1a19", "121416 221d1a"),
 }
 """Every material that furniture is made of. Colours were picked by eye from retail photographs' usual range."""
@@ -265,12 +268,12 @@ def _draw(material: Material, rng: np.random.Generator, pool: Pool) -> Look:
     swatches = material.swatches(pool)
     colour = swatches.colours[int(rng.integers(len(swatches.colours)))]
     texture = swatches.textures[int(rng.integers(len(swatches.textures)))]
-    return _look(colour, texture, material.specular, material.shininess)
+    return _look(colour, texture, material.specular, material.shininess, material.emission)
 
 
-def _look(colour: str, texture: str | None, specular: float, shininess: float) -> Look:
+def _look(colour: str, texture: str | None, specular: float, shininess: float, emission: float = 0.0) -> Look:
     rgba = [round(int(colour[i : i + 2], 16) / 255, 3) for i in range(0, len(colour), 2)]
     if len(rgba) == 3:
         rgba.append(1.0)
     repeat_m = TEXTURES[texture].tile_m if texture else 1.0
-    return Look((rgba[0], rgba[1], rgba[2], rgba[3]), texture, repeat_m, specular, shininess)
+    return Look((rgba[0], rgba[1], rgba[2], rgba[3]), texture, repeat_m, specular, shininess, emission)

@@ -35,6 +35,8 @@ class Texture:
     """What the picture's edge measures on a surface; 0: it is stretched over the whole face (rugs)."""
     draw: Callable[[np.random.Generator, int], Image]
     seed: int
+    upright: bool = False
+    """True: the picture's vertical is the wall's (courses of bricks); else it follows the longest side (grain)."""
 
     def pixels(self) -> NDArray[np.uint8]:
         """(SIZE_PX, SIZE_PX, 3) RGB."""
@@ -277,8 +279,12 @@ _PLUM, _ROSE, _SKY, _GOLD, _MINT = (
 _IVORY, _INK = (0.92, 0.90, 0.84), (0.12, 0.14, 0.18)
 
 
+_UPRIGHT = ("brick", "rubble", "tiles", "paper", "motif")
+"""Names of the functions whose pictures stand on walls."""
+
+
 def _entry(name: str, pool: Pool, tile_m: float, draw: Callable[..., Image], seed: int, **options: object) -> Texture:
-    return Texture(name, pool, tile_m, partial(draw, **options), seed)
+    return Texture(name, pool, tile_m, partial(draw, **options), seed, draw.__name__ in _UPRIGHT)
 
 
 # fmt: off

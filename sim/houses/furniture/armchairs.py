@@ -11,6 +11,7 @@ import math
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.shapes import (
     Ring,
+    arc_wall,
     chamfered_box,
     loft,
 )
@@ -91,29 +92,6 @@ def lounge(w: Workbench) -> None:
     w.top((x0 + 0.2, x1 - 0.05), (-half + 0.08, half - 0.08), seat + 0.03, "seat")
 
 
-def tub(w: Workbench) -> None:
-    """Barrel chair: one rounded shell round a deep cushion, on a plinth."""
-    width, height, seat = w.width(0.72, 0.82), w.length(0.70, 0.78), w.length(0.40, 0.44)
-    r, cloth = 0.5 * width, w.look("fabric")
-    w.cylinder((0.0, 0.0), (0.05, seat - 0.10), r - 0.03, cloth)
-    w.cylinder((0.0, 0.0), (0.0, 0.06), r - 0.10, w.look("dark"))
-    w.mesh(
-        loft(
-            [Ring(-0.08, r - 0.10, r - 0.10), Ring(0.04, r - 0.10, r - 0.10), Ring(0.08, r - 0.15, r - 0.15)],
-            14,
-            hull=True,
-        ),
-        (0.02, 0.0, seat - 0.08),
-        cloth,
-    )
-    for i in range(9):
-        angle = math.pi + (i - 4) * 0.47
-        top = height - 0.12 * abs(i - 4) / 4
-        x, y = (r - 0.05) * math.cos(angle), (r - 0.05) * math.sin(angle)
-        w.mesh(chamfered_box((0.10, 0.20, round(top - 0.10, 2)), 0.03), (x, y, 0.5 * (top + 0.10)), cloth, turn=angle)
-    w.top((-0.5 * r, 0.6 * r), (-0.5 * r, 0.5 * r), seat, "seat")
-
-
 def rocker(w: Workbench) -> None:
     """Rocking chair: curved runners, slatted high back, flat arms."""
     w.mass_kg = 9.0
@@ -134,6 +112,20 @@ def rocker(w: Workbench) -> None:
     for i in range(5):
         y = (i - 2) * (half - 0.06) / 2.5
         w.bar((-0.205, y, seat - 0.01), (-0.355, y, height - 0.03), 0.035, 0.012, wood)
+
+
+def tub(w: Workbench) -> None:
+    """Barrel chair: one rounded shell round a deep cushion, on a plinth."""
+    width, height, seat = w.width(0.72, 0.82), w.length(0.70, 0.78), w.length(0.40, 0.44)
+    r, cloth = 0.5 * width, w.look("fabric")
+    w.cylinder((0.0, 0.0), (0.05, seat - 0.10), r - 0.01, cloth)
+    w.cylinder((0.0, 0.0), (0.0, 0.06), r - 0.08, w.look("dark"))
+    cushion = [Ring(-0.12, r - 0.11, r - 0.11), Ring(-0.03, r - 0.10, r - 0.10), Ring(0.0, r - 0.14, r - 0.14)]
+    w.mesh(loft(cushion, 16, hull=True), (0.02, 0.0, seat), cloth)
+    angles = [math.pi + (i - 8) * 0.275 for i in range(17)]
+    tops = [height - 0.15 * (abs(i - 8) / 8) ** 2 for i in range(17)]
+    w.mesh(arc_wall(r, 0.10, 0.10, angles, tops), (0.0, 0.0, 0.0), cloth, solid=False)
+    w.top((-0.5 * r, 0.6 * r), (-0.5 * r, 0.5 * r), seat, "seat")
 
 
 STYLES = (

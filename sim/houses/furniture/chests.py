@@ -55,6 +55,7 @@ def handleless(w: Workbench) -> None:
     width, depth, height = w.width(0.80, 1.30), w.depth(0.42, 0.48), w.length(0.70, 0.85)
     body, front = w.look("wood"), w.look("lacquer")
     x, y = parts.case(w, depth, width, (0.04, height), body, foot=0.04)
+    w.box((x, x + 0.004), (y[0] + 0.008, y[1] - 0.008), (0.045, height - 0.01), parts.darker(front), solid=False)
     tall = (height - 0.06) / 3
     for i in range(3):
         z = 0.045 + i * tall

@@ -12,11 +12,9 @@ import math
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.item import MeshShape
 from sim.houses.furniture.shapes import (
-    Ring,
     chamfered_box,
     drape,
     hoop,
-    loft,
     named_mesh,
     pillow,
 )
@@ -346,26 +344,6 @@ def _extruded(
     return vertices, faces
 
 
-def clothes_heap(w: Workbench) -> None:
-    """Clothes dropped on the floor: a crumpled mound, trouser legs and sleeves hanging out of it."""
-    r = w.length(0.24, 0.32)
-    rings = [
-        Ring(0.0, r, 0.85 * r, power=2.6),
-        Ring(0.07, 0.95 * r, 0.9 * r, 0.02, power=2.6),
-        Ring(0.14, 0.62 * r, 0.7 * r, -0.05, 0.03),
-        Ring(0.19, 0.25 * r, 0.35 * r, -0.06, 0.05),
-    ]
-    w.mesh(loft(rings, 12), (0.0, 0.0, 0.0), w.new_look("denim"))
-    shirt = w.new_look("bright")
-    w.mesh(pillow((0.34, 0.30, 0.10), 2.6), (0.05, -0.07, 0.13), shirt, solid=False, tilt=0.3, turn=0.5)
-    w.rod((0.12, -0.10, 0.12), (0.28, -0.30, 0.05), 0.045, shirt, solid=False, round_ends=True)
-    w.rod((0.0, -0.16, 0.13), (-0.16, -0.33, 0.045), 0.042, shirt, solid=False, round_ends=True)
-    trousers = w.new_look("denim")
-    for dy in (0.0, 0.11):
-        w.rod((-0.06, 0.10 + dy, 0.12), (0.20 + dy, 0.30 + dy, 0.05), 0.055, trousers, solid=False, round_ends=True)
-    w.mesh(pillow((0.22, 0.26, 0.09), 3.0), (-0.10, 0.10, 0.15), w.new_look("bright"), solid=False, tilt=-0.3)
-
-
 def coat_tree(w: Workbench) -> None:
     """Coat stand: pole on four feet, arms with coats and a scarf."""
     wood, high = w.look("wood"), w.length(1.70, 1.85)
@@ -406,6 +384,21 @@ def sweater(w: Workbench) -> None:
     w.ellipsoid((0.12, 0.03, 0.105), (0.08, 0.07, 0.010), w.look("dark"), solid=False)
 
 
+def clothes_heap(w: Workbench) -> None:
+    """Clothes dropped on the floor: a shirt spread out, trousers across it, a crumpled rest."""
+    shirt, trousers = w.new_look("bright"), w.new_look("denim")
+    flat = 0.5 * math.pi
+    w.mesh(_garment(0.62), (0.30, 0.06, 0.025), shirt, tilt=-flat, turn=0.4)
+    w.mesh(_garment(0.66), (-0.02, -0.34, 0.06), w.new_look("bright"), solid=False, tilt=-flat + 0.06, turn=2.0)
+    for dy in (-0.075, 0.075):
+        w.rod((-0.28, 0.10 + dy, 0.07), (0.10, 0.28 + 2 * dy, 0.06), 0.062, trousers, solid=False, round_ends=True)
+        w.rod((0.10, 0.28 + 2 * dy, 0.06), (0.34, 0.16 + 2 * dy, 0.055), 0.052, trousers, solid=False, round_ends=True)
+    w.mesh(pillow((0.26, 0.30, 0.15), 2.4), (-0.20, -0.04, 0.10), w.new_look("bright"), solid=False, tilt=0.3, turn=0.7)
+    w.mesh(
+        pillow((0.20, 0.24, 0.10), 2.4), (-0.05, 0.02, 0.15), w.new_look("denim"), solid=False, tilt=-0.35, turn=-0.4
+    )
+
+
 STYLES = (
     Style("towel", "rail", "train", towel_rail, ("rail",), "wall"),
     Style("towel", "radiator", "train", towel_radiator, ("rail",), "wall"),
@@ -423,8 +416,8 @@ STYLES = (
     Style("clothes", "coat_hooks", "heldout", coat_hooks, ("hooks",), "wall"),
     Style("clothes", "laundry_basket", "heldout", laundry_basket, ("floor",)),
     Style("clothes", "open_wardrobe", "heldout", open_wardrobe, ("rack",)),
-    Style("clothes", "heap", "train", clothes_heap, ("floor",)),
     Style("clothes", "coat_tree", "heldout", coat_tree, ("rack",)),
     Style("clothes", "on_pegs", "heldout", wall_pegs_dress, ("hooks",), "wall"),
     Style("clothes", "sweater", "heldout", sweater, ("top",), "top"),
+    Style("clothes", "heap", "train", clothes_heap, ("floor",)),
 )

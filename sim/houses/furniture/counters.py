@@ -227,8 +227,8 @@ def curtained_run(w: Workbench) -> None:
     each = (width - 0.10) / bays
     for i in range(bays + 1):
         c = y[0] + 0.05 + i * each
-        if hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06:
-            w.box((x[0] + 0.03, x[1] - 0.03), (c - 0.05, c + 0.05), (0.0, under), pier)
+        beside_sink = hole is None or not hole[1][0] - 0.06 < c < hole[1][1] + 0.06
+        w.box((x[0] + 0.03 if beside_sink else x[1] - 0.10, x[1] - 0.03), (c - 0.05, c + 0.05), (0.0, under), pier)
     w.rod(
         (x[1] - 0.05, y[0] + 0.1, under - 0.03),
         (x[1] - 0.05, y[1] - 0.1, under - 0.03),

@@ -27,9 +27,8 @@ def _star_base(w: Workbench, radius: float, look: Look, seat: float) -> None:
     for i in range(5):
         angle = math.tau * i / 5 + 0.3
         c, s = math.cos(angle), math.sin(angle)
-        w.bar((0.0, 0.0, 0.09), (radius * c, radius * s, 0.065), 0.035, 0.022, look)
+        w.bar((0.0, 0.0, 0.09), (radius * c, radius * s, 0.058), 0.035, 0.022, look)
         w.ball((radius * c, radius * s, 0.028), 0.028, dark)
-        w.cylinder((radius * c, radius * s), (0.04, 0.07), 0.009, dark, solid=False)
     w.cylinder((0.0, 0.0), (0.07, 0.5 * seat + 0.05), 0.028, dark)
     w.cylinder((0.0, 0.0), (0.5 * seat, seat), 0.016, w.look("chrome"))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Literal
 
 from sim.houses.furniture.item import Look
@@ -12,6 +13,19 @@ FRONT_M = 0.018
 GAP_M = 0.004
 """Half the joint between two fronts."""
 Handle = Literal["bar", "knob", "cup", "none"]
+
+
+def darker(look: Look, factor: float = 0.45) -> Look:
+    """A plain, darker version of a look: the shadow in a joint."""
+    r, g, b, a = look.rgba
+    return dataclasses.replace(
+        look, rgba=(round(factor * r, 3), round(factor * g, 3), round(factor * b, 3), a), texture=None
+    )
+
+
+def _joints(w: Workbench, x: float, y: Range, z: Range, look: Look) -> None:
+    """What shows between fronts: without it joints vanish where no shadows are drawn."""
+    w.box((x, x + 0.003), (y[0] + GAP_M, y[1] - GAP_M), (z[0] + GAP_M, z[1] - GAP_M), darker(look), solid=False)
 
 
 def doors(
@@ -28,6 +42,8 @@ def doors(
 ) -> None:
     """`count` hinged doors side by side on the plane x; handles at meeting stiles, above the middle if `high`."""
     each = (y[1] - y[0]) / count
+    if count > 1:
+        _joints(w, x, y, z, look)
     tall = z[1] - z[0]
     grip = z[1] - min(0.22, 0.35 * tall) if not high else z[0] + min(0.22, 0.35 * tall)
     if tall > 1.2:
@@ -45,6 +61,8 @@ def drawers(
 ) -> None:
     """A grid of drawer fronts on the plane x, a handle each."""
     wide, tall = (y[1] - y[0]) / columns, (z[1] - z[0]) / rows
+    if rows * columns > 1:
+        _joints(w, x, y, z, look)
     for row in range(rows):
         for column in range(columns):
             y0, z0 = y[0] + column * wide, z[0] + row * tall

@@ -131,22 +131,18 @@ def portrait(w: Workbench) -> None:
     width, height = w.width(0.40, 0.65), w.height(0.55, 0.85)
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.065
-    _frame(w, width, height, border, 0.045, w.look("brass"))
-    w.box(
-        (0.0, 0.012),
-        (-0.5 * width + border, 0.5 * width - border),
-        (border, height - border),
-        w.new_look("paint"),
-        solid=False,
-    )
     inner = 0.5 * width - border
-    coat, skin = w.new_look("paint"), w.look("linen")
-    w.ellipsoid((0.012, 0.0, border + 0.06), (0.008, 0.82 * inner, 0.24 * height), coat, solid=False)
-    w.box((0.0, 0.045), (-0.5 * width + border, 0.5 * width - border), (0.002, border), w.look("brass"), solid=False)
-    w.ellipsoid((0.014, 0.0, 0.58 * height), (0.008, 0.34 * inner + 0.01, 0.14 * height), skin, solid=False)
-    w.ellipsoid(
-        (0.013, 0.0, 0.645 * height), (0.008, 0.36 * inner + 0.012, 0.10 * height), w.new_look("book"), solid=False
-    )
+    _frame(w, width, height, border, 0.045, w.look("brass"))
+    w.box((0.0, 0.012), (-inner, inner), (border, height - border), w.new_look("paint"), solid=False)
+    coat = [
+        (x, y, z)
+        for x in (0.0, 0.004)
+        for y, z in ((-0.9, 0.0), (0.9, 0.0), (-0.75, 0.16), (0.75, 0.16), (-0.3, 0.27), (0.3, 0.27))
+    ]
+    scaled = [(x, y * inner, z * height) for x, y, z in coat]
+    w.mesh(named_mesh("coat", scaled), (0.012, 0.0, border), w.new_look("book"), solid=False)
+    w.ellipsoid((0.014, 0.0, 0.61 * height), (0.006, 0.42 * inner, 0.15 * height), w.new_look("paint"), solid=False)
+    w.ellipsoid((0.018, 0.0, 0.57 * height), (0.006, 0.32 * inner, 0.13 * height), w.look("skin"), solid=False)
 
 
 def photo_group(w: Workbench) -> None:

@@ -136,6 +136,27 @@ def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -
     return named_mesh("hoop", vertices, faces)
 
 
+def arc_wall(
+    radius_m: float, thick_m: float, base_m: float, angles_rad: Sequence[float], tops_m: Sequence[float]
+) -> MeshShape:
+    """An upright curved wall about the z axis, from `base_m` up to a top for each angle; angles rise."""
+    n = len(angles_rad)
+    cos, sin = np.cos(angles_rad), np.sin(angles_rad)
+    outer, inner, tops = radius_m, radius_m - thick_m, np.asarray(tops_m)
+    base, lower = np.full(n, base_m), tops - 0.35 * thick_m
+    edges = ((outer, base), (outer, lower), (outer - 0.3 * thick_m, tops), (inner + 0.3 * thick_m, tops), (inner, base))
+    vertices = np.vstack([np.column_stack([r * cos, r * sin, z]) for r, z in edges])
+    count = len(edges)
+    faces: list[tuple[int, int, int]] = []
+    for k in range(count):
+        for i in range(n - 1):
+            up = (k + 1) % count
+            faces += _quad(k * n + i, k * n + i + 1, up * n + i + 1, up * n + i)
+    for k in range(1, count - 1):
+        faces += [(0, k * n, (k + 1) * n), (n - 1, (k + 1) * n + n - 1, k * n + n - 1)]
+    return named_mesh("wall", vertices, faces)
+
+
 def pillow(size_m: tuple[float, float, float], power: float = 4.5) -> MeshShape:
     """A stuffed cushion of full size `size_m` about the origin, thick in the middle and thin at its seam."""
     dx, dy, dz = (0.5 * side for side in size_m)

@@ -7,12 +7,16 @@ Ranges after Panero & Zelnik (sofa depth 0.81-1.02 m, seat 0.38-0.45 m high, 0.5
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import dataclass
 
 from sim.houses.furniture.catalogue import Style
 from sim.houses.furniture.item import Look
-from sim.houses.furniture.shapes import chamfered_box
+from sim.houses.furniture.shapes import (
+    Ring,
+    chamfered_box,
+    loft,
+    named_mesh,
+)
 from sim.houses.furniture.workbench import Workbench
 
 _BOTH = (-1, 1)
@@ -257,28 +261,6 @@ def corner(w: Workbench) -> None:
     _loose_cushions(w, moved, s.back + 0.16)
 
 
-def camelback(w: Workbench) -> None:
-    """Curved wooden crest rising in the middle, slender legs, thin arms."""
-    s, cloth, wood = _measure(w, (0.10, 0.13), (0.86, 0.96)), w.look("fabric"), w.look("wood")
-    x0, half = -0.5 * s.depth, 0.5 * s.width
-    w.mesh(chamfered_box((s.depth - 0.04, s.width - 0.04, 0.14), 0.03), (0.0, 0.0, s.seat - 0.16), cloth)
-    pieces = 7
-    for i in range(pieces):
-        t = (i + 0.5) / pieces * 2 - 1
-        top = s.height - 0.20 * t * t
-        y0, y1 = half * (2 * i / pieces - 1), half * (2 * (i + 1) / pieces - 1)
-        w.box((x0, x0 + 0.12), (y0, y1), (s.seat - 0.2, top - 0.02), cloth, tilt=0.0)
-        slope = [s.height - 0.20 * (y / half) ** 2 for y in (y0, y1)]
-        w.rod((x0 + 0.06, y0, slope[0] - 0.015), (x0 + 0.06, y1, slope[1] - 0.015), 0.03, wood, round_ends=True)
-    for side in _BOTH:
-        y = side * (half - 0.5 * s.arm)
-        w.box((x0 + 0.06, 0.5 * s.depth - 0.12), (y - 0.05, y + 0.05), (s.seat - 0.1, 0.62), cloth)
-        w.bar((x0 + 0.08, y, 0.64), (0.5 * s.depth - 0.08, y, 0.62), 0.06, 0.035, wood)
-    _seat_cushions(w, s, cloth, 0.12)
-    w.legs((x0 + 0.03, 0.5 * s.depth - 0.05), (-half + 0.05, half - 0.05), (0.0, s.seat - 0.22), 0.045, wood)
-    _loose_cushions(w, s, s.back)
-
-
 def daybed(w: Workbench) -> None:
     """Backless couch: slatted metal ends, one mattress, bolsters along the wall."""
     width, depth, seat = w.width(1.85, 2.05), w.depth(0.80, 0.95), w.length(0.42, 0.46)
@@ -308,29 +290,59 @@ def daybed(w: Workbench) -> None:
     _loose_cushions(w, _Sofa(width, depth, top, seat, 0.05, 0.2), 0.26)
 
 
+def camelback(w: Workbench) -> None:
+    """Curved wooden crest rising in the middle, slender legs, thin arms."""
+    s, cloth, wood = _measure(w, (0.10, 0.13), (0.86, 0.96)), w.look("fabric"), w.look("wood")
+    x0, half = -0.5 * s.depth, 0.5 * s.width
+    w.mesh(chamfered_box((s.depth - 0.04, s.width - 0.04, 0.14), 0.03), (0.0, 0.0, s.seat - 0.16), cloth)
+    crest = [(half * t, s.height - 0.03 - 0.20 * t * t) for t in (-1.0, -0.72, -0.4, 0.0, 0.4, 0.72, 1.0)]
+    back = [(x, y, z) for x in (0.0, 0.12) for y, z in (*crest, (-half, s.seat - 0.2), (half, s.seat - 0.2))]
+    w.mesh(named_mesh("crest", back), (x0, 0.0, 0.0), cloth)
+    for a, b in itertools.pairwise(crest):
+        w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.03, wood, round_ends=True)
+    for side in _BOTH:
+        y = side * (half - 0.5 * s.arm)
+        w.box((x0 + 0.06, 0.5 * s.depth - 0.12), (y - 0.05, y + 0.05), (s.seat - 0.1, 0.62), cloth)
+        w.bar((x0 + 0.08, y, 0.64), (0.5 * s.depth - 0.08, y, 0.62), 0.06, 0.035, wood)
+    _seat_cushions(w, s, cloth, 0.12)
+    w.legs((x0 + 0.03, 0.5 * s.depth - 0.05), (-half + 0.05, half - 0.05), (0.0, s.seat - 0.22), 0.045, wood)
+    _loose_cushions(w, s, s.back)
+
+
 def bubble(w: Workbench) -> None:
     """Low, round-ended modern sofa: a thick oval seat, one curved back, no arms."""
     width, depth, seat, height = w.width(1.70, 2.30), w.depth(0.90, 1.0), w.length(0.40, 0.43), w.length(0.70, 0.78)
     cloth = w.look("fabric")
     r, half = 0.5 * depth, 0.5 * width
-    w.box((-r + 0.12, r - 0.10), (-half + r, half - r), (0.0, 0.07), w.look("dark"))
-    w.box((-r + 0.02, r), (-half + r, half - r), (0.06, seat), cloth)
-    for side in _BOTH:
-        w.cylinder((0.0, side * (half - r)), (0.06, seat), r, cloth)
-    w.top((-r + 0.25, r - 0.05), (-half + 0.4, half - 0.4), seat, "seat")
-    n = 5
-    for i in range(n):
-        y0, y1 = (half - r) * (2 * i / n - 1), (half - r) * (2 * (i + 1) / n - 1)
-        w.rod((-r + 0.13, y0, height - 0.13), (-r + 0.13, y1, height - 0.13), 0.13, cloth, round_ends=True)
-    w.box((-r + 0.0, -r + 0.24), (-half + r, half - r), (0.06, height - 0.13), cloth)
-    for side in _BOTH:
-        arc = [
-            (-(r - 0.13) * math.cos(a), side * (half - r + (r - 0.13) * math.sin(a))) for a in (0.0, 0.45, 0.9, 1.35)
-        ]
-        for a, b in itertools.pairwise(arc):
-            for z in (height - 0.13, seat):
-                w.rod((*a, z), (*b, z), 0.13, cloth, round_ends=True)
-    _loose_cushions(w, _Sofa(width, depth, height, seat, 0.3, 0.26), 0.28)
+    w.mesh(
+        loft(
+            [Ring(0.0, r - 0.10, half - 0.12, power=3.5), Ring(0.07, r - 0.08, half - 0.10, power=3.5)], 16, hull=True
+        ),
+        (0.0, 0.0, 0.0),
+        w.look("dark"),
+    )
+    rings = [
+        Ring(0.06, 0.95 * r, 0.97 * half, power=3.5),
+        Ring(0.16, r, half, power=3.5),
+        Ring(seat - 0.08, r, half, power=3.5),
+        Ring(seat, 0.90 * r, 0.95 * half, power=3.5),
+    ]
+    w.mesh(loft(rings, 20, hull=True), (0.0, 0.0, 0.0), cloth)
+    w.top((-r + 0.28, r - 0.10), (-half + 0.4, half - 0.4), seat, "seat")
+    thick = 0.13
+    arc = [
+        (0.05, half - thick),
+        (-0.45 * r, half - thick - 0.04),
+        (-r + thick + 0.05, half - 0.42),
+        (-r + thick, 0.45 * half - 0.05),
+    ]
+    spine = [*arc, *[(x, -y) for x, y in reversed(arc)]]
+    for a, b in itertools.pairwise(spine):
+        tops = [height - thick - (0.16 if p == spine[0] or p == spine[-1] else 0.0) for p in (a, b)]
+        w.rod((*a, tops[0]), (*b, tops[1]), thick, cloth, round_ends=True)
+    for a, b in itertools.pairwise(spine[1:-1]):
+        w.rod((*a, seat), (*b, seat), thick - 0.01, cloth, round_ends=True)
+    _loose_cushions(w, _Sofa(width, depth, height, seat, 0.45, 0.26), 0.28)
 
 
 STYLES = (
@@ -339,7 +351,7 @@ STYLES = (
     Style("sofa", "wooden_frame", "train", wooden_frame),
     Style("sofa", "chesterfield", "train", chesterfield),
     Style("sofa", "corner", "train", corner, ("corner",)),
-    Style("sofa", "camelback", "heldout", camelback),
     Style("sofa", "daybed", "heldout", daybed),
+    Style("sofa", "camelback", "heldout", camelback),
     Style("sofa", "bubble", "heldout", bubble, ("corner",)),
 )

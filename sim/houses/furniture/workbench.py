@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from sim.houses import materials
 from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape, Mount, Pool, Surface
+from sim.houses.textures import TEXTURES
 
 T = TypeVar("T")
 Range = tuple[float, float]
@@ -115,7 +116,7 @@ class Workbench:
         half = np.array([0.5 * abs(hi - lo) for lo, hi in (x, y, z)])
         rotation = matrix_from_euler(0.0, 0.0, turn) @ matrix_from_euler(roll, tilt, 0.0)
         if look.texture is not None:
-            axes = _grain_axes(half)
+            axes = _grain_axes(half, upright=TEXTURES[look.texture].upright)
             rotation, half = rotation @ axes, np.abs(axes.T @ half)
         self.add("box", tuple(half), at, rotation, look, solid=solid)  # type: ignore[arg-type]
 
@@ -295,13 +296,16 @@ def _between(a: Point, b: Point) -> tuple[Point, float, NDArray]:
     return (float(middle[0]), float(middle[1]), float(middle[2])), 0.5 * length, rotation
 
 
-def _grain_axes(half: NDArray) -> NDArray[np.float64]:
+def _grain_axes(half: NDArray, *, upright: bool) -> NDArray[np.float64]:
     """Rotation that lays a box's local z along its thinnest side and its local y along its longest.
 
     MuJoCo maps a 2d texture over a box's z faces at its true scale and stretches it over the others; the image's
-    vertical, along which wood grain runs, follows local y.
+    vertical, along which wood grain runs, follows local y; `upright` pictures keep it on the world's vertical.
     """
     order = np.argsort(half, kind="stable")
+    if upright and order[0] != 2:
+        front = 1 if half[0] > 2.5 * half[1] else 0
+        order = np.array([front, 1 - front, 2])
     z, y = np.eye(3)[order[0]], np.eye(3)[order[2]]
     return np.column_stack([np.cross(y, z), y, z])
 
