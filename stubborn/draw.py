@@ -59,7 +59,7 @@ def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False
         plan = agent.route.plan
         canvas.outline(plan.goal, plan.frame, GOAL)
         canvas.line(trace_xy_m(plan, pose), PLAN, 2)
-    if agent.route is not None and agent.approach is None:
+    if agent.route is not None and agent.approach is None and not agent.explorer.on_errand:
         canvas.cross(corner_xy_m(agent.route.plan.frame, agent.explorer.corner, agent.config.exploration.inset), GOAL)
     canvas.robot(pose, agent.robot.radius_m)
     caption = f"{agent.goal}, step {agent.step}"

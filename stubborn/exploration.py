@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.interface import ConfigError
-from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
+from stubborn.grid import GridFrame, PlanarPose, Window, cells_near_segment
 from stubborn.navmap import NavMap
-from stubborn.planning import Bumps, FreeSpace, Plan, Planner
+from stubborn.planning import Bumps, FreeSpace, Plan, Planner, trace
+from stubborn.raster import connected, distance_to, large_parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +27,16 @@ class ExplorationConfig:
     """A corner with a longer way counts as infeasible."""
     first_corner: int = 0
     """Which corner comes first: 0 ahead left, 1 ahead right, 2 behind right, 3 behind left of the start heading."""
+    look_around_turns: int = 0
+    """Turns on the spot with which an episode begins; 11 show everything around the start."""
+    unseen_gap_m: float = 0.20
+    """Ground this far from anything that was in view counts as never looked at."""
+    unseen_area_m2: tuple[float, ...] = (0.25, 0.05)
+    """Least area of such ground that is worth an errand, first and later; empty: none is."""
+    regain_m2: float = 2.0
+    """A corner given up is tried again when this much more ground has been in view."""
+    margin_cells: int = 20
+    """Ground around the known part of the map on which errands may run."""
     arrived_m: float = 0.35
     """A place that stands in for an infeasible corner is reached within this distance."""
 
@@ -57,8 +69,24 @@ def corner_xy_m(frame: GridFrame, corner: int, inset: float) -> tuple[float, flo
     )
 
 
+@dataclass
+class _Errand:
+    """A place that is headed for when no corner can be."""
+
+    cells: tuple[NDArray[np.intp], NDArray[np.intp]]
+    """Rows and columns on the whole map; any of them will do."""
+    to_look: bool
+    """True: done as soon as all of it was in view. False: done on arrival."""
+
+
 class CornerExplorer:
-    """Keeps to one corner of the window; takes the next one clockwise as soon as there is no way to it."""
+    """Keeps to one corner of the window; takes the next one clockwise as soon as there is no way to it.
+
+    The window moves with the robot, and what is infeasible here may be feasible a step further on. So that the robot
+    does not swing between two such places, a corner given up counts as infeasible until new ground has been seen.
+    When all four are infeasible it goes on an errand and sees it through: to the nearest reachable ground that was
+    never in view (behind a door, a shelf), and when there is none, to the reachable place nearest the corner.
+    """
 
     def __init__(self, config: ExplorationConfig, planner: Planner, *, averse: bool, bumps: bool) -> None:
         """`averse` explores on the pessimistic map, `bumps` says whether collision marks are kept at all."""
@@ -72,18 +100,43 @@ class CornerExplorer:
         """Forget the last episode."""
         self.corner = self.config.first_corner
         """Index of the corner that is pursued."""
+        self._wanted_m2 = [0.0] * 4  # per corner, how much must have been seen before it is tried again
+        self._errand: _Errand | None = None
 
-    def route(self, view: NavMap, pose: PlanarPose) -> Route | None:
-        """The way to the corner, to the next feasible one, or to the nearest place to it; None when walled in."""
-        for bumps in self._maps:
+    @property
+    def on_errand(self) -> bool:
+        """Whether the last route led elsewhere than to a corner."""
+        return self._errand is not None
+
+    def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+        """The way to go on exploring; None when the robot is walled in."""
+        whole = navmap.known_window(self.config.margin_cells)
+        if self._errand is not None:
+            route = self._follow_errand(navmap, whole, pose)
+            if route is not None:
+                return route
+        return self._corner_route(navmap, window, pose) or self._new_errand(navmap, window, whole, pose)
+
+    def _corner_route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+        """The way to the corner or, clockwise, to the next feasible one."""
+        seen_m2 = navmap.seen_area_m2()
+        view = navmap.view(window)
+        open_corners = [(self.corner + turn) % 4 for turn in range(4)]
+        open_corners = [corner for corner in open_corners if seen_m2 >= self._wanted_m2[corner]]
+        for bumps in self._maps if open_corners else ():
             free = self.planner.free_space(view, pose, bumps)
-            for turn in range(4):
-                corner = (self.corner + turn) % 4
+            for tried, corner in enumerate(open_corners):
                 plan = self._plan_to_corner(free, corner, pose)
                 if plan is not None:
+                    self._give_up(open_corners[:tried], seen_m2)
                     self.corner = corner
                     return Route(plan, free)
-        return self._nearest_place(self.planner.free_space(view, pose, self._maps[0]), pose)
+        self._give_up(open_corners, seen_m2)
+        return None
+
+    def _give_up(self, corners: list[int], seen_m2: float) -> None:
+        for corner in corners:
+            self._wanted_m2[corner] = seen_m2 + self.config.regain_m2
 
     def _plan_to_corner(self, free: FreeSpace, corner: int, pose: PlanarPose) -> Plan | None:
         """The way to a corner, None when it is infeasible."""
@@ -93,17 +146,63 @@ class CornerExplorer:
         goal[index] = inside
         return self.planner.plan(free, goal, pose, farthest_m=self.config.farthest_way_m)
 
-    def _nearest_place(self, free: FreeSpace, pose: PlanarPose) -> Route | None:
-        """The way to the reachable cell nearest the corner; on arrival the turn comes to the next corner."""
+    def _new_errand(self, navmap: NavMap, window: Window, whole: Window, pose: PlanarPose) -> Route | None:
+        """Choose a place and the way to it."""
+        view = navmap.view(whole)
+        free = self.planner.free_space(view, pose, self._maps[0])
+        for area_m2 in self.config.unseen_area_m2:
+            unseen = large_parts(self._unseen(view) & free.reachable, area_m2 / free.frame.cell_m**2)
+            plan = self.planner.plan(free, unseen, pose)
+            if plan is not None:
+                row, col = trace(plan, pose, max_cells=unseen.size)[-1]
+                place = connected(unseen | plan.goal, row, col, connectivity=8)
+                self._errand = _Errand(_on_whole_map(np.nonzero(place), whole), to_look=True)
+                return Route(plan, free)
+        return self._nearest_place(navmap, window, pose)
+
+    def _nearest_place(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+        """The way to the reachable cell nearest the corner; one where the robot stands already is passed over."""
+        free = self.planner.free_space(navmap.view(window), pose, self._maps[0])
         cell_x_m, cell_y_m = free.frame.mesh()
         for _ in range(4):
             x_m, y_m = corner_xy_m(free.frame, self.corner, self.config.inset)
-            gap_m = np.where(free.reachable, np.hypot(cell_x_m - x_m, cell_y_m - y_m), np.inf)
-            plan = self.planner.plan(free, gap_m == gap_m.min(), pose)
-            if plan is not None and plan.length_m > self.config.arrived_m:
-                return Route(plan, free)
             self.corner = (self.corner + 1) % 4
+            gap_m = np.where(free.reachable, np.hypot(cell_x_m - x_m, cell_y_m - y_m), np.inf)
+            place = gap_m == gap_m.min()
+            plan = self.planner.plan(free, place, pose)
+            if plan is not None and plan.length_m > self.config.arrived_m:
+                self._errand = _Errand(_on_whole_map(np.nonzero(place), window), to_look=False)
+                return Route(plan, free)
         return None
+
+    def _follow_errand(self, navmap: NavMap, whole: Window, pose: PlanarPose) -> Route | None:
+        """The way on; None when the errand is done or has become impossible."""
+        errand, self._errand = self._errand, None
+        if errand is None:
+            return None
+        view = navmap.view(whole)
+        goal = np.zeros(whole.frame.shape, np.bool_)
+        rows, cols = errand.cells[0] - whole.rows.start, errand.cells[1] - whole.cols.start
+        inside = whole.frame.contains(rows, cols)
+        goal[rows[inside], cols[inside]] = True
+        if errand.to_look:
+            goal &= self._unseen(view)
+        free = self.planner.free_space(view, pose, self._maps[0])
+        plan = self.planner.plan(free, goal, pose)
+        if plan is None or (not errand.to_look and plan.length_m <= self.config.arrived_m):
+            return None
+        self._errand = errand
+        return Route(plan, free)
+
+    def _unseen(self, view: NavMap) -> NDArray[np.bool_]:
+        """Ground that is some way off everything that was in view."""
+        seen = (view.frames_in_view > 0) | view.visited
+        return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
+
+
+def _on_whole_map(cells: tuple[NDArray[np.intp], ...], part: Window) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    rows, cols = cells
+    return rows + part.rows.start, cols + part.cols.start
 
 
 def nearest_corner(heading_rad: float) -> int:

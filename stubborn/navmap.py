@@ -92,3 +92,8 @@ class NavMap:
             slice(max(known.start - margin_cells, 0), known.stop + margin_cells) for known in self.known or middle
         )
         return self.frame.part(rows, cols)
+
+    def seen_area_m2(self) -> float:
+        """Ground that was ever in view."""
+        seen = self.frames_in_view if self.known is None else self.frames_in_view[self.known]
+        return float(np.count_nonzero(seen)) * self.frame.cell_m**2

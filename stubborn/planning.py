@@ -38,9 +38,8 @@ class PlanningConfig:
     """Nearer to an obstacle than this the march slows down, so that ways keep clear where there is room."""
     wary_speed: float = 0.35
     """Speed of the march at an obstacle's edge, growing to 1 at `wary_m`; 1 switches the slowing off."""
-    first_march: float = 1.3
-    """The first march goes this many times the straight distance to the goal; if the way is longer, a second one
-    goes on without limit. Saves time only."""
+    first_march: float = 1.15
+    """The march is first tried up to this many times the straight distance to the goal. Saves time only."""
     own_ground_m: float = 0.12
     """Around its centre the robot's own ground is free, whatever the map says: it stands there."""
     ring_m: float = FORWARD_M
@@ -82,11 +81,12 @@ class Plan:
 
 
 class Planner:
-    """Plans on a window of the map. Holds no memory of the episode."""
+    """Plans on a window of the map."""
 
     def __init__(self, config: PlanningConfig, *, trust_visited: bool) -> None:
         self.config = config
         self.trust_visited = trust_visited
+        self._last_length_m = 0.0  # how far the next march probably has to go: saves time, changes no action
 
     def obstacles(self, view: NavMap, bumps: Bumps) -> NDArray[np.bool_]:
         """Depth obstacles, and the collision marks asked for where the body has not proved them wrong; a new array."""
@@ -125,11 +125,13 @@ class Planner:
         here = free.frame.cell(pose.x_m, pose.y_m)
         gap_m = float(np.hypot(rows - here[0], cols - here[1]).min()) * free.frame.cell_m
         speed = self._speed(free)
-        # Most ways are nearly straight, and a march that ends soon after reaching the robot costs half.
-        for limit_m in (self.config.first_march * gap_m + 2.0 * self.config.ring_m, math.inf):
+        # A march that ends soon after reaching the robot costs half of one over the whole window.
+        expected_m = max(self.config.first_march * gap_m, self._last_length_m) + 2.0 * self.config.ring_m
+        for limit_m in (expected_m, math.inf):
             distance_m = march(goal, free.reachable, speed, free.frame.cell_m, min(limit_m, farthest_m))
             length_m = float(distance_m[here])
             if math.isfinite(length_m):
+                self._last_length_m = length_m
                 return Plan(free.frame, goal, distance_m, length_m)
             if limit_m >= farthest_m:
                 break

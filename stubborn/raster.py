@@ -41,6 +41,14 @@ def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int)
     return np.asarray(parts) == parts[row, col]
 
 
+def large_parts(mask: NDArray[np.bool_], least_cells: float) -> NDArray[np.bool_]:
+    """The mask without its 8-connected parts of fewer cells."""
+    _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
+    large = np.asarray(stats)[:, cv2.CC_STAT_AREA] >= least_cells
+    large[0] = False  # part 0 is the background
+    return large[np.asarray(parts, np.intp)]
+
+
 def sight_is_clear(blocked: NDArray[np.bool_], starts: Cells, ends: Cells, edge_cells: float) -> NDArray[np.bool_]:
     """For each pair of cells whether no blocked cell lies on the straight line between their centres.
 

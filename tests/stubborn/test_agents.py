@@ -27,7 +27,7 @@ PLAN = """
 ####################
 """
 BOXES = boxes_from_plan(PLAN, 0.3)
-STEPS = 70
+STEPS = 40
 
 
 def build(name: str, **options: object) -> Agent:

@@ -46,6 +46,11 @@ def test_a_cell_of_a_window_is_the_same_place_in_the_whole(row: int, col: int, s
     assert np.zeros(FRAME.shape)[window.index].shape == window.frame.shape
 
 
+def test_a_window_has_its_point_in_the_middle_where_there_is_room():
+    window = FRAME.window_at(0.01, 3.01, 20)
+    assert window.frame.cell(0.01, 3.01) == (10, 10)
+
+
 def test_the_disc_swept_along_a_segment_is_every_cell_near_it():
     frame = GridFrame.around_start(80)
     start, end, radius_m = (-0.3, 0.1), (0.4, -0.5), 0.18

@@ -73,6 +73,15 @@ def test_every_second_pixel_gives_the_same_wall_without_gaps(distance_m: float):
     assert default.sum() >= 0.97 * full.sum()
 
 
+@pytest.mark.parametrize("distance_m", [1.0, 4.8])
+def test_the_sides_of_a_post_land_where_they_are(distance_m: float):
+    post = Box((distance_m, distance_m + 0.2), (0.10, 0.30))
+    navmap = mapped(GridWorld([post], (0.0, 0.0, 0.0), camera=CAMERA).render()[0], PlanarPose(0.0, 0.0, 0.0))
+    _, y_m = FRAME.centres(*np.nonzero(navmap.seen_obstacle))
+    assert y_m.min() == pytest.approx(0.10, abs=0.03)
+    assert y_m.max() == pytest.approx(0.30, abs=0.03)
+
+
 def test_no_return_and_the_end_of_the_range_put_nothing_on_the_map():
     depth = np.zeros((480, 640), np.float32)
     depth[:, 320:] = CAMERA.max_depth_m
@@ -155,6 +164,21 @@ def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction
     mapper.add_scores(part, depth, Scores(small, small), PlanarPose(0.0, 0.0, 0.0), 0)
     assert (part.score_max > 0.5).sum() >= 0.8 * (full.score_max > 0.5).sum() > 0
     assert not ((part.score_max > 0.5) & (full.score_max <= 0.5)).any()
+
+
+@pytest.mark.parametrize(("fraction", "stride_px"), [(1, 4), (2, 4), (4, 8)])
+def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: int):
+    """Else the rim of a near target would lie on the wall behind it."""
+    picture, wall = Box((1.5, 1.6), (-0.41, 0.33), (0.2, 1.5), "picture"), Box((4.5, 4.6), (-9.0, 9.0))
+    depth, semantic = GridWorld([picture, wall], (0.0, 0.0, 0.0), camera=CAMERA).render()
+    middle = slice(fraction // 2, None, fraction)
+    target = (semantic == PICTURE_ID).astype(np.float32)[middle, middle]
+    navmap = NavMap.empty(FRAME)
+    mapper = Mapper(CAMERA, RobotModel(), MappingConfig(score_stride_px=stride_px))
+    mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), PlanarPose(0.0, 0.0, 0.0), 0)
+    x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
+    assert x_m.size > 0
+    assert x_m.max() < 1.7
 
 
 def test_scores_of_another_shape_are_refused_with_both_shapes():

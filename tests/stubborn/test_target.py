@@ -177,6 +177,7 @@ def test_a_target_point_in_view_within_reach_ends_the_approach():
     assert seek.in_reach(navmap, sighting_at((30, 30, 1.2))) is None
     assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) == (30, 26)
     navmap.rejected[30, 26] = True
+    assert seek.in_reach(navmap, sighting_at((30, 31, 0.9), (30, 26, 0.8))) == (30, 31)
     assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) is None
 
 

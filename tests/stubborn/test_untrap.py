@@ -35,6 +35,10 @@ def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
         untrap.observe(F, True)
         untrap.observe(L, False)
     assert not untrap.active
+    untrap.observe(F, True)
+    assert untrap.active
+    untrap.observe(F, False)
+    fail(untrap, 5)
     untrap.observe(F, False)
     fail(untrap, 9)
     assert not untrap.active
