@@ -125,6 +125,11 @@ MATERIALS: dict[str, Material] = {
     "pot": _material("b5653f e6e2d8 4a4c50 8a9a94 c9a987", "8f4a3a d9cfe0 2f4a4f a3a08f", specular=0.2),
     "soil": _material("3a2a20", "42342a"),
     "foliage": _material("3f7a3a 2f6232 5a8f42 4a7f55 79983f", "35664f 6a9a5f 8aa05a 27503a"),
+    "hedge": _material(
+        "5a9a50 4f8a4a 7aa858",
+        "4f8a6a 86b06a 5f7a48",
+        textures=(("foliage_small",), ("foliage_large",)),
+    ),
     "flower": _material("d9483f e8b03a e9e2e6 b0507f", "e27fae 8f6fd0 f2d36a"),
     "stone": _material(
         "e8e4dc 8a8a8c 3d3e42 cbbfae",
@@ -155,6 +160,13 @@ _WALLS = _material(
     "efe9dc e6e3db dfe4e2 e9dccb d3dbd9 cdd6c8 e4d2c6 bccad2",
     "f2ecdf dcd6e0 d8c9b0 c2d2c4 e8d9dc b0b9b2",
     textures=(("plaster_soft", "plaster_grain", "paper_stripe"), ("plaster_trowel", "paper_flower")),
+)
+_WALL_TILES = _material(
+    "efece4 dfe4e2 d3dbd9 cdd6c8 bccad2 e9dccb",
+    "f2ecdf dcd6e0 c2d2c4 b0b9b2 e8d9dc",
+    textures=(("tiles_subway", "tiles_small", "tiles_square"), ("tiles_plank", "tiles_mosaic", "tiles_large")),
+    specular=0.3,
+    shininess=0.4,
 )
 _CEILINGS = _material("f4f3ef ecebe6", "f7f4ea e6e8ea", textures=(("plaster_soft",), ("plaster_trowel",)))
 
@@ -226,12 +238,9 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
 
 
 def wall_look(rng: np.random.Generator, pool: Pool, room_kind: str = "") -> Look:
-    """A wall's paint or paper, in wet rooms sometimes tiles."""
-    if room_kind in ("bathroom", "laundry") and rng.random() < 0.6:
-        texture = "tiles_subway" if pool == "train" else "tiles_plank"
-        colour = _WALLS.swatches(pool).colours
-        return _look(colour[int(rng.integers(len(colour)))], texture, 0.3, 0.4)
-    return _draw(_WALLS, rng, pool)
+    """A wall's paint or paper, in wet rooms mostly tiles."""
+    tiled = room_kind in ("bathroom", "laundry") and rng.random() < 0.7
+    return _draw(_WALL_TILES if tiled else _WALLS, rng, pool)
 
 
 def floor_look(room_kind: str, rng: np.random.Generator, pool: Pool) -> Look:

@@ -21,7 +21,7 @@ Image = NDArray[np.float64]
 """(px, px) grey or (px, px, 3) RGB, both in [0, 1]."""
 
 SIZE_PX = 128
-GREY_LEVELS = 24
+GREY_LEVELS = 48
 """Fewer levels compress better and nobody sees it."""
 
 
@@ -323,9 +323,9 @@ _ALL = (
     _entry("stone_rubble", "train", 1.0, rubble, 53, stones=22),
     _entry("stone_ashlar", "heldout", 1.2, tiles, 54, across=3, down=5, grout_px=1.8, shade=0.12, offset=0.37),
     # walls and cloth
-    _entry("plaster_soft", "train", 2.0, plaster, 61, grain=0.012, cloud=0.015),
+    _entry("plaster_soft", "train", 2.0, plaster, 61, grain=0.014, cloud=0.010),
     _entry("plaster_grain", "train", 1.2, plaster, 62, grain=0.035, cloud=0.01),
-    _entry("plaster_trowel", "heldout", 2.4, plaster, 63, grain=0.015, cloud=0.045),
+    _entry("plaster_trowel", "heldout", 2.4, plaster, 63, grain=0.018, cloud=0.022),
     _entry("paper_stripe", "train", 0.8, paper, 64, stripes=8, contrast=0.07),
     _entry("paper_flower", "heldout", 0.8, motif, 65, across=6, contrast=0.10),
     _entry("carpet_loop", "train", 0.6, carpet, 71, tuft_px=1.4, contrast=0.10),

@@ -74,7 +74,7 @@ def tree(w: Workbench) -> None:
         w.ellipsoid(
             (dx, dy, tall - 0.8 * crown + dz),
             (s * crown, s * crown, 0.8 * s * crown),
-            w.look("foliage"),
+            w.look("hedge"),
             solid=dz == 0.0,
         )
 
@@ -151,7 +151,7 @@ def topiary(w: Workbench) -> None:
         (0.0, 0.0, 0.0),
         look,
     )
-    green = w.look("foliage")
+    green = w.look("hedge")
     w.cylinder((0.0, 0.0), (0.31, 0.34 + 2.6 * ball), 0.018, w.look("wood"))
     w.ball((0.0, 0.0, 0.31 + ball), ball, green)
     w.ball((0.0, 0.0, 0.31 + 2.55 * ball), 0.72 * ball, green)
@@ -224,7 +224,7 @@ def bonsai(w: Workbench) -> None:
     """Crooked little tree in a flat tray."""
     w.box((-0.07, 0.07), (-0.11, 0.11), (0.0, 0.045), w.look("pot"))
     w.box((-0.06, 0.06), (-0.10, 0.10), (0.045, 0.049), w.look("soil"), solid=False)
-    bark, green = w.look("wood"), w.look("foliage")
+    bark, green = w.look("wood"), w.look("hedge")
     w.rod((0.0, 0.02, 0.045), (0.0, -0.04, 0.13), 0.013, bark, round_ends=True)
     w.rod((0.0, -0.04, 0.13), (0.0, 0.03, 0.20), 0.010, bark, round_ends=True)
     for at, s in (((0.0, 0.04, 0.215), 1.0), ((0.01, -0.07, 0.155), 0.8), ((-0.02, 0.08, 0.165), 0.65)):

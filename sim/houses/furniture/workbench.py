@@ -104,7 +104,7 @@ class Workbench:
         mesh: MeshShape | None = None,
     ) -> None:  # fmt: skip
         """Any geom: half sizes, centre, rotation matrix (3, 3)."""
-        half = tuple(round(max(s, MIN_HALF_M), 4) for s in size)
+        half = tuple(round(max(float(s), MIN_HALF_M), 4) for s in size)
         self._geoms.append(Geom(shape, half, _rounded(at), look, euler_from_matrix(rotation), solid, mesh))  # type: ignore[arg-type]
 
     def box(
