@@ -385,18 +385,19 @@ def sweater(w: Workbench) -> None:
 
 
 def clothes_heap(w: Workbench) -> None:
-    """Clothes dropped on the floor: a shirt spread out, trousers across it, a crumpled rest."""
-    shirt, trousers = w.new_look("bright"), w.new_look("denim")
-    flat = 0.5 * math.pi
-    w.mesh(_garment(0.62), (0.30, 0.06, 0.025), shirt, tilt=-flat, turn=0.4)
-    w.mesh(_garment(0.66), (-0.02, -0.34, 0.06), w.new_look("bright"), solid=False, tilt=-flat + 0.06, turn=2.0)
-    for dy in (-0.075, 0.075):
-        w.rod((-0.28, 0.10 + dy, 0.07), (0.10, 0.28 + 2 * dy, 0.06), 0.062, trousers, solid=False, round_ends=True)
-        w.rod((0.10, 0.28 + 2 * dy, 0.06), (0.34, 0.16 + 2 * dy, 0.055), 0.052, trousers, solid=False, round_ends=True)
-    w.mesh(pillow((0.26, 0.30, 0.15), 2.4), (-0.20, -0.04, 0.10), w.new_look("bright"), solid=False, tilt=0.3, turn=0.7)
+    """Clothes dropped on the floor: shirts across each other, trousers over them, a crumpled rest on top."""
+    for turn, z, high in ((0.3, 0.025, 0.60), (2.2, 0.065, 0.58)):
+        at = (0.5 * high * math.cos(turn), 0.5 * high * math.sin(turn), z)
+        w.mesh(_garment(high), at, w.new_look("bright"), tilt=-0.5 * math.pi, turn=turn, solid=z < 0.05)
+    trousers = w.new_look("denim")
+    leg = pillow((0.62, 0.17, 0.07), 5.0)
+    for side in _BOTH:
+        w.mesh(leg, (0.10, 0.02 + side * 0.10, 0.105), trousers, solid=False, turn=1.2 + side * 0.22)
     w.mesh(
-        pillow((0.20, 0.24, 0.10), 2.4), (-0.05, 0.02, 0.15), w.new_look("denim"), solid=False, tilt=-0.35, turn=-0.4
+        pillow((0.30, 0.34, 0.16), 2.6), (-0.06, -0.07, 0.13), w.new_look("bright"), solid=False, tilt=0.25, turn=0.7
     )
+    w.mesh(pillow((0.22, 0.27, 0.11), 2.6), (0.05, 0.03, 0.19), w.new_look("denim"), solid=False, tilt=-0.35, turn=-0.4)
+    w.rod((-0.06, -0.15, 0.16), (-0.22, -0.30, 0.045), 0.045, w.new_look("bright"), solid=False, round_ends=True)
 
 
 STYLES = (
