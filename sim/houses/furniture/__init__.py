@@ -1,4 +1,10 @@
-"""Furniture: parametric families of every category that a flat has, by style and pool."""
+"""Furniture: parametric families of every category that a flat has, by style and pool.
+
+The rule of the pools: a style belongs to one pool and is built with that pool's palettes and textures only
+(`sim.houses.materials`), so a held-out house shows structures, sizes, colours and textures that no train house does.
+Every category has styles in both, goal categories at least four in train and two held out, and every `use` exists in
+both.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +20,7 @@ from sim.houses.furniture import (
     cabinets,
     chairs,
     chests,
-    cloths,
+    clothes,
     counters,
     cushions,
     gym,
@@ -22,6 +28,7 @@ from sim.houses.furniture import (
     lamps,
     low_tables,
     objects,
+    oddments,
     office_chairs,
     pictures,
     plants,
@@ -29,11 +36,14 @@ from sim.houses.furniture import (
     seats,
     shelves,
     sinks,
+    small_appliances,
     sofas,
     stools,
     structure,
     tables,
     toilets,
+    towels,
+    wall_panels,
     windows,
 )
 from sim.houses.furniture.catalogue import HINTS, Style
@@ -49,7 +59,7 @@ _MODULES = (
     cabinets,
     chairs,
     chests,
-    cloths,
+    clothes,
     counters,
     cushions,
     gym,
@@ -57,6 +67,7 @@ _MODULES = (
     lamps,
     low_tables,
     objects,
+    oddments,
     office_chairs,
     pictures,
     plants,
@@ -64,11 +75,14 @@ _MODULES = (
     seats,
     shelves,
     sinks,
+    small_appliances,
     sofas,
     stools,
     structure,
     tables,
     toilets,
+    towels,
+    wall_panels,
     windows,
 )
 
@@ -115,26 +129,27 @@ def make_item(category: str, rng: np.random.Generator, *, pool: Pool, style: str
     ================ =============================================================================================
     chair            dining, office, arm
     stool            bar (seat 0.62-0.78 m), low (0.42-0.47 m)
-    seating          bench (long ones), ottoman (small, low, free-standing)
-    sofa             (none); corner: an L that wants a corner or the middle of a room
-    cushion          throw (lies on sofas, beds), floor (stands on the floor by itself)
+    seating          bench (long ones), ottoman (small, low, free-standing: poufs, bean bags)
+    sofa             (none); corner: an L or an oval that wants a corner or the middle of a room
+    cushion          throw (lies on sofas, beds), floor (on the floor by itself)
     table            dining, coffee, desk, side, nightstand, console
     bed              (none); `width_m` is the mattress's at most
     cabinet          wardrobe, sideboard, display, media, kitchen_wall (mount wall), vanity (brings its own sink)
     chest_of_drawers dresser, nightstand
     shelving         bookcase (on the floor), wall
-    counter          run (back to a wall), island
-    sink             standing (for bathrooms; mount floor or wall), vessel and inset (children of others)
-    towel            rail (mount wall)
-    clothes          rack (on the floor), hooks (mount wall)
+    counter          run (back to a wall), island (fronts towards +x, where stools go)
+    sink             standing (for bathrooms, laundries; mount floor or wall), vessel and inset (children of others)
+    shower           (none): a closed back at smallest x; cabins also close a corner at smallest y
+    bathtub          (none): long side along y
+    towel            rail (mount wall), floor (ladders, stands), top (stacks and rolls)
+    clothes          rack (stands on the floor), hooks (mount wall), floor (heaps, baskets), top (folded)
     tv_monitor       tv (mount top: on a media cabinet), tv_wall, monitor (top: on a desk), tv_floor
-    picture          (none)
     mirror           wall, standing
     plant            floor (on the floor), top (on a table or shelf)
-    lighting         ceiling, floor, table, wall
-    appliances       fridge, stove, washing_machine, dishwasher, microwave (top), hob (child of a counter)
+    lighting         ceiling, floor, table (top), wall
+    appliances       fridge, stove, washing_machine, dishwasher; microwave, small (top); hood (wall); hob (a child)
     gym_equipment    machine, weights, small
-    objects          top (books, vases), kitchen (fruit bowls, kettles: top), floor (boxes, baskets)
+    objects          top (books, clocks), kitchen (bowls, kettles), both mount top; floor (boxes, baskets, suitcases)
     furniture        piano, screen
     floor            rug
     ================ =============================================================================================

@@ -98,48 +98,6 @@ def freestanding(w: Workbench) -> None:
     w.cylinder((-rx - 0.06, 0.3), (0.0, 0.015), 0.05, metal)
 
 
-def corner_cabin(w: Workbench) -> None:
-    """Square tray with two glass sides and a shower tower; stands in a corner at smallest x and smallest y."""
-    side = w.width(0.80, 1.00)
-    half, high, metal, glass = 0.5 * side, w.length(1.90, 2.02), w.look("chrome"), w.look("glass")
-    w.box((-half, half), (-half, half), (0.0, 0.07), w.look("ceramic"))
-    w.cylinder((0.0, 0.0), (0.07, 0.074), 0.045, metal, solid=False)
-    w.box((half - 0.010, half - 0.002), (-half, half), (0.09, high), glass)
-    w.box((-half, half), (half - 0.010, half - 0.002), (0.09, high), glass)
-    for x, y in ((half - 0.012, half - 0.012), (half - 0.012, -half + 0.012), (-half + 0.012, half - 0.012)):
-        w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.06, high + 0.015), metal)
-    for z in (0.08, high):
-        w.box((half - 0.024, half), (-half, half), (z - 0.012, z + 0.012), metal)
-        w.box((-half, half), (half - 0.024, half), (z - 0.012, z + 0.012), metal)
-    w.rod((half + 0.03, 0.10, 0.95), (half + 0.03, 0.10, 1.20), 0.010, metal, solid=False)
-    for z in (0.96, 1.19):
-        w.rod((half - 0.005, 0.10, z), (half + 0.03, 0.10, z), 0.006, metal, solid=False)
-    _shower_set(w, -half, -0.05, 0.07, metal, rain=False)
-
-
-def curved_cabin(w: Workbench) -> None:
-    """Quadrant tray with bent glass; stands in a corner like the square one."""
-    half, high = 0.5 * w.width(0.85, 1.00), w.length(1.90, 2.00)
-    metal, glass = w.look("metal"), w.look("glass")
-    points = [
-        (half, -half),
-        (half, -0.1 * half),
-        (0.82 * half, 0.45 * half),
-        (0.45 * half, 0.82 * half),
-        (-0.1 * half, half),
-        (-half, half),
-    ]
-    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.12)]
-    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
-    for a, b in itertools.pairwise(points):
-        _pane(w, a, b, 0.13, high, glass)
-        for z in (0.13, high):
-            w.bar((*a, z), (*b, z), 0.022, 0.022, metal)
-    for x, y in (points[0], points[2], points[3], points[-1]):
-        w.box((x - 0.011, x + 0.011), (y - 0.011, y + 0.011), (0.12, high), metal)
-    _shower_set(w, -half, -0.2 * half, 0.12, metal, rain=True)
-
-
 def walk_in(w: Workbench) -> None:
     """Flat tray behind one fixed pane, rain head, niche tower; open on one side."""
     width, depth, high = w.width(1.10, 1.40), w.depth(0.80, 0.95), w.length(1.95, 2.05)
@@ -186,31 +144,6 @@ def cubicle(w: Workbench) -> None:
             w.box((front - 0.010, front + 0.010), (c - 0.012, c + 0.012), (0.15, high), metal)
     w.rod((half + 0.01, -0.02, 0.95), (half + 0.01, -0.02, 1.25), 0.012, metal, solid=False)
     _shower_set(w, -half + 0.02, 0.0, 0.15, metal, rain=False)
-
-
-def pentagon_cabin(w: Workbench) -> None:
-    """Five-sided tray, door across the corner, brass frame."""
-    half, high = 0.5 * w.width(0.88, 1.00), w.length(1.92, 2.02)
-    metal, glass = w.look("brass"), w.look("glass")
-    points = [(half, -half), (half, -0.05 * half), (-0.05 * half, half), (-half, half)]
-    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.06)]
-    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
-    for a, b in itertools.pairwise(points):
-        _pane(w, a, b, 0.07, high, glass)
-        for z in (0.07, high):
-            w.bar((*a, z), (*b, z), 0.02, 0.02, metal)
-    for x, y in points:
-        w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.05, high), metal)
-    w.rod(
-        (0.5 * half + 0.05, 0.40 * half + 0.05, 0.9),
-        (0.5 * half + 0.05, 0.40 * half + 0.05, 1.2),
-        0.011,
-        metal,
-        solid=False,
-    )
-    for z in (0.91, 1.19):
-        w.rod((0.5 * half, 0.40 * half, z), (0.5 * half + 0.05, 0.40 * half + 0.05, z), 0.007, metal, solid=False)
-    _shower_set(w, -half, -0.1, 0.06, metal, rain=True)
 
 
 def corner_tub(w: Workbench) -> None:
@@ -260,7 +193,7 @@ def clawfoot(w: Workbench) -> None:
         Ring(0.28, 0.66 * rx, 0.74 * ry, power=2.4),
     ]
     w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), white)
-    w.ellipsoid((0.0, -ry + 0.06, high), (0.62 * rx, 0.08, 0.15), white, solid=False)
+    w.ellipsoid((0.0, -ry + 0.05, high), (0.50 * rx, 0.05, 0.09), white, solid=False)
     for sx in _BOTH:
         for sy in _BOTH:
             w.rod(
@@ -310,6 +243,72 @@ def with_screen(w: Workbench) -> None:
     w.rod((*rail, 1.94), (x[0] + 0.30, y[1] - 0.40, 1.94), 0.010, chrome, solid=False, round_ends=True)
     w.cylinder((x[0] + 0.30, y[1] - 0.40), (1.90, 1.94), 0.09, chrome, solid=False)
     w.box((x[0] + 0.02, x[0] + 0.07), (y[1] - 0.52, y[1] - 0.28), (high + 0.08, high + 0.13), chrome, solid=False)
+
+
+def corner_cabin(w: Workbench) -> None:
+    """Square tray glazed on three sides, a shower tower at the wall, a handle on the front."""
+    side = w.width(0.80, 1.00)
+    half, high, metal, glass = 0.5 * side, w.length(1.90, 2.02), w.look("chrome"), w.look("glass")
+    w.box((-half, half), (-half, half), (0.0, 0.07), w.look("ceramic"))
+    w.cylinder((0.0, 0.0), (0.07, 0.074), 0.045, metal, solid=False)
+    w.box((half - 0.010, half - 0.002), (-half, half), (0.09, high), glass)
+    for sy in _BOTH:
+        low, top = sorted((sy * (half - 0.010), sy * (half - 0.002)))
+        w.box((-half, half), (low, top), (0.09, high), glass)
+        for x in (-half + 0.012, half - 0.012):
+            y = sy * (half - 0.012)
+            w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.06, high + 0.015), metal)
+    for z in (0.08, high):
+        w.box((half - 0.024, half), (-half, half), (z - 0.012, z + 0.012), metal)
+    w.rod((half + 0.03, 0.10, 0.95), (half + 0.03, 0.10, 1.20), 0.010, metal, solid=False)
+    for z in (0.96, 1.19):
+        w.rod((half - 0.005, 0.10, z), (half + 0.03, 0.10, z), 0.006, metal, solid=False)
+    _shower_set(w, -half, -0.05, 0.07, metal, rain=False)
+
+
+def curved_cabin(w: Workbench) -> None:
+    """Quadrant tray with bent glass, for a corner at smallest x and y; a straight pane on its right side."""
+    half, high = 0.5 * w.width(0.85, 1.00), w.length(1.90, 2.00)
+    metal, glass = w.look("metal"), w.look("glass")
+    points = [
+        (half, -half),
+        (half, -0.1 * half),
+        (0.82 * half, 0.45 * half),
+        (0.45 * half, 0.82 * half),
+        (-0.1 * half, half),
+        (-half, half),
+    ]
+    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.12)]
+    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
+    _pane(w, (-half, -half + 0.004), (half, -half + 0.004), 0.13, high, glass)
+    for a, b in itertools.pairwise(points):
+        _pane(w, a, b, 0.13, high, glass)
+        for z in (0.13, high):
+            w.bar((*a, z), (*b, z), 0.022, 0.022, metal)
+    for x, y in (points[0], points[2], points[3], points[-1]):
+        w.box((x - 0.011, x + 0.011), (y - 0.011, y + 0.011), (0.12, high), metal)
+    _shower_set(w, -half, -0.2 * half, 0.12, metal, rain=True)
+
+
+def pentagon_cabin(w: Workbench) -> None:
+    """Five-sided tray, door across the corner, brass frame; a straight pane on its right side."""
+    half, high = 0.5 * w.width(0.88, 1.00), w.length(1.92, 2.02)
+    metal, glass = w.look("brass"), w.look("glass")
+    points = [(half, -half), (half, -0.05 * half), (-0.05 * half, half), (-half, half)]
+    tray = [(x, y, z) for x, y in ((-half, -half), *points) for z in (0.0, 0.06)]
+    w.mesh(named_mesh("tray", tray), (0.0, 0.0, 0.0), w.look("ceramic"))
+    _pane(w, (-half, -half + 0.004), (half, -half + 0.004), 0.07, high, glass)
+    for a, b in itertools.pairwise(points):
+        _pane(w, a, b, 0.07, high, glass)
+        for z in (0.07, high):
+            w.bar((*a, z), (*b, z), 0.02, 0.02, metal)
+    for x, y in points:
+        w.box((x - 0.012, x + 0.012), (y - 0.012, y + 0.012), (0.05, high), metal)
+    handle = (0.475 * half + 0.035, 0.475 * half + 0.035)
+    w.rod((*handle, 0.9), (*handle, 1.2), 0.011, metal, solid=False)
+    for z in (0.91, 1.19):
+        w.rod((0.475 * half, 0.475 * half, z), (*handle, z), 0.007, metal, solid=False)
+    _shower_set(w, -half, -0.1, 0.06, metal, rain=True)
 
 
 STYLES = (

@@ -26,6 +26,6 @@ class Style:
 
 
 HINTS: frozenset[str] = frozenset(
-    {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions", "fixed"}
+    {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
 )
 """Every hint that `make_item` knows."""

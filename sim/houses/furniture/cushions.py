@@ -98,26 +98,6 @@ def banded_cushion(w: Workbench) -> None:
     )
 
 
-def knot_cushion(w: Workbench) -> None:
-    """Knot of thick rolls."""
-    r = 0.055
-    look = w.look("bright")
-    points = [
-        (0.0, -0.12, 0.06),
-        (0.05, 0.0, 0.06),
-        (0.0, 0.12, 0.07),
-        (-0.06, 0.07, 0.13),
-        (0.0, -0.06, 0.16),
-        (0.06, 0.05, 0.16),
-        (0.0, 0.12, 0.20),
-        (-0.05, -0.03, 0.22),
-        (0.03, -0.12, 0.16),
-        (0.0, -0.12, 0.06),
-    ]
-    for a, b in itertools.pairwise(points):
-        w.rod(a, b, r, look, round_ends=True)
-
-
 def runner(w: Workbench) -> None:
     """Long narrow striped rug for halls."""
     width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
@@ -150,6 +130,21 @@ def oriental(w: Workbench) -> None:
     for side in (-1, 1):
         low, high = sorted((side * (0.5 * width - 0.065), side * 0.5 * width))
         w.box((-0.5 * depth, 0.5 * depth), (low, high), (0.0, 0.004), w.look("linen"), solid=False)
+
+
+def knot_cushion(w: Workbench) -> None:
+    """Knot of thick rolls."""
+    r, look = 0.06, w.look("bright")
+    loop = [
+        (0.0, -0.12, 0.06),
+        (0.05, 0.10, 0.06),
+        (-0.05, 0.10, 0.15),
+        (0.06, -0.08, 0.17),
+        (-0.05, -0.06, 0.22),
+        (0.0, 0.11, 0.21),
+    ]
+    for a, b in itertools.pairwise(loop):
+        w.rod(a, b, r, look, round_ends=True)
 
 
 STYLES = (

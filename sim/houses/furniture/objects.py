@@ -1,6 +1,6 @@
-"""Small objects on tops and floors, and furniture of no other category.
+"""Small objects on tops and floors: books, vases, bowls, kettles, boxes, baskets.
 
-Usual retail dimensions; pianos 1.10-1.28 m high and 1.42-1.52 m wide, screens 1.65-1.80 m high.
+Usual retail dimensions.
 """
 
 from __future__ import annotations
@@ -17,63 +17,6 @@ from sim.houses.furniture.shapes import (
 from sim.houses.furniture.workbench import Workbench
 
 _BOTH = (-1, 1)
-
-
-def upright_piano(w: Workbench) -> None:
-    """Upright piano with keys, music desk and pedals."""
-    high, half, look = (
-        w.length(1.10, 1.28),
-        0.5 * w.length(1.42, 1.52),
-        w.look("dark") if w.chance(0.5) else w.look("wood"),
-    )
-    w.box((-0.30, 0.02), (-half, half), (0.05, high), look)
-    w.box((-0.31, 0.05), (-half - 0.01, half + 0.01), (high, high + 0.025), look)
-    w.box((0.02, 0.28), (-half, half), (0.58, 0.72), look)
-    for side in _BOTH:
-        c = side * (half - 0.03)
-        w.box((-0.30, 0.30), (c - 0.03, c + 0.03), (0.0, 0.06), look)
-        w.box((0.22, 0.28), (c - 0.03, c + 0.03), (0.05, 0.60), look)
-    w.box((0.11, 0.27), (-half + 0.08, half - 0.08), (0.72, 0.735), w.look("ceramic"), solid=False)
-    w.box((0.11, 0.20), (-half + 0.10, half - 0.10), (0.735, 0.745), w.look("char"), solid=False)
-    w.box((0.02, 0.05), (-0.40, 0.40), (0.86, 1.04), look, tilt=-0.25, solid=False)
-    for y in (-0.1, 0.0, 0.1):
-        w.box((0.02, 0.14), (y - 0.015, y + 0.015), (0.05, 0.065), w.look("brass"), solid=False)
-    w.top((-0.25, 0.0), (-half + 0.1, half - 0.1), high + 0.025)
-
-
-def folding_screen(w: Workbench) -> None:
-    """Room divider: three or four panels in zigzag."""
-    panels, each, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
-    wood, cloth = w.look("wood"), w.look("curtain")
-    fold = 0.35
-    run = each * math.cos(fold)
-    for i in range(panels):
-        sign = 1 if i % 2 == 0 else -1
-        c = (i + 0.5 - 0.5 * panels) * run
-        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box(
-            (-0.008, 0.008),
-            (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
-            (0.10, high - 0.03),
-            cloth,
-            turn=sign * fold,
-        )
-        for t in (-0.5 * each + 0.015, 0.5 * each - 0.015):
-            w.box(
-                (t * dx - 0.014, t * dx + 0.014),
-                (c + t * dy - 0.014, c + t * dy + 0.014),
-                (0.0, high),
-                wood,
-                turn=sign * fold,
-            )
-        for z in (0.10, high - 0.03):
-            w.box(
-                (-0.012, 0.012),
-                (c - 0.5 * each + 0.02, c + 0.5 * each - 0.02),
-                (z - 0.02, z + 0.02),
-                wood,
-                turn=sign * fold,
-            )
 
 
 def book_stack(w: Workbench) -> None:
@@ -108,6 +51,13 @@ def vase(w: Workbench) -> None:
         w.ball(tip, 0.028, w.look("flower"), solid=False)
 
 
+def box_crate(w: Workbench) -> None:
+    """Cardboard box, taped."""
+    dx, dy, dz = 0.5 * w.length(0.28, 0.42), 0.5 * w.length(0.34, 0.55), w.length(0.24, 0.38)
+    w.box((-dx, dx), (-dy, dy), (0.0, dz), w.look("cardboard"))
+    w.box((-dx - 0.001, dx + 0.001), (-0.025, 0.025), (dz - 0.08, dz + 0.002), w.look("paper"), solid=False)
+
+
 def fruit_bowl(w: Workbench) -> None:
     """Shallow bowl of fruit."""
     r = w.length(0.12, 0.16)
@@ -130,29 +80,6 @@ def fruit_bowl(w: Workbench) -> None:
         w.ball(at, 0.042, w.new_look("paint"), solid=False)
 
 
-def box_crate(w: Workbench) -> None:
-    """Cardboard box, taped."""
-    dx, dy, dz = 0.5 * w.length(0.28, 0.42), 0.5 * w.length(0.34, 0.55), w.length(0.24, 0.38)
-    w.box((-dx, dx), (-dy, dy), (0.0, dz), w.look("cardboard"))
-    w.box((-dx - 0.001, dx + 0.001), (-0.025, 0.025), (dz - 0.08, dz + 0.002), w.look("paper"), solid=False)
-
-
-def basket(w: Workbench) -> None:
-    """Wicker basket with a blanket or toys."""
-    r, high = w.length(0.17, 0.24), w.length(0.24, 0.38)
-    w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
-    w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
-    w.ellipsoid((0.02, 0.0, high), (0.75 * r, 0.8 * r, 0.06), w.look("bright"), solid=False)
-    for side in _BOTH:
-        w.rod(
-            (0.0, side * (r + 0.012), high - 0.05),
-            (0.0, side * (r + 0.012), high + 0.06),
-            0.010,
-            w.look("leather"),
-            solid=False,
-        )
-
-
 def kettle(w: Workbench) -> None:
     """Kettle on its base."""
     look, dark = w.look("steel") if w.chance(0.5) else w.look("appliance"), w.look("dark")
@@ -170,6 +97,40 @@ def kettle(w: Workbench) -> None:
     w.rod((-0.055, 0.0, 0.20), (-0.11, 0.0, 0.18), 0.012, dark, solid=False, round_ends=True)
     w.rod((-0.11, 0.0, 0.18), (-0.10, 0.0, 0.06), 0.012, dark, solid=False, round_ends=True)
     w.ball((0.0, 0.0, 0.215), 0.014, dark, solid=False)
+
+
+def clock(w: Workbench) -> None:
+    """Mantel clock."""
+    wood = w.look("wood")
+    w.box((-0.05, 0.05), (-0.12, 0.12), (0.0, 0.12), wood)
+    w.rod((-0.045, 0.0, 0.12), (0.045, 0.0, 0.12), 0.095, wood)
+    w.rod((0.04, 0.0, 0.12), (0.052, 0.0, 0.12), 0.075, w.look("paper"), solid=False)
+    w.bar((0.054, 0.0, 0.12), (0.054, 0.03, 0.155), 0.006, 0.003, w.look("dark"), solid=False)
+    w.bar((0.054, 0.0, 0.12), (0.054, -0.01, 0.18), 0.005, 0.003, w.look("dark"), solid=False)
+
+
+def photo_stand(w: Workbench) -> None:
+    """Framed photograph on a stand beside a candle."""
+    w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
+    w.box((0.004, 0.012), (-0.07, 0.07), (0.03, 0.205), w.look("paint"), tilt=-0.22, solid=False)
+    w.bar((-0.10, 0.0, 0.0), (-0.015, 0.0, 0.15), 0.03, 0.008, w.look("wood"))
+    w.cylinder((0.0, 0.17), (0.0, 0.10), 0.035, w.look("linen"))
+
+
+def basket(w: Workbench) -> None:
+    """Wicker basket with a blanket or toys."""
+    r, high = w.length(0.17, 0.24), w.length(0.24, 0.38)
+    w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
+    w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
+    w.ellipsoid((0.02, 0.0, high), (0.75 * r, 0.8 * r, 0.06), w.look("bright"), solid=False)
+    for side in _BOTH:
+        w.rod(
+            (0.0, side * (r + 0.012), high - 0.05),
+            (0.0, side * (r + 0.012), high + 0.06),
+            0.010,
+            w.look("leather"),
+            solid=False,
+        )
 
 
 def place_setting(w: Workbench) -> None:
@@ -190,24 +151,6 @@ def place_setting(w: Workbench) -> None:
     )
     w.cylinder((0.02, 0.19), (0.0, 0.085), 0.04, w.look("bright"))
     w.rod((0.02, 0.23, 0.025), (0.02, 0.23, 0.065), 0.006, w.look("bright"), solid=False)
-
-
-def clock(w: Workbench) -> None:
-    """Mantel clock."""
-    wood = w.look("wood")
-    w.box((-0.05, 0.05), (-0.12, 0.12), (0.0, 0.12), wood)
-    w.rod((-0.045, 0.0, 0.12), (0.045, 0.0, 0.12), 0.095, wood)
-    w.rod((0.04, 0.0, 0.12), (0.052, 0.0, 0.12), 0.075, w.look("paper"), solid=False)
-    w.bar((0.054, 0.0, 0.12), (0.054, 0.03, 0.155), 0.006, 0.003, w.look("dark"), solid=False)
-    w.bar((0.054, 0.0, 0.12), (0.054, -0.01, 0.18), 0.005, 0.003, w.look("dark"), solid=False)
-
-
-def photo_stand(w: Workbench) -> None:
-    """Framed photograph on a stand beside a candle."""
-    w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
-    w.box((0.004, 0.012), (-0.07, 0.07), (0.03, 0.205), w.look("paint"), tilt=-0.22, solid=False)
-    w.bar((-0.10, 0.0, 0.0), (-0.015, 0.0, 0.15), 0.03, 0.008, w.look("wood"))
-    w.cylinder((0.0, 0.17), (0.0, 0.10), 0.035, w.look("linen"))
 
 
 def bottles(w: Workbench) -> None:
@@ -258,43 +201,6 @@ def suitcase(w: Workbench) -> None:
     w.rod((-0.08, -0.10, high + 0.38), (-0.08, 0.10, high + 0.38), 0.015, dark, round_ends=True)
 
 
-def digital_piano(w: Workbench) -> None:
-    """Keyboard on crossed legs with a music rest and a bench cushion's height of air below."""
-    half, dark, metal = 0.5 * w.length(1.20, 1.35), w.look("dark"), w.look("metal")
-    w.mesh(chamfered_box((0.32, 2 * half, 0.12), 0.02), (0.0, 0.0, 0.74), dark)
-    w.box((0.0, 0.145), (-half + 0.06, half - 0.06), (0.795, 0.806), w.look("ceramic"), solid=False)
-    w.box((0.0, 0.08), (-half + 0.08, half - 0.08), (0.80, 0.814), w.look("char"), solid=False)
-    w.box((-0.10, -0.08), (-0.28, 0.28), (0.79, 1.0), dark, tilt=-0.25, solid=False)
-    for side in _BOTH:
-        y = side * (half - 0.22)
-        w.bar((-0.02, y - side * 0.28, 0.02), (-0.02, y + side * 0.10, 0.69), 0.04, 0.04, metal)
-        w.bar((0.03, y + side * 0.10, 0.02), (0.03, y - side * 0.28, 0.69), 0.04, 0.04, metal)
-        for dy in (-0.28, 0.10):
-            w.box((-0.17, 0.17), (y + side * dy - 0.02, y + side * dy + 0.02), (0.0, 0.035), metal)
-
-
-def shoji_screen(w: Workbench) -> None:
-    """Room divider: four upright lattice panels of wood and paper in zigzag."""
-    panels, each, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
-    wood, paper = w.look("wood"), w.look("paper")
-    run = each * math.cos(fold)
-    for i in range(panels):
-        sign = 1 if i % 2 == 0 else -1
-        c = (i + 0.5 - 0.5 * panels) * run
-        dx, dy = -math.sin(sign * fold), math.cos(sign * fold)
-        w.box((-0.004, 0.004), (c - 0.5 * each, c + 0.5 * each), (0.05, high - 0.02), paper, turn=sign * fold)
-        for t in (-0.5 * each + 0.012, 0.0, 0.5 * each - 0.012):
-            w.box(
-                (t * dx - 0.011, t * dx + 0.011),
-                (c + t * dy - 0.011, c + t * dy + 0.011),
-                (0.0 if t else 0.05, high),
-                wood,
-                turn=sign * fold,
-            )
-        for z in (0.05, 0.36 * high, 0.68 * high, high - 0.03):
-            w.box((-0.010, 0.010), (c - 0.5 * each, c + 0.5 * each), (z, z + 0.03), wood, turn=sign * fold)
-
-
 STYLES = (
     Style("objects", "book_stack", "train", book_stack, ("top",), "top"),
     Style("objects", "vase", "heldout", vase, ("top",), "top"),
@@ -308,8 +214,4 @@ STYLES = (
     Style("objects", "bottles", "heldout", bottles, ("kitchen", "top"), "top"),
     Style("objects", "waste_bin", "heldout", waste_bin, ("floor",)),
     Style("objects", "suitcase", "heldout", suitcase, ("floor",)),
-    Style("furniture", "digital_piano", "heldout", digital_piano, ("piano",)),
-    Style("furniture", "upright_piano", "train", upright_piano, ("piano",)),
-    Style("furniture", "folding_screen", "train", folding_screen, ("screen",)),
-    Style("furniture", "shoji_screen", "heldout", shoji_screen, ("screen",)),
 )

@@ -1,6 +1,6 @@
-"""Flat things on walls: pictures, mirrors, boards.
+"""Pictures.
 
-Usual retail dimensions: pictures 0.30-1.20 m wide, hung with their middle at 1.45-1.60 m; mirrors 0.45-0.80 m wide.
+Usual retail dimensions: 0.30-1.40 m wide, hung with their middle at 1.45-1.60 m.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from sim.houses.furniture.workbench import Workbench
 _BOTH = (-1, 1)
 
 
-def _frame(w: Workbench, width: float, height: float, border: float, thick: float, look: Look) -> None:
+def frame(w: Workbench, width: float, height: float, border: float, thick: float, look: Look) -> None:
     """Four mouldings round a rectangle that starts at z = 0 on the wall."""
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
@@ -30,7 +30,7 @@ def framed_abstract(w: Workbench) -> None:
     width, height = w.width(0.40, 1.00), w.height(0.40, 0.90)
     w.mount_height_m = 1.52 - 0.5 * height
     border = w.length(0.02, 0.045)
-    _frame(w, width, height, border, 0.03, w.look("wood") if w.chance(0.6) else w.look("dark"))
+    frame(w, width, height, border, 0.03, w.look("wood") if w.chance(0.6) else w.look("dark"))
     w.box(
         (0.0, 0.012),
         (-0.5 * width + border, 0.5 * width - border),
@@ -69,42 +69,6 @@ def canvas_landscape(w: Workbench) -> None:
         level *= w.length(0.5, 0.75)
 
 
-def wall_mirror(w: Workbench) -> None:
-    """Framed rectangular mirror."""
-    width, height = w.width(0.45, 0.80), w.height(0.60, 1.00)
-    w.mount_height_m = 1.05
-    _frame(w, width, height, 0.025, 0.028, w.look("metal"))
-    w.box((0.0, 0.014), (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.02, height - 0.02), w.look("mirror"), solid=False)
-
-
-def round_mirror(w: Workbench) -> None:
-    """Round mirror in a thin rim."""
-    r = 0.5 * w.width(0.50, 0.80)
-    w.mount_height_m = 1.52 - r
-    w.rod((0.0, 0.0, r), (0.022, 0.0, r), r, w.look("brass"))
-    w.rod((0.0, 0.0, r), (0.025, 0.0, r), r - 0.02, w.look("mirror"), solid=False)
-
-
-def cork_board(w: Workbench) -> None:
-    """Pin board with notes."""
-    width, height = w.width(0.60, 1.00), w.height(0.45, 0.70)
-    w.mount_height_m = 1.15
-    _frame(w, width, height, 0.02, 0.02, w.look("wood"))
-    w.box((0.0, 0.010), (-0.5 * width + 0.015, 0.5 * width - 0.015), (0.015, height - 0.015), w.look("wicker"))
-    for _ in range(5):
-        y, z = w.length(-0.36, 0.36) * width, height * w.length(0.25, 0.75)
-        w.box((0.008, 0.013), (y - 0.05, y + 0.05), (z - 0.06, z + 0.06), w.new_look("paper"), solid=False)
-
-
-def whiteboard(w: Workbench) -> None:
-    """White board with a pen tray."""
-    width, height, metal = w.width(0.90, 1.40), w.height(0.60, 0.90), w.look("metal")
-    w.mount_height_m = 0.95
-    _frame(w, width, height, 0.02, 0.022, metal)
-    w.box((0.0, 0.012), (-0.5 * width + 0.015, 0.5 * width - 0.015), (0.015, height - 0.015), w.look("ceramic"))
-    w.box((0.0, 0.07), (-0.25 * width, 0.25 * width), (-0.012, 0.0), metal)
-
-
 def triptych(w: Workbench) -> None:
     """Three unframed canvases side by side that share one composition of bands."""
     width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
@@ -132,7 +96,7 @@ def portrait(w: Workbench) -> None:
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.065
     inner = 0.5 * width - border
-    _frame(w, width, height, border, 0.045, w.look("brass"))
+    frame(w, width, height, border, 0.045, w.look("brass"))
     w.box((0.0, 0.012), (-inner, inner), (border, height - border), w.new_look("paint"), solid=False)
     coat = [
         (x, y, z)
@@ -172,7 +136,7 @@ def still_life(w: Workbench) -> None:
     width, height = w.width(0.50, 0.90), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.04
-    _frame(w, width, height, border, 0.03, w.look("wood"))
+    frame(w, width, height, border, 0.03, w.look("wood"))
     y, z = (-0.5 * width + border, 0.5 * width - border), (border, height - border)
     w.box((0.0, 0.012), y, z, w.look("linen"), solid=False)
     table = border + 0.28 * height
@@ -238,83 +202,13 @@ def tondo(w: Workbench) -> None:
     w.rod((0.0, -0.25 * r, 0.8 * r), (0.039, -0.25 * r, 0.8 * r), 0.32 * r, w.new_look("paint"), solid=False)
 
 
-def standing_mirror(w: Workbench) -> None:
-    """Full-length mirror leaning on a stand."""
-    width, height, wood = w.width(0.42, 0.60), w.height(1.50, 1.75), w.look("wood")
-    y = 0.5 * width
-    lean = 0.12
-    for side in _BOTH:
-        w.bar((0.14, side * (y - 0.02), 0.0), (0.14 - lean, side * (y - 0.02), height), 0.04, 0.03, wood)
-    for z in (0.12, height - 0.03):
-        x = 0.14 - lean * z / height
-        w.box((x - 0.015, x + 0.015), (-y, y), (z - 0.025, z + 0.025), wood)
-    w.bar((0.137, 0.0, 0.12), (0.143 - lean, 0.0, height - 0.04), 2 * y - 0.06, 0.012, w.look("mirror"))
-    w.bar((-0.22, 0.0, 0.0), (0.04, 0.0, 0.72 * height), 0.05, 0.02, wood)
-    w.box((0.04, 0.07), (-y + 0.02, y - 0.02), (0.70 * height, 0.73 * height), wood)
-
-
-def arched_mirror(w: Workbench) -> None:
-    """Full-length mirror with a round top leaning on the wall."""
-    width, height = w.width(0.50, 0.70), w.height(1.50, 1.80)
-    r, metal = 0.5 * width, w.look("metal")
-    straight = height - r
-    w.box((0.0, 0.03), (-r, r), (0.0, straight), metal)
-    w.rod((0.0, 0.0, straight), (0.03, 0.0, straight), r, metal)
-    w.box((0.02, 0.034), (-r + 0.02, r - 0.02), (0.02, straight), w.look("mirror"), solid=False)
-    w.rod((0.02, 0.0, straight), (0.034, 0.0, straight), r - 0.02, w.look("mirror"), solid=False)
-
-
-def chalk_board(w: Workbench) -> None:
-    """Black board in a wooden frame with scribbles and a ledge."""
-    width, height = w.width(0.60, 1.10), w.height(0.50, 0.80)
-    w.mount_height_m = 1.05
-    _frame(w, width, height, 0.035, 0.025, w.look("wood"))
-    w.box((0.0, 0.012), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.03, height - 0.03), w.look("char"))
-    for i in range(3):
-        z = height * (0.72 - 0.17 * i)
-        w.box(
-            (0.008, 0.014),
-            (-0.36 * width, w.length(0.0, 0.36) * width),
-            (z - 0.008, z + 0.008),
-            w.look("paper"),
-            solid=False,
-        )
-    w.box((0.0, 0.06), (-0.4 * width, 0.4 * width), (0.0, 0.015), w.look("wood"), solid=False)
-
-
-def planner(w: Workbench) -> None:
-    """Wall planner: a grid of coloured cards on a steel sheet."""
-    width, height, steel = w.width(0.60, 1.00), w.height(0.50, 0.75), w.look("steel")
-    w.mount_height_m = 1.10
-    w.box((0.0, 0.012), (-0.5 * width, 0.5 * width), (0.0, height), steel)
-    for i in range(4):
-        for j in range(3):
-            if w.chance(0.75):
-                y, z = (i - 1.5) * 0.22 * width, (0.22 + 0.28 * j) * height
-                w.box(
-                    (0.010, 0.015),
-                    (y - 0.08 * width, y + 0.08 * width),
-                    (z - 0.09 * height, z + 0.09 * height),
-                    w.new_look("paint"),
-                    solid=False,
-                )
-
-
 STYLES = (
     Style("picture", "framed_abstract", "train", framed_abstract, (), "wall"),
     Style("picture", "canvas_landscape", "heldout", canvas_landscape, (), "wall"),
-    Style("mirror", "rectangular", "train", wall_mirror, ("wall",), "wall"),
-    Style("mirror", "round", "heldout", round_mirror, ("wall",), "wall"),
-    Style("board_panel", "cork_board", "train", cork_board, (), "wall"),
-    Style("board_panel", "whiteboard", "heldout", whiteboard, (), "wall"),
     Style("picture", "triptych", "train", triptych, (), "wall"),
     Style("picture", "portrait", "train", portrait, (), "wall"),
     Style("picture", "photo_group", "train", photo_group, (), "wall"),
     Style("picture", "still_life", "train", still_life, (), "wall"),
     Style("picture", "scroll", "heldout", scroll, (), "wall"),
     Style("picture", "tondo", "heldout", tondo, (), "wall"),
-    Style("mirror", "standing", "train", standing_mirror, ("standing",)),
-    Style("mirror", "arched", "heldout", arched_mirror, ("standing",), "wall"),
-    Style("board_panel", "chalk_board", "train", chalk_board, (), "wall"),
-    Style("board_panel", "planner", "heldout", planner, (), "wall"),
 )

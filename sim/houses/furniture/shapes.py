@@ -66,15 +66,6 @@ def chamfered_box(size_m: tuple[float, float, float], chamfer_m: float) -> MeshS
     return named_mesh("chamfer", np.vstack(corners))
 
 
-def prism(profile_m: Sequence[tuple[float, float]], width_m: float) -> MeshShape:
-    """A convex profile in the (x, z) plane, extruded along y over `width_m` about y = 0."""
-    points = np.asarray(profile_m, dtype=np.float64)
-    sides = [
-        np.column_stack([points[:, 0], np.full(len(points), side * 0.5 * width_m), points[:, 1]]) for side in (-1, 1)
-    ]
-    return named_mesh("prism", np.vstack(sides))
-
-
 def frustum(
     bottom_m: tuple[float, float], top_m: tuple[float, float], height_m: float, lean_m: tuple[float, float] = (0, 0)
 ) -> MeshShape:

@@ -6,15 +6,19 @@ import itertools
 from collections import defaultdict
 from functools import cache
 
+import cv2
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from sim.gl import mujoco
 from sim.houses import materials
+from sim.houses.build import ASSETS_DIR
 from sim.houses.furniture import CATALOGUE, make_item, styles
 from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape
 from sim.houses.furniture.shapes import MAX_VERTICES
-from sim.houses.furniture.workbench import matrix_from_euler
+from sim.houses.furniture.workbench import euler_from_matrix, matrix_from_euler
 from sim.houses.textures import TEXTURES
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
 
@@ -252,16 +256,22 @@ def test_unknown_requests_say_what_there_is():
 
 
 def test_committed_textures_are_what_the_catalogue_draws():
-    import cv2
-
-    from sim.houses.build import ASSETS_DIR
-
     for texture in TEXTURES.values():
         path = ASSETS_DIR / "textures" / materials.texture_file(texture.name)
         stored = cv2.imread(str(path))
         assert stored is not None, f"{path} is missing: run tools/make_textures.py"
         # FFTs differ in the last bit between machines, which may move a pixel by one grey level.
         assert np.abs(stored[:, :, ::-1].astype(int) - texture.pixels()).max() <= 12
+
+
+@given(angles=st.tuples(*[st.floats(-1.5, 1.5)] * 3))
+def test_euler_angles_to_matrix_and_back_is_identity(angles):
+    assert euler_from_matrix(matrix_from_euler(*angles)) == pytest.approx(angles, abs=2e-4)
+
+
+def test_euler_angles_of_a_vertical_pitch_give_the_same_rotation():
+    matrix = matrix_from_euler(0.4, 0.5 * np.pi, 0.3)
+    assert matrix_from_euler(*euler_from_matrix(matrix)) == pytest.approx(matrix, abs=2e-4)
 
 
 @pytest.mark.parametrize("name", TEXTURES)
