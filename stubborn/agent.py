@@ -155,7 +155,7 @@ class StubbornAgent:
         self.approach = self.seeker.approach(self.navmap, window, pose, self.step)
         if self.approach is not None and self.approach.route is None:
             return self._inspect(self.approach, pose)
-        if self.approach is None and self.step < self.config.exploration.look_around_turns:
+        if self.approach is None and self.explorer.looks_around():
             return Action.TURN_LEFT
         self.route = self.approach.route if self.approach else self.explorer.route(self.navmap, window, pose)
         if self.route is None:  # walled in by the map: push in one direction after the other

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +27,12 @@ class ExplorationConfig:
     """A corner with a longer way counts as infeasible."""
     first_corner: int = 0
     """Which corner comes first: 0 ahead left, 1 ahead right, 2 behind right, 3 behind left of the start heading."""
-    look_around_turns: int = 0
-    """Turns on the spot with which an episode begins; 11 show everything around the start."""
-    unseen_gap_m: float = 0.20
-    """Ground this far from anything that was in view counts as never looked at."""
+    look_around_turns: int = 11
+    """Turns on the spot at the start and where a place is visited for its own sake; 11 show everything around."""
     unseen_area_m2: tuple[float, ...] = (0.25, 0.05)
-    """Least area of such ground that is worth an errand, first and later; empty: none is."""
+    """Least area of ground never in view that is worth an errand, first and later; empty: none is."""
+    unvisited_m: tuple[float, ...] = (1.5, 1.0, 0.6)
+    """Least distance from the robot's trail that is worth an errand, first and later; empty: none is."""
     regain_m2: float = 2.0
     """A corner given up is tried again when this much more ground has been in view."""
     margin_cells: int = 20
@@ -85,7 +85,8 @@ class CornerExplorer:
     The window moves with the robot, and what is infeasible here may be feasible a step further on. So that the robot
     does not swing between two such places, a corner given up counts as infeasible until new ground has been seen.
     When all four are infeasible it goes on an errand and sees it through: to the nearest reachable ground that was
-    never in view (behind a door, a shelf), and when there is none, to the reachable place nearest the corner.
+    never in view (behind a door, a shelf); when there is none, to where it has never been (a bathroom seen from its
+    door only), and there it looks around; at last to the reachable place nearest the corner.
     """
 
     def __init__(self, config: ExplorationConfig, planner: Planner, *, averse: bool, bumps: bool) -> None:
@@ -102,11 +103,17 @@ class CornerExplorer:
         """Index of the corner that is pursued."""
         self._wanted_m2 = [0.0] * 4  # per corner, how much must have been seen before it is tried again
         self._errand: _Errand | None = None
+        self._turns_left = self.config.look_around_turns
 
     @property
     def on_errand(self) -> bool:
         """Whether the last route led elsewhere than to a corner."""
         return self._errand is not None
+
+    def looks_around(self) -> bool:
+        """Whether the next step of exploring is a turn on the spot rather than a route; counts the turns."""
+        self._turns_left -= 1
+        return self._turns_left >= 0
 
     def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
         """The way to go on exploring; None when the robot is walled in."""
@@ -149,16 +156,32 @@ class CornerExplorer:
     def _new_errand(self, navmap: NavMap, window: Window, whole: Window, pose: PlanarPose) -> Route | None:
         """Choose a place and the way to it."""
         view = navmap.view(whole)
-        free = self.planner.free_space(view, pose, self._maps[0])
+        unseen = self.planner.unseen(view)
+        free = self.planner.free_space(view, pose, self._maps[0], unseen)
+        cell_area_m2 = free.frame.cell_m**2
         for area_m2 in self.config.unseen_area_m2:
-            unseen = large_parts(self._unseen(view) & free.reachable, area_m2 / free.frame.cell_m**2)
-            plan = self.planner.plan(free, unseen, pose)
-            if plan is not None:
-                row, col = trace(plan, pose, max_cells=unseen.size)[-1]
-                place = connected(unseen | plan.goal, row, col, connectivity=8)
-                self._errand = _Errand(_on_whole_map(np.nonzero(place), whole), to_look=True)
-                return Route(plan, free)
+            route = self._to_nearest_part(free, large_parts(unseen & free.reachable, area_m2 / cell_area_m2), pose)
+            if route is not None:
+                self._errand = _Errand(_on_whole_map(np.nonzero(route.plan.goal), whole), to_look=True)
+                return route
+        trail_m = distance_to(view.trail) * np.float32(free.frame.cell_m)
+        for least_m in self.config.unvisited_m:
+            route = self._to_nearest_part(free, free.reachable & (trail_m >= least_m), pose)
+            if route is not None:
+                far_m = np.where(route.plan.goal, trail_m, -np.inf)
+                self._errand = _Errand(_on_whole_map(np.nonzero(far_m == far_m.max()), whole), to_look=False)
+                route = self._follow_errand(navmap, whole, pose)
+                if route is not None:
+                    return route
         return self._nearest_place(navmap, window, pose)
+
+    def _to_nearest_part(self, free: FreeSpace, places: NDArray[np.bool_], pose: PlanarPose) -> Route | None:
+        """The way to that connected part of some places which is nearest; the plan's goal is the whole part."""
+        plan = self.planner.plan(free, places, pose)
+        if plan is None:
+            return None
+        row, col = trace(plan, pose, max_cells=places.size)[-1]
+        return Route(replace(plan, goal=connected(plan.goal, row, col, connectivity=8)), free)
 
     def _nearest_place(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
         """The way to the reachable cell nearest the corner; one where the robot stands already is passed over."""
@@ -185,19 +208,18 @@ class CornerExplorer:
         rows, cols = errand.cells[0] - whole.rows.start, errand.cells[1] - whole.cols.start
         inside = whole.frame.contains(rows, cols)
         goal[rows[inside], cols[inside]] = True
+        unseen = self.planner.unseen(view)
         if errand.to_look:
-            goal &= self._unseen(view)
-        free = self.planner.free_space(view, pose, self._maps[0])
+            goal &= unseen
+        free = self.planner.free_space(view, pose, self._maps[0], unseen)
         plan = self.planner.plan(free, goal, pose)
-        if plan is None or (not errand.to_look and plan.length_m <= self.config.arrived_m):
+        if plan is None:
+            return None
+        if not errand.to_look and plan.length_m <= self.config.arrived_m:
+            self._turns_left = self.config.look_around_turns
             return None
         self._errand = errand
         return Route(plan, free)
-
-    def _unseen(self, view: NavMap) -> NDArray[np.bool_]:
-        """Ground that is some way off everything that was in view."""
-        seen = (view.frames_in_view > 0) | view.visited
-        return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
 
 
 def _on_whole_map(cells: tuple[NDArray[np.intp], ...], part: Window) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

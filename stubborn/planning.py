@@ -40,6 +40,11 @@ class PlanningConfig:
     """Speed of the march at an obstacle's edge, growing to 1 at `wary_m`; 1 switches the slowing off."""
     first_march: float = 1.15
     """The march is first tried up to this many times the straight distance to the goal. Saves time only."""
+    unknown_speed: float = 0.4
+    """Speed of the march over ground that was never in view, where the caller asks for wariness of it: a way through
+    what is known is worth a detour, since the other may end at a wall."""
+    unseen_gap_m: float = 0.20
+    """Ground this far from anything that was in view counts as never in view."""
     own_ground_m: float = 0.12
     """Around its centre the robot's own ground is free, whatever the map says: it stands there."""
     ring_m: float = FORWARD_M
@@ -65,6 +70,8 @@ class FreeSpace:
     """Distance from each cell's centre to the nearest obstacle cell's, before dilation."""
     reachable: NDArray[np.bool_]
     """True: traversable and connected to the robot's cell (4-neighbourhood)."""
+    speed: NDArray[np.float32]
+    """Of the march: 1 in the open, less along obstacles and, if asked for, on unknown ground."""
 
 
 @dataclass(frozen=True)
@@ -95,8 +102,18 @@ class Planner:
         marks = view.bumped_wide if bumps is Bumps.PESSIMISTIC else view.bumped_narrow
         return view.seen_obstacle | (marks & ~view.visited if self.trust_visited else marks)
 
-    def free_space(self, view: NavMap, pose: PlanarPose, bumps: Bumps) -> FreeSpace:
-        """Dilate the obstacles of a window; what lies outside the window is not free."""
+    def unseen(self, view: NavMap) -> NDArray[np.bool_]:
+        """Ground that is some way off everything that was in view: far floor is seen with gaps."""
+        seen = (view.frames_in_view > 0) | view.visited
+        return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
+
+    def free_space(
+        self, view: NavMap, pose: PlanarPose, bumps: Bumps, unseen: NDArray[np.bool_] | None = None
+    ) -> FreeSpace:
+        """Dilate the obstacles of a window; what lies outside the window is not free.
+
+        Ways avoid `unseen` ground where they can without too long a detour; by default unknown is as good as known.
+        """
         obstacles = self.obstacles(view, bumps)
         own_index, own = cells_near_segment(
             view.frame, pose[:2], pose[:2], max(self.config.own_ground_m, view.frame.cell_m)
@@ -109,7 +126,11 @@ class Planner:
             traversable |= view.trail
         traversable[own_index] |= own
         row, col = view.frame.cell(pose.x_m, pose.y_m)
-        return FreeSpace(view.frame, traversable, clearance_m, connected(traversable, row, col, connectivity=4))
+        reachable = connected(traversable, row, col, connectivity=4)
+        speed = self._speed(clearance_m)
+        if unseen is not None:
+            speed[unseen] *= self.config.unknown_speed
+        return FreeSpace(view.frame, traversable, clearance_m, reachable, speed)
 
     def plan(
         self, free: FreeSpace, goal: NDArray[np.bool_], pose: PlanarPose, *, farthest_m: float = math.inf
@@ -124,11 +145,10 @@ class Planner:
             return None
         here = free.frame.cell(pose.x_m, pose.y_m)
         gap_m = float(np.hypot(rows - here[0], cols - here[1]).min()) * free.frame.cell_m
-        speed = self._speed(free)
         # A march that ends soon after reaching the robot costs half of one over the whole window.
         expected_m = max(self.config.first_march * gap_m, self._last_length_m) + 2.0 * self.config.ring_m
         for limit_m in (expected_m, math.inf):
-            distance_m = march(goal, free.reachable, speed, free.frame.cell_m, min(limit_m, farthest_m))
+            distance_m = march(goal, free.reachable, free.speed, free.frame.cell_m, min(limit_m, farthest_m))
             length_m = float(distance_m[here])
             if math.isfinite(length_m):
                 self._last_length_m = length_m
@@ -179,10 +199,10 @@ class Planner:
         clear = free.traversable[rows, cols] | (free.clearance_m[rows, cols] >= max(here_m, free.frame.cell_m))
         return np.asarray((clear & inside).all(axis=0))
 
-    def _speed(self, free: FreeSpace) -> NDArray[np.float32]:
+    def _speed(self, clearance_m: NDArray[np.float32]) -> NDArray[np.float32]:
         """1 in the open, less along obstacles."""
         c = self.config
-        share = (free.clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.wary_m - c.dilation_m, 1e-6))
+        share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.wary_m - c.dilation_m, 1e-6))
         return np.clip(c.wary_speed + (1.0 - c.wary_speed) * share, c.wary_speed, 1.0)
 
 

@@ -194,11 +194,12 @@ class TargetSeeker:
         seen = ends[0][rows, cols], ends[1][rows, cols]
         in_sight = np.zeros_like(view.rejected)
         in_sight[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), seen, edge_cells)
+        unseen = self.planner.unseen(view)
         free_spaces: dict[Bumps, FreeSpace] = {}
         for within_m in (self.config.stand_m, self.config.far_stand_m):
             for bumps in self._maps:
                 if bumps not in free_spaces:
-                    free_spaces[bumps] = self.planner.free_space(view, pose, bumps)
+                    free_spaces[bumps] = self.planner.free_space(view, pose, bumps, unseen)
                 stands = free_spaces[bumps].reachable & in_sight & (gap_m <= within_m)
                 if stands.any():
                     yield free_spaces[bumps], stands

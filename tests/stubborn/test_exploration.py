@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sim.interface import Action, ConfigError
+from stubborn.collisions import CollisionConfig, mark_visited
 from stubborn.exploration import CornerExplorer, ExplorationConfig, Route, corner_xy_m, nearest_corner
 from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.navmap import NavMap
@@ -19,7 +20,10 @@ def explorer(averse: bool = True, bumps: bool = True, **options: object) -> Corn
 
 
 def empty() -> NavMap:
-    return NavMap.empty(FRAME)
+    """A map on which nothing is known but where the robot stands."""
+    navmap = NavMap.empty(FRAME)
+    mark_visited(navmap, START, START, 0.18, CollisionConfig())
+    return navmap
 
 
 def whole(navmap: NavMap) -> Window:
@@ -106,12 +110,30 @@ def test_when_all_four_are_infeasible_ground_that_was_never_in_view_comes_first(
     route = route_of(explore, navmap)
     rows, cols = np.nonzero(route.plan.goal)
     assert np.hypot(rows - row, cols - col).max() < 12
-    patch_too_small = route_of(explorer(unseen_area_m2=(2.0,)), navmap)
+    patch_too_small = route_of(explorer(unseen_area_m2=(2.0,), unvisited_m=()), navmap)
     assert patch_too_small.plan.goal.sum() == 1
 
 
-def test_when_all_four_are_infeasible_and_all_was_seen_it_goes_to_the_reachable_cell_nearest_the_corner():
-    explore, navmap = explorer(), empty()
+def test_when_all_was_seen_it_goes_where_it_has_never_been_and_looks_around_there():
+    explore, navmap = explorer(look_around_turns=3), empty()
+    assert [explore.looks_around() for _ in range(5)] == [True, True, True, False, False]
+    box_in(navmap.seen_obstacle, 2.0)
+    all_seen(navmap)
+    (right, behind), (left, ahead) = FRAME.cell(-1.6, -1.6), FRAME.cell(1.6, 0.5)
+    navmap.trail[right:left, behind:ahead] = True
+    route = route_of(explore, navmap)
+    assert explore.on_errand
+    rows, cols = np.nonzero(route.plan.goal)
+    x_m, y_m = route.plan.frame.centres(rows, cols)
+    assert x_m.min() > 1.6  # the far side from the trail
+    there = PlanarPose(float(x_m[0]), float(y_m[0]), 0.0)
+    assert not explore.looks_around()
+    explore.route(navmap, whole(navmap), there)
+    assert explore.looks_around()
+
+
+def test_when_nothing_is_left_to_look_at_it_goes_to_the_reachable_cell_nearest_the_corner():
+    explore, navmap = explorer(unvisited_m=()), empty()
     all_seen(navmap)
     box_in(navmap.seen_obstacle, 1.5)
     route = route_of(explore, navmap)
@@ -124,7 +146,7 @@ def test_when_all_four_are_infeasible_and_all_was_seen_it_goes_to_the_reachable_
 
 
 def test_boxed_in_it_never_freezes_and_visits_all_corners_of_its_box():
-    explore, navmap, pose = explorer(), empty(), START
+    explore, navmap, pose = explorer(unvisited_m=()), empty(), START
     all_seen(navmap)
     box_in(navmap.seen_obstacle, 1.5)
     quarters = set()
