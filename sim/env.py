@@ -18,6 +18,7 @@ from sim.pose import Pose
 from sim.robot.config import RobotConfig
 from sim.sampling import sample_episode
 from sim.scene import Scene, SceneCache
+from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise
 
 
 class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what they hold, not by what they are
@@ -61,13 +62,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         start: with `house`, the start pose of every episode.
         sensors: image sensors in the observation.
         profile: rendering profile, `fast` or `good`.
+        noise: of sensors and drive, a preset of `sim.sensors.noise` or a config; what counts is never noisy.
         render_mode: `rgb_array` or None.
         max_steps: actions until truncation.
         camera: intrinsics and mount height.
         robot: the body and how it drives.
 
     Raises:
-        ConfigError: an unknown split, goal, sensor or profile.
+        ConfigError: an unknown split, goal, sensor, profile or noise.
         HouseError: a house that breaks the house format.
     """
 
@@ -83,6 +85,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         start: Pose | None = None,
         sensors: Sequence[str] = SENSORS,
         profile: str = "fast",
+        noise: str | NoiseConfig = "none",
         render_mode: str | None = None,
         max_steps: int = MAX_STEPS,
         camera: CameraModel | None = None,
@@ -95,6 +98,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         self.render_mode = render_mode
         self.camera_model = camera or CameraModel()
         self.robot_model = (robot or RobotConfig()).model
+        self._noise = SensorNoise(noise if isinstance(noise, NoiseConfig) else get_noise(noise), self.camera_model)
+        self._images = tuple(sorted({*self.sensors, "semantic", *self._noise.needs(self.sensors)}))
         self.observation_space = observation_space(self.sensors, self.camera_model)
         self.action_space = spaces.Discrete(len(Action))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
@@ -133,7 +138,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         super().reset(seed=seed)
         episode = self._choose(options or {})
         self._scene = self._scenes.get(episode.house)
-        self._scene.world.reset(episode.start)
+        # A child of the seed takes no number from the stream that draws episodes.
+        conditions = self._noise.begin(self.np_random.spawn(1)[0], self._scene.gloss)
+        self._scene.world.reset(episode.start, conditions)
         self._scene.task.begin(episode.goal, episode.start)
         self._episode = episode
         observation, semantic = self._look()
@@ -183,13 +190,13 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
     def _look(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
         """The observation, and the true segmentation that the task's metrics need even where no agent sees it."""
         world, start = self.scene.world, self.episode.start
-        images = self.scene.camera.render(world.data, world.pose, sorted({*self.sensors, "semantic"}))
+        images = self.scene.camera.render(world.data, world.pose, self._images)
         pose = world.pose.relative_to(start)
         observation = {name: images[name] for name in self.sensors}
         observation["gps"] = np.array([pose.x_m, pose.y_m], np.float32)
         observation["compass"] = np.array([pose.yaw_rad], np.float32)
         observation["objectgoal"] = np.array([GOAL_CATEGORIES.index(self.episode.goal)], np.int64)
-        return observation, images["semantic"]
+        return self._noise.apply(observation, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:
         episode = self.episode

@@ -28,6 +28,7 @@ from sim.results import RunDirectory
 from sim.rollout import broken_metrics, episode_seed, play_episode
 from sim.runner import PlayerSpec, run_items
 from sim.sensors.camera import describe_gl
+from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
 from stubborn import agents
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -56,11 +57,13 @@ class Args:
     episodes: int = 5
     """The first N episodes of the split; with --house, so many are drawn."""
     seed: int = 0
-    """Drives agents and, with --house, starts and goals."""
+    """Drives agents, noise and, with --house, starts and goals."""
     workers: int = 1
     """Processes."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
+    noise: str = "none"
+    """Noise of sensors and drive: none, realsense or harsh."""
     out: Path | None = None
     """Where everything goes (runs/<time>); a run that is there goes on."""
     list_agents: bool = False
@@ -166,7 +169,12 @@ class EpisodePlayer:
     def __init__(self, args: Args) -> None:
         self._args = args
         self._env = ObjectNavEnv(
-            split=args.split, house=args.house, labels=args.labels, sensors=_sensors(args), profile=args.profile
+            split=args.split,
+            house=args.house,
+            labels=args.labels,
+            sensors=_sensors(args),
+            profile=args.profile,
+            noise=args.noise,
         )
         self._agent = make_agent(args, self._env)
 
@@ -243,6 +251,7 @@ def _check(args: Args) -> None:
     if args.house is None and (args.labels is not None or args.start_deg is not None):
         raise ConfigError("--labels and --start-deg go with --house.")
     get_profile(args.profile)
+    get_noise(args.noise)
     make_segmenter(args.semantics)
     if args.agent not in agent_names():
         _load_factory(args.agent)
@@ -266,7 +275,8 @@ def _config(args: Args, split: dict[str, Any]) -> dict[str, Any]:
     del options["list_agents"]
     packages = ("stubborn-objectnav", "mujoco", "numpy")
     versions = {name: version(name) for name in packages} | {"gl_renderer": describe_gl()}
-    return options | {"split_identity": split, "versions": versions}
+    noise = {"noise_config": asdict(get_noise(args.noise))}
+    return options | noise | {"split_identity": split, "versions": versions}
 
 
 def entry(argv: Sequence[str] | None = None) -> int:

@@ -9,6 +9,7 @@ from sim.houses.house import House
 from sim.interface import MAX_STEPS, CameraModel
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
+from sim.sensors.gloss import geom_gloss
 from sim.task import Task
 from sim.world import World
 
@@ -21,6 +22,7 @@ class Scene:
     ) -> None:
         self.world = World(house, robot=robot)
         self.camera = Camera(self.world.model, self.world.labels, camera=camera, profile=profile)
+        self.gloss = geom_gloss(self.world.model, self.world.labels)  # (ngeom,)
         self.task = Task(self.world, max_steps=max_steps)
 
     def close(self) -> None:

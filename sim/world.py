@@ -12,7 +12,8 @@ from sim.houses.house import House
 from sim.houses.labels import Labels
 from sim.interface import MPCAT40_ID, Action, wrap_angle
 from sim.pose import Pose
-from sim.robot.body import FLOOR_MASK, Body
+from sim.robot.body import FLOOR_MASK, PREFIX, Body
+from sim.robot.conditions import NOMINAL, Conditions
 from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
@@ -41,6 +42,10 @@ class World:
         log = ContactLog(self.model, self.data, self.labels, self._body.hull_geoms)
         self._driver = Driver(self.config, self.model, self.data, self._body, log)
         self._storeys_m = _storey_floors(self.model, self.labels)
+        self._floors = _floor_geoms(self.model, self.labels)
+        self._motors = [self.model.actuator(f"{PREFIX}{side}_motor").id for side in ("left", "right")]
+        self._floor_friction = self.model.geom_friction[self._floors, 0].copy()
+        self._motor_gain = self.model.actuator_gainprm[self._motors, 0].copy()
 
     @property
     def pose(self) -> Pose:
@@ -49,13 +54,14 @@ class World:
         z = self._body.z_m
         return Pose(x, y, wrap_angle(yaw), min(self._storeys_m, key=lambda floor: abs(floor - z)))
 
-    def reset(self, start: Pose) -> None:
-        """Everything as the house's file has it, the robot at rest on the floor at `start`.
+    def reset(self, start: Pose, conditions: Conditions = NOMINAL) -> None:
+        """Everything as the house's file has it but for `conditions`, the robot at rest on the floor at `start`.
 
         Raises:
             EpisodeError: the hull would overlap something there, or there is no floor.
         """
         mujoco.mj_resetData(self.model, self.data)
+        self._set_conditions(conditions)
         self._place_on_floor(start)
         self._require_room(start)
         physics = self.config.physics
@@ -74,6 +80,11 @@ class World:
         motion = self._driver.run(Action(action))
         self._require_physical(z_before)
         return motion
+
+    def _set_conditions(self, conditions: Conditions) -> None:
+        """Change floors and motors, from what they were when the world was compiled."""
+        self.model.geom_friction[self._floors, 0] = self._floor_friction * conditions.floor_friction_scale
+        self.model.actuator_gainprm[self._motors, 0] = self._motor_gain * conditions.motor_gain_scale
 
     def _place_on_floor(self, start: Pose) -> None:
         """Put the wheels on the highest floor (a rug) under the start."""
@@ -163,8 +174,13 @@ def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
     """Heights of the tops of all static floors that carry wheels."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    floors = (labels.geom_category == _FLOOR) & (model.geom_contype == FLOOR_MASK[0]) & (model.geom_bodyid == 0)
-    ids = np.flatnonzero(floors)
+    floors = _floor_geoms(model, labels)
+    ids = floors[model.geom_bodyid[floors] == 0]
     rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)
     rise[model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
     return data.geom_xpos[ids, 2] + rise
+
+
+def _floor_geoms(model: mujoco.MjModel, labels: Labels) -> NDArray[np.intp]:
+    """Numbers of the geoms that carry wheels."""
+    return np.flatnonzero((labels.geom_category == _FLOOR) & (model.geom_contype == FLOOR_MASK[0]))

@@ -123,6 +123,7 @@ BROKEN_HOUSES = {
         (("--goal", "spaceship"), "spaceship"),
         (("--semantics", "psychic"), "psychic"),
         (("--profile", "best"), "best"),
+        (("--noise", "loud"), "realsense"),
         (("--house", "HOUSE", "--goal", "toilet"), "toilet"),
         (("--house", "HOUSE", "--start-deg", "2.9 2.9 0"), "wall"),
         (("--house", "HOUSE", "--start-deg", "here"), "here"),
