@@ -84,12 +84,11 @@ def clothes_rack(w: Workbench) -> None:
         cloth = w.new_look("bright") if w.chance(0.6) else w.new_look("denim")
         w.mesh(
             _garment(high),
-            (0.0, y, height - 0.07 - high),
+            (0.0, y, height - 0.022 - high),
             cloth,
             turn=0.5 * math.pi + w.length(-0.12, 0.12),
             solid=i % 2 == 0,
         )
-        w.rod((0.0, y, height - 0.08), (0.0, y, height - 0.01), 0.004, metal, solid=False)
 
 
 def hall_board(w: Workbench) -> None:
@@ -190,12 +189,11 @@ def open_wardrobe(w: Workbench) -> None:
         high_i = w.choice((0.65, 0.80, 0.95))
         w.mesh(
             _garment(high_i),
-            (0.0, y, high - 0.10 - high_i),
+            (0.0, y, high - 0.07 - high_i),
             w.new_look("bright"),
             solid=False,
             turn=0.5 * math.pi + w.length(-0.12, 0.12),
         )
-        w.rod((0.0, y, high - 0.12), (0.0, y, high - 0.05), 0.004, w.look("metal"), solid=False)
     for dy in (-0.1, 0.0, 0.16):
         w.ellipsoid((0.03, dy, 0.29), (0.13, 0.045, 0.045), w.new_look("book"), solid=False)
 

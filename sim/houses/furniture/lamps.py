@@ -132,8 +132,7 @@ def chandelier(w: Workbench) -> None:
         a = math.tau * i / 6
         tip = (0.30 * math.cos(a), 0.30 * math.sin(a), -drop)
         w.rod((0.0, 0.0, -drop - 0.05), tip, 0.008, metal, solid=False, round_ends=True)
-        w.cylinder(tip[:2], (-drop, -drop + 0.10), 0.014, w.look("linen"), solid=False)
-        w.ellipsoid((tip[0], tip[1], -drop + 0.13), (0.016, 0.016, 0.032), glow, solid=False)
+        w.rod(tip, (tip[0], tip[1], -drop + 0.14), 0.014, glow, solid=False, round_ends=True)
 
 
 def spot_rail(w: Workbench) -> None:
