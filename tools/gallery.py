@@ -122,11 +122,9 @@ def _portrait(item: Item) -> Picture:
     """One item on a plain ground, seen from its front and a little above."""
     builder = HouseBuilder("portrait")
     z = {"floor": 0.0, "top": 0.0, "wall": 0.05, "ceiling": item.size_m[2]}[item.mount]
+    slab = Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), Look((0.8, 0.8, 0.78, 1.0)))
     builder.add(Placed(item, 0.0, 0.0, z))
-    ground = Look((0.8, 0.8, 0.78, 1.0))
-    builder.add(
-        Placed(Item("floor", "ground", (6, 6, 0), (Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), ground),)))
-    )
+    builder.add(Placed(Item("floor", "ground", (6.0, 6.0, 0.0), (slab,))))
     builder.add_lamp(Lamp((2.0, 1.0, 3.0), (0.55, 0.55, 0.53), (-0.6, -0.35, -0.9)))
     builder.add_lamp(Lamp((2.0, -1.0, 2.0), (0.2, 0.2, 0.22), (-0.5, 0.8, -0.3)))
     _add_backdrop(builder.spec)

@@ -8,26 +8,23 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.furniture.item import Child, Geom, Item, Look, MeshShape
-from sim.houses.furniture.shapes import MAX_VERTICES, named_mesh
-from sim.houses.furniture.workbench import matrix_from_euler
+from sim.houses.furniture.item import Geom, Item, Look, MeshShape
 from sim.houses.geometry import Rect
+from sim.houses.joining import Assembly, assemble
 from sim.houses.materials import texture_file, texture_mapping
+from sim.houses.movables import ROLLING_M, Movable, loosen
 
 ASSETS_DIR = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses"
 TEXTURE_DIR = "../textures"
 """Where a house file finds its textures, relative to itself."""
 AMBIENT, HEADLIGHT = 0.36, 0.12
 """Light from everywhere, and from the camera: without some of both, walls that no lamp faces look black."""
-REPEATED = frozenset(("lighting",))
-"""Categories whose items a home has many times over, so that their meshes are written once."""
-SLAT_HALF_M = 0.035
-"""Narrower visual boxes lose their texture when they are joined with their like."""
-_SEEN = "seen"
-"""Default class of geoms that nothing touches."""
+MESH_UNIT_M = 5e-4
+"""Vertices are written in whole units of this: half the bytes of metres."""
+_SEEN, _TOUCHED = "seen", "hit"
+"""Default classes of geoms that nothing touches, and of those that nobody sees."""
 _SHAPES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -83,20 +80,56 @@ class HouseBuilder:
         seen.geom.contype = 0
         seen.geom.conaffinity = 0
         self._seen = seen
+        self._touched = self._spec.add_default(_TOUCHED, self._spec.default)
+        self._touched.geom.group = 3
+        self._spec.default.mesh.scale = [MESH_UNIT_M] * 3
+        self._spec.default.mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL  # some show only their front
+        self._copies: dict[int, int] = {}
+        self._assemblies: dict[int, tuple[Item, Assembly]] = {}
+        self._frictions: dict[str, mujoco.MjsDefault] = {}
+        self._loosened: dict[int, tuple[Item, tuple[Item | None, tuple[Movable, ...]]]] = {}
         self._counts: dict[str, int] = {}
         self._materials: dict[Look, str] = {}
         self._textures: set[str] = set()
-        self._meshes: set[str] = set()
+        self._meshes: dict[str, str] = {}
 
     @property
     def spec(self) -> mujoco.MjSpec:
         """The specification built so far."""
         return self._spec
 
+    def expect(self, things: Sequence[Placed]) -> None:
+        """Be told what will be added: what occurs often may have meshes of its own."""
+        for placed in things:
+            self._count(placed.item)
+
     def add(self, placed: Placed) -> str:
         """Add an item and its children; returns the name that its body got."""
         at = (placed.x_m, placed.y_m, placed.z_m)
         return self._add_body(self._spec.worldbody, placed.item, at, placed.yaw_rad)
+
+    def _count(self, item: Item) -> None:
+        self._copies[id(item)] = self._copies.get(id(item), 0) + 1
+        for child in item.children:
+            self._count(child.item)
+
+    def add_loose(self, placed: Placed) -> None:
+        """Add an item so that the robot can push it, or what of it is light and free."""
+        rest, movables = self._loosen(placed.item)
+        if rest is not None:
+            self.add(replace(placed, item=rest))
+        for thing in movables:
+            self._add_movable(thing, placed)
+
+    def _loosen(self, item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
+        """What of it stays and what moves; worked out once for each design."""
+        if id(item) not in self._loosened:
+            self._loosened[id(item)] = (item, loosen(item))
+            rest, movables = self._loosened[id(item)][1]
+            for part in (rest, *(thing.item for thing in movables)):
+                if part is not None:
+                    self._copies[id(part)] = self._copies.get(id(item), 1)
+        return self._loosened[id(item)][1]
 
     def add_ground(self, rect: Rect) -> None:
         """The slab that wheels run on: invisible, its top at z = 0."""
@@ -132,6 +165,33 @@ class HouseBuilder:
             light.exponent = 1.0
             light.attenuation = [1.0, 0.0, 0.06]
 
+    def _add_movable(self, thing: Movable, placed: Placed) -> None:
+        name = self._label(thing.item.category)
+        c, s = math.cos(placed.yaw_rad), math.sin(placed.yaw_rad)
+        x, y = placed.x_m + c * thing.at_m[0] - s * thing.at_m[1], placed.y_m + s * thing.at_m[0] + c * thing.at_m[1]
+        body = self._spec.worldbody.add_body(
+            name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_yaw_quat(placed.yaw_rad)
+        )
+        body.add_freejoint()
+        body.explicitinertial = True
+        body.mass, body.ipos, body.fullinertia = thing.mass_kg, list(thing.centre_m), list(thing.inertia_kg_m2)
+        for geom in self._assembly(thing.item).drawn:
+            self._add_geom(body, geom)
+        slides = self._slides(thing)
+        for geom in thing.touched:
+            self._add_shape(body.add_geom(slides, type=_SHAPES[geom.shape]), geom)
+
+    def _slides(self, thing: Movable) -> mujoco.MjsDefault:
+        """Default class of what touches like this thing; its friction wins over the floor's."""
+        name = f"slides_{round(100 * thing.friction)}" + ("_rolls" if thing.rolls else "")
+        if name not in self._frictions:
+            made = self._spec.add_default(name, self._spec.default)
+            made.geom.group, made.geom.priority = 3, 1
+            made.geom.friction = [thing.friction, 0.005, ROLLING_M if thing.rolls else 0.0001]
+            made.geom.condim = 6 if thing.rolls else 3
+            self._frictions[name] = made
+        return self._frictions[name]
+
     def _label(self, category: str) -> str:
         number = self._counts.get(category, 0)
         self._counts[category] = number + 1
@@ -140,22 +200,31 @@ class HouseBuilder:
     def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
         body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
-        for geom in merged(item.geoms, rounds=item.category in REPEATED):
+        parts = self._assembly(item)
+        for geom in parts.drawn:
             self._add_geom(body, geom)
+        for geom in parts.touched:
+            self._add_shape(body.add_geom(self._touched, type=_SHAPES[geom.shape]), geom)
         for child in item.children:
-            self._add_child(body, child)
+            self._add_body(body, child.item, child.pos_m, child.yaw_rad)
         return name
 
-    def _add_child(self, parent: mujoco.MjsBody, child: Child) -> None:
-        self._add_body(parent, child.item, child.pos_m, child.yaw_rad)
+    def _assembly(self, item: Item) -> Assembly:
+        """The item's parts; worked out once for each design."""
+        if id(item) not in self._assemblies:
+            self._assemblies[id(item)] = (item, assemble(item, self._copies.get(id(item), 1)))
+        return self._assemblies[id(item)][1]
 
     def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:
         kind = _SHAPES[geom.shape]
-        # No default class for what is touched: the standard one.
+        # No default class for what is seen and touched: the standard one.
         made = body.add_geom(type=kind) if geom.solid else body.add_geom(self._seen, type=kind)
+        made.material = self._material(geom.look)
+        self._add_shape(made, geom)
+
+    def _add_shape(self, made: mujoco.MjsGeom, geom: Geom) -> None:
         made.pos = [_r(v) for v in geom.pos_m]
         made.quat = _quat(geom.euler_rad)
-        made.material = self._material(geom.look)
         if geom.mesh is not None:
             made.meshname = self._mesh(geom.mesh)
         else:
@@ -186,85 +255,15 @@ class HouseBuilder:
         return name
 
     def _mesh(self, mesh: MeshShape) -> str:
+        """Name of the mesh in the file: short, since each of its geoms repeats it."""
         if mesh.name not in self._meshes:
-            self._meshes.add(mesh.name)
-            made = self._spec.add_mesh(name=mesh.name)
-            made.uservert = mesh.vertices_m.astype(float).ravel().tolist()
+            name = f"{mesh.name.split('_')[0]}{len(self._meshes)}"
+            self._meshes[mesh.name] = name
+            made = self._spec.add_mesh(name=name)
+            made.uservert = np.rint(mesh.vertices_m / MESH_UNIT_M).ravel().tolist()
             if len(mesh.faces):
                 made.userface = mesh.faces.astype(int).ravel().tolist()
-        return mesh.name
-
-
-def merged(geoms: Sequence[Geom], *, rounds: bool = False) -> list[Geom]:
-    """The same geoms, but those of one look that are only seen joined into one mesh: fewer things to draw.
-
-    A mesh shows no texture, so only plain geoms and slats too narrow to show their grain are joined; cylinders,
-    whose meshes make long XML, only on request.
-    """
-    kept: list[Geom] = []
-    groups: dict[Look, list[Geom]] = {}
-    for geom in geoms:
-        slat = geom.shape == "box" and sorted(geom.size_m)[1] < SLAT_HALF_M
-        plain = geom.look.texture is None or slat
-        joins = geom.shape == "box" or (rounds and geom.shape == "cylinder")
-        if joins and plain and not geom.solid:
-            groups.setdefault(replace(geom.look, texture=None), []).append(geom)
-        else:
-            kept.append(geom)
-    for look, alike in groups.items():
-        part: list[Geom] = []
-        for geom in [*alike, None]:
-            if geom is None or sum(len(_facets(g)[0]) for g in [*part, geom]) > MAX_VERTICES:
-                kept += [_joined(part, look)] if len(part) > 1 else part
-                part = []
-            if geom is not None:
-                part.append(geom)
-    return kept
-
-
-def _joined(geoms: Sequence[Geom], look: Look) -> Geom:
-    """One visual mesh of some geoms, its origin in the middle of them."""
-    points, faces, start = [], [], 0
-    for geom in geoms:
-        corners, triangles = _facets(geom)
-        points.append(np.array(geom.pos_m) + corners @ matrix_from_euler(*geom.euler_rad).T)
-        faces.append(triangles + start)
-        start += len(corners)
-    every = np.vstack(points)
-    middle = np.round(0.5 * (every.min(axis=0) + every.max(axis=0)), 4)
-    mesh = named_mesh("joined", every - middle, np.vstack(faces))
-    return Geom("mesh", (), (float(middle[0]), float(middle[1]), float(middle[2])), look, solid=False, mesh=mesh)
-
-
-def _facets(geom: Geom) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Corners (n, 3) in the geom's frame and triangles (m, 3) of a box, or of a coarse cylinder."""
-    if geom.shape == "box":
-        return _SIGNS * geom.size_m, _BOX_FACES
-    radius, turns = geom.size_m[0], np.arange(_SEGMENTS) * (2 * np.pi / _SEGMENTS)
-    ring = radius * np.column_stack([np.cos(turns), np.sin(turns)])
-    levels = [(ring, -geom.size_m[1]), (ring, geom.size_m[1])]
-    corners = np.vstack([np.column_stack([xy, np.full(_SEGMENTS, z)]) for xy, z in levels])
-    faces = []
-    for i in range(_SEGMENTS):
-        a, b = i, (i + 1) % _SEGMENTS
-        faces += [(a, b, b + _SEGMENTS), (a, b + _SEGMENTS, a + _SEGMENTS)]
-    for i in range(1, _SEGMENTS - 1):
-        faces += [(0, i + 1, i), (_SEGMENTS, _SEGMENTS + i, _SEGMENTS + i + 1)]
-    return corners, np.array(faces, dtype=np.int32)
-
-
-_SEGMENTS = 8
-"""Corners of a round geom that became part of a mesh."""
-_SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
-_BOX_FACES = np.array(
-    [
-        tri
-        for a, b, c, d in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-        for tri in ((a, b, c), (a, c, d))
-    ],
-    dtype=np.int32,
-)
-"""Triangles of a box whose corners come in the order of `_SIGNS`, counter-clockwise from outside."""
+        return self._meshes[mesh.name]
 
 
 def _r(value: float) -> float:

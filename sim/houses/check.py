@@ -6,6 +6,7 @@ things without support, and whether the robot gets into every room and near ever
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable
 
 import numpy as np
@@ -22,6 +23,10 @@ MAX_OVERLAP_M = 0.01
 """Deepest interpenetration of two things that is let pass."""
 SUPPORT_GAP_M = 0.02
 """A thing whose box comes no nearer than this to any other hangs in the air."""
+SETTLE_S, SETTLE_STEP_S = 1.0, 0.004
+"""How long movable things are watched."""
+MAX_SETTLING_M, MAX_DRIFT_M_S = 0.002, 0.001
+"""How far they may move meanwhile, and how fast they may be at its end."""
 STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window"))
 """Parts of the building: they may meet each other."""
 
@@ -35,7 +40,7 @@ def check_house(spec: mujoco.MjSpec) -> list[str]:
         return [f"it does not compile: {error}"]
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    faults = overlaps(model, data, labels) + floating(model, data, labels)
+    faults = overlaps(model, data, labels) + floating(model, data, labels) + restless(model)
     return faults + unreachable(model, data, labels, read_rooms(model))
 
 
@@ -44,7 +49,7 @@ def overlaps(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list
 
     Parts of the building may meet each other, and so may a thing and what is built into it (its nested bodies).
     """
-    solid = np.flatnonzero(collidable_geoms(model) & (model.geom_group < 3))
+    solid = np.flatnonzero(collidable_geoms(model))
     low, high = geom_boxes(model, data, solid)
     structure = np.array([_category(labels, geom) in STRUCTURE for geom in solid.tolist()])
     root = model.body_rootid[model.geom_bodyid[solid]]
@@ -76,6 +81,28 @@ def floating(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> list
         for number, thing in enumerate(labels.instances)
         if number not in held and thing.category not in STRUCTURE
     ]
+
+
+def restless(model: mujoco.MjModel) -> list[str]:
+    """Movable things that do not stand where they were put: after a second they moved, or are still moving."""
+    joints = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE)
+    if not joints.size:
+        return []
+    model = copy.copy(model)
+    model.opt.timestep, model.opt.cone = SETTLE_STEP_S, mujoco.mjtCone.mjCONE_ELLIPTIC
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MULTICCD)
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, nstep=round(SETTLE_S / SETTLE_STEP_S))
+    faults = []
+    for joint in joints.tolist():
+        q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+        moved_m = float(np.linalg.norm(data.qpos[q : q + 3] - model.qpos0[q : q + 3]))
+        speed_m_s = float(np.linalg.norm(data.qvel[v : v + 3]))
+        if not (moved_m <= MAX_SETTLING_M and speed_m_s <= MAX_DRIFT_M_S):  # not: a NaN is a fault too
+            name = model.body(model.jnt_bodyid[joint]).name
+            faults.append(f"{name} does not stand: after {SETTLE_S:.0f} s it has moved {1000 * moved_m:.1f} mm")
+    return faults
 
 
 def unreachable(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: Iterable[Room]) -> list[str]:

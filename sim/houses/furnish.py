@@ -343,7 +343,7 @@ def _extras(
 def _curtains(space: RoomSpace, kit: Kit) -> None:
     """The same curtains or blinds at every window of a room; long ones where nothing stands below."""
     drawn = kit.rng.random()
-    looks = kit.looks("curtain", "iron", "wood", "lacquer", "linen", "metal")
+    looks = kit.window_looks()
     for side, window in space.windows():
         width, height = window.span[1] - window.span[0], window.top_m - window.bottom_m
         tries = [("blinds", width - 0.02, height - 0.02)]
@@ -358,7 +358,7 @@ def _curtains(space: RoomSpace, kit: Kit) -> None:
 
 
 def _ceiling_lamp(space: RoomSpace, kit: Kit) -> None:
-    lamp = kit.same("lighting", "ceiling")
+    lamp = kit.make("lighting", "ceiling")
     if lamp is None or lamp.mount != "ceiling":
         return
     count = max(1, int(space.inner.long_m / 4.5)) if space.kind == "hallway" else 1

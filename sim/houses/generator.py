@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.errors import HouseError
 from sim.gl import mujoco
-from sim.houses.build import HouseBuilder, Placed, RoomBox
+from sim.houses.build import HouseBuilder, RoomBox
 from sim.houses.check import check_house
 from sim.houses.finish import draw_finish, draw_lamps
 from sim.houses.floorplan import FloorPlan, PlanError, draw_floorplan
@@ -48,6 +48,8 @@ class HouseConfig:
     """Kinds of private rooms (gym, office, laundry ...) that it should have if the area allows."""
     name: str = "house"
     """The model's name in the file."""
+    movable: bool = False
+    """Light chairs, stools, plants and gym equipment get free joints (`sim.houses.movables`)."""
 
     def __post_init__(self) -> None:
         if self.pool not in _POOL_STREAM:
@@ -84,6 +86,7 @@ def generate(
     kind: PlanKind | None = None,
     area_m2: float | None = None,
     clutter: float | None = None,
+    movable: bool = False,
 ) -> mujoco.MjSpec:
     """The specification of a new home; the same seed and version, the same bytes of `to_xml()`.
 
@@ -93,12 +96,15 @@ def generate(
         kind: shape of the floor plan; drawn when None.
         area_m2: floor area, 50-400; drawn when None.
         clutter: 0 bare to 1 full of small things; drawn when None.
+        movable: light furniture can be pushed.
 
     Raises:
         ConfigError: a value is outside what is allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
-    return generate_house(seed, HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter)).spec
+    return generate_house(
+        seed, HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter, movable=movable)
+    ).spec
 
 
 def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHouse:
@@ -142,7 +148,7 @@ def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.Mj
     for attempt in range(MAX_PLAN_TRIES):
         try:
             plan = draw_floorplan(rng, kind, area_m2, config.rooms)
-            openings = cut_openings(rng, plan, ceiling_m)
+            openings = cut_openings(rng, plan)
             break
         except PlanError:
             if attempt == MAX_PLAN_TRIES - 1:
@@ -154,14 +160,20 @@ def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.Mj
     builder.add_ground(plan.bounds.grown(OUTER_WALL_M))
     for room in plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), ceiling_m)
-    for item in build_structure(plan, openings, ceiling_m, finish):
-        builder.add(Placed(item))
+    structure = build_structure(plan, openings, ceiling_m, finish)
     kit = Kit(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms))
-    for index, room in enumerate(plan.rooms):
-        space = RoomSpace(index, room.kind, room.rect, openings, ceiling_m)
+    spaces = [RoomSpace(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
+    for space in spaces:
         furnish(space, kit)
+    builder.expect([*structure, *(standing.placed for space in spaces for standing in space.standing)])
+    for placed in structure:
+        builder.add(placed)
+    for space in spaces:
         for standing in space.standing:
-            builder.add(standing.placed)
+            if config.movable and not space.carries(standing):
+                builder.add_loose(standing.placed)
+            else:
+                builder.add(standing.placed)
     for lamp in draw_lamps(rng, plan, ceiling_m):
         builder.add_lamp(lamp)
     return builder.spec, plan

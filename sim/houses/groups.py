@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from sim.houses.furniture.item import Item
 from sim.houses.geometry import INWARD_YAW_RAD, OPPOSITE, SIDES, Side, footprint
@@ -19,11 +20,11 @@ AISLE_M = 0.75
 
 def place(
     space: RoomSpace, kit: Kit, category: str, *uses: str, along: Along = "any", front_m: float = 0.6,
-    sides: Sequence[Side] | None = None, tries: int = 2, **hints: object,
+    sides: Sequence[Side] | None = None, tries: int = 2, **hints: Any,
 ) -> Standing | None:  # fmt: skip
-    """One item against a wall; another draw when the first one does not fit."""
-    for _ in range(tries):
-        item = kit.make(category, *uses, **hints)
+    """One item against a wall; a new design when the first one does not fit."""
+    for n in range(tries):
+        item = kit.make(category, *uses, fresh=n > 0, **hints)
         if item is None:
             return None
         if item.mount == "wall":
@@ -35,9 +36,7 @@ def place(
     return None
 
 
-def hang(
-    space: RoomSpace, kit: Kit, category: str, *uses: str, along: Along = "any", **hints: object
-) -> Standing | None:
+def hang(space: RoomSpace, kit: Kit, category: str, *uses: str, along: Along = "any", **hints: Any) -> Standing | None:
     """One thing on a wall, where the floor before it leaves somebody stand near."""
     item = kit.make(category, *uses, **hints)
     if item is None or item.mount != "wall":
@@ -45,9 +44,7 @@ def hang(
     return space.on_wall(kit.rng, item, along=along, over_floor=category == "clothes")
 
 
-def hang_over(
-    space: RoomSpace, kit: Kit, host: Standing, category: str, *uses: str, **hints: object
-) -> Standing | None:
+def hang_over(space: RoomSpace, kit: Kit, host: Standing, category: str, *uses: str, **hints: Any) -> Standing | None:
     """One thing on the wall right above what stands against it."""
     item = kit.make(category, *uses, **hints)
     if item is None or item.mount != "wall" or host.side is None:
@@ -90,7 +87,7 @@ def before(
     return space.at(item, x, y, yaw + math.pi if facing else yaw)
 
 
-def lay_rug(space: RoomSpace, kit: Kit, x_m: float, y_m: float, yaw_rad: float, **hints: object) -> None:
+def lay_rug(space: RoomSpace, kit: Kit, x_m: float, y_m: float, yaw_rad: float, **hints: Any) -> None:
     """A rug under what stands there."""
     rug = kit.make("floor", "rug", **hints)
     if rug is not None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,6 +13,16 @@ from sim.houses.furniture import CATALOGUE, make_item, styles
 from sim.houses.furniture.item import Item, Look, Pool
 
 T = TypeVar("T")
+DESIGNS: Mapping[str, int] = MappingProxyType(
+    {
+        "objects": 5, "picture": 6, "cushion": 4, "floor": 4, "bed": 3, "plant": 3, "mirror": 3, "clothes": 2,
+        "cabinet": 2, "chest_of_drawers": 2, "shelving": 2, "table": 2, "seating": 2, "towel": 2, "lighting": 2,
+        "stool": 2, "sink": 2, "tv_monitor": 2, "chair": 2, "gym_equipment": 99,
+    }
+)  # fmt: skip
+"""How many designs of a category, for each use, one home has at most (else one): people buy by the set."""
+ONE_DESIGN = frozenset(("ceiling", "office", "bar", "nightstand", "desk", "media"))
+"""Uses whose things are all alike in a home."""
 
 
 class Kit:
@@ -24,29 +35,44 @@ class Kit:
         """0 bare, 1 full of things."""
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
-        self._same: dict[tuple[str, str], Item | None] = {}
+        self._designs: dict[str, list[Item]] = {}
+        self._window_looks: list[dict[str, Look]] = []
 
-    def make(self, category: str, *uses: str, **hints: Any) -> Item | None:
+    def make(self, category: str, *uses: str, fresh: bool = False, **hints: Any) -> Item | None:
         """An item for the first of these uses that the pool has a style for, for any use when none is given.
 
-        Returns None where the pool has nothing that fits.
+        The same hints give one of the home's few designs again, but for `fresh`. Returns None where the pool has
+        nothing that fits.
         """
         if category not in CATALOGUE:
             return None
         for use in uses or (None,):
             if styles(category, self.pool, use):
-                return make_item(category, self.rng, pool=self.pool, **({"use": use} if use else {}), **hints)
+                return self._design(category, use, fresh, hints)
         return None
 
-    def same(self, category: str, use: str) -> Item | None:
-        """The home's one item of this kind: what one buys by the dozen, such as ceiling lamps."""
-        if (category, use) not in self._same:
-            self._same[category, use] = self.make(category, use)
-        return self._same[category, use]
+    def _design(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item:
+        key = repr((category, use, sorted(hints.items())))
+        known = self._designs.setdefault(key, [])
+        if len(known) >= self._variety(category, use) and not fresh:
+            return self.pick(known)
+        item = make_item(category, self.rng, pool=self.pool, **({"use": use} if use else {}), **hints)
+        known.append(item)
+        return item
+
+    def _variety(self, category: str, use: str | None) -> int:
+        return 1 if use in ONE_DESIGN else DESIGNS.get(category, 1)
 
     def looks(self, *names: str) -> dict[str, Look]:
         """Fixed looks of some materials, for hint `looks`: things that should match."""
         return {name: materials.look(name, self.rng, self.pool) for name in names}
+
+    def window_looks(self) -> dict[str, Look]:
+        """Looks of curtains and blinds: the home's, with one of its two curtain fabrics."""
+        if not self._window_looks:
+            base = self.looks("iron", "wood", "lacquer", "linen", "metal")
+            self._window_looks = [base | self.looks("curtain") for _ in range(2)]
+        return self.pick(self._window_looks)
 
     def chance(self, probability: float) -> bool:
         """True with this probability."""

@@ -18,7 +18,8 @@ OUTER_WALL_M = 0.12
 """How far outer walls reach outside of it."""
 JAMB_M = 0.03
 """Thickness of a door frame inside its hole."""
-DOOR_TOP_M = 2.05
+HEAD_M = 2.1
+"""Where doors, openings and windows end: one line all through a home."""
 
 OpeningKind = Literal["door", "opening", "open", "window", "entry"]
 
@@ -66,7 +67,7 @@ class Opening:
         return self.span[0] + jamb, self.span[1] - jamb
 
 
-def cut_openings(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> tuple[Opening, ...]:
+def cut_openings(rng: np.random.Generator, plan: FloorPlan) -> tuple[Opening, ...]:
     """Doors for the plan's joins, a front door, and windows for rooms that have an outer wall.
 
     Raises:
@@ -80,7 +81,7 @@ def cut_openings(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) ->
     entry = _cut_entry(rng, plan, rects)
     if entry is not None:
         openings.append(entry)
-    openings += _cut_windows(rng, plan, rects, openings, ceiling_m)
+    openings += _cut_windows(rng, plan, rects, openings)
     return tuple(openings)
 
 
@@ -108,7 +109,7 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     if join.kind == "opening" and length_m > 1.5:
         width_m = min(round(float(rng.uniform(1.3, 2.4)), 2), length_m - 0.2)
         at = inner[0] + 0.1 + float(rng.uniform(0.0, 1.0)) * max(0.0, length_m - 0.2 - width_m)
-        return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, 2.15)
+        return Opening("opening", join.a, join.b, side, line_m, (round(at, 2), round(at + width_m, 2)), 0.0, HEAD_M)
     small = "bathroom" in (a.kind, b.kind) or "closet" in (a.kind, b.kind)
     width_m = (clear_m[0] if small else clear_m[1]) + 2 * JAMB_M
     if length_m < width_m + 0.16:
@@ -117,7 +118,7 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     # Near a corner of the smaller room: that leaves it a long wall for furniture.
     offset = float(rng.uniform(0.0, min(0.3, spare))) if rng.random() < 0.75 else float(rng.uniform(0.0, spare))
     at = inner[0] + 0.08 + offset if rng.random() < 0.5 else inner[1] - 0.08 - offset - width_m
-    return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, DOOR_TOP_M)
+    return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, HEAD_M)
 
 
 def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening]) -> Opening:
@@ -180,57 +181,50 @@ def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect])
             if length_m >= width_m + 2 * HALF_WALL_M + 0.06:
                 middle = 0.5 * (lo + hi) if length_m < 2.5 else float(rng.uniform(lo + 0.8, hi - 0.8))
                 span = (round(middle - width_m / 2, 3), round(middle + width_m / 2, 3))
-                return Opening("entry", room, None, side, rects[room].line(side), span, 0.0, DOOR_TOP_M)
+                return Opening("entry", room, None, side, rects[room].line(side), span, 0.0, HEAD_M)
     return None
 
 
 def _cut_windows(
-    rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect], others: Sequence[Opening], ceiling_m: float
+    rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect], others: Sequence[Opening]
 ) -> list[Opening]:
-    """One or two windows in most stretches of outer wall of rooms that want daylight, and at corridor ends.
+    """Windows in most stretches of outer wall of rooms that want daylight, one at least, and at corridor ends.
 
     A home has few sizes of window, as real ones do: one for living rooms, one for the others, one for bathrooms.
     """
     large = (round(float(rng.uniform(1.6, 2.2)), 1), round(float(rng.uniform(0.35, 0.75)), 2))
     usual = (round(float(rng.uniform(1.0, 1.5)), 1), round(float(rng.uniform(0.85, 1.0)), 2))
     small = (round(float(rng.uniform(0.5, 0.8)), 1), 1.45)
-    top_m = round(min(ceiling_m - 0.3, 2.2), 2)
     windows = []
     for i, room in enumerate(plan.rooms):
         if not ROOM_RULES[room.kind].windows and room.kind != "hallway":
             continue
         size = {"bathroom": small, "living_room": large, "studio": large, "dining_room": large}.get(room.kind, usual)
+        width_m = size[0] if room.kind != "hallway" else 0.7
+        found: list[tuple[bool, Opening]] = []
         for side in SIDES:
+            taken = [o.span for o in others if o.a == i and o.side == side]
             for lo, hi in outer_spans(rects, i, side):
-                if room.kind == "hallway" and (
-                    hi - lo > 2.2 or any(o.a == i and o.kind == "entry" and o.side == side for o in others)
-                ):
+                if room.kind == "hallway" and (taken or hi - lo > 2.2):
                     continue
-                windows += [
-                    Opening("window", i, None, side, room.rect.line(side), span, size[1], top_m)
-                    for span in _window_spans(rng, (lo, hi), size[0], room.kind, others, i, side)
-                ]
+                wanted = bool(rng.random() > 0.12)
+                for span in _window_spans((lo, hi), width_m, taken, most=1 if room.kind == "bathroom" else 3):
+                    hole = Opening("window", i, None, side, room.rect.line(side), span, size[1], HEAD_M)
+                    found.append((wanted, hole))
+        wanted_ones = [hole for wanted, hole in found if wanted]
+        windows += wanted_ones or [hole for _, hole in found[:1]]
     return windows
 
 
-def _window_spans(
-    rng: np.random.Generator,
-    wall: Interval,
-    width_m: float,
-    kind: str,
-    others: Sequence[Opening],
-    room: int,
-    side: Side,
-) -> list[Interval]:
-    """Evenly spread windows in one stretch of wall, none in front of a door."""
+def _window_spans(wall: Interval, width_m: float, taken: Sequence[Interval], most: int) -> list[Interval]:
+    """Evenly spread windows in one stretch of wall, narrower where it is short, none in front of a door."""
     length_m = wall[1] - wall[0] - 2 * HALF_WALL_M
-    width_m = min(width_m, round(length_m - 0.5, 1)) if kind != "hallway" else min(0.7, round(length_m - 0.3, 1))
-    if width_m < 0.45 or rng.random() < 0.12:
+    width_m = min(width_m, round(length_m - 0.3, 1))
+    if width_m < 0.45:
         return []
-    count = 2 if length_m > 2 * width_m + 1.8 and kind != "bathroom" else 1
+    count = min(most, 1 + int((length_m - width_m) / (width_m + 1.8)))
     spans = []
     for n in range(count):
         middle = wall[0] + (n + 0.5) * (wall[1] - wall[0]) / count
         spans.append((round(middle - width_m / 2, 3), round(middle + width_m / 2, 3)))
-    taken = [o.span for o in others if o.a == room and o.side == side]
     return [s for s in spans if not any(s[0] < t[1] + 0.2 and s[1] > t[0] - 0.2 for t in taken)]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.houses.build import Placed
-from sim.houses.furniture.item import Item, Surface
+from sim.houses.furniture.item import Geom, Item, Surface
 from sim.houses.furniture.workbench import euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.houses.geometry import (
     INWARD_YAW_RAD,
@@ -30,6 +30,7 @@ from sim.houses.geometry import (
     rotated_extent,
     subtract,
 )
+from sim.houses.joining import touch_boxes
 from sim.houses.openings import HALF_WALL_M, Opening, leaf_keep_out
 
 Along = Literal["any", "middle", "corner"]
@@ -197,11 +198,12 @@ class RoomSpace:
     ) -> Standing | None:
         """Put an item partly under `host` (a chair, a table), drawn back along its own -x until nothing touches."""
         c, s = math.cos(yaw_rad), math.sin(yaw_rad)
-        host_boxes = geom_boxes(host.placed)
+        host_boxes = geom_boxes(touched_shapes(host.placed.item), host.placed)
+        shapes = touched_shapes(item)
         for step in range(int(out_m / 0.04) + 1):
             x, y = x_m - c * 0.04 * step, y_m - s * 0.04 * step
             placed = Placed(item, x, y, 0.0, yaw_rad)
-            if boxes_touch(geom_boxes(placed), host_boxes, 0.015):
+            if boxes_touch(geom_boxes(shapes, placed), host_boxes, 0.015):
                 continue
             standing = Standing(placed, footprint(x, y, item.size_m[0], item.size_m[1], yaw_rad))
             return standing if self.try_put(standing, [], ignore=host.rect) else None
@@ -377,6 +379,16 @@ class RoomSpace:
                 self.standing.append(spot)
                 return True
         return False
+
+    def carries(self, host: Standing) -> bool:
+        """Whether something stands or lies on a floor item's surfaces."""
+        tops = [surface.centre_m[2] for surface in host.placed.item.surfaces]
+        return any(
+            other is not host
+            and other.rect.overlaps(host.rect)
+            and any(abs(other.placed.z_m - host.placed.z_m - top) < 0.03 for top in tops)
+            for other in self.standing
+        )
 
     def on_ceiling(self, item: Item, x_m: float, y_m: float) -> bool:
         """Hang a lamp from the ceiling."""
@@ -593,18 +605,22 @@ def _ahead(rect: Rect, back: Side, length_m: float) -> Rect:
     return rect.strip(OPPOSITE[back], rect.span(OPPOSITE[back]), 0.0, length_m)
 
 
-def geom_boxes(placed: Placed) -> NDArray[np.float64]:
-    """(n, 6) axis-aligned boxes x0 y0 z0 x1 y1 z1 of an item's solid geoms in the world, children left out."""
+def geom_boxes(solid: Sequence[Geom], placed: Placed) -> NDArray[np.float64]:
+    """(n, 6) axis-aligned boxes x0 y0 z0 x1 y1 z1 of an item's solid geoms where it is placed."""
     turn = matrix_from_euler(0.0, 0.0, placed.yaw_rad)
     shift = np.array([placed.x_m, placed.y_m, placed.z_m])
     boxes = []
-    for geom in placed.item.geoms:
-        if geom.solid:
-            x, y, z = (float(v) for v in turn @ geom.pos_m)
-            euler = euler_from_matrix(turn @ matrix_from_euler(*geom.euler_rad))
-            low, high = geom_bounds(replace(geom, pos_m=(x, y, z), euler_rad=euler))
-            boxes.append(np.concatenate([low + shift, high + shift]))
+    for geom in solid:
+        x, y, z = (float(v) for v in turn @ geom.pos_m)
+        euler = euler_from_matrix(turn @ matrix_from_euler(*geom.euler_rad))
+        low, high = geom_bounds(replace(geom, pos_m=(x, y, z), euler_rad=euler))
+        boxes.append(np.concatenate([low + shift, high + shift]))
     return np.array(boxes).reshape(-1, 6)
+
+
+def touched_shapes(item: Item) -> list[Geom]:
+    """What of an item is touched at most, children left out: its parts in as few blocks as it may get."""
+    return touch_boxes([geom for geom in item.geoms if geom.solid], item)
 
 
 def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64], margin_m: float) -> bool:

@@ -1,4 +1,4 @@
-"""Walls, floors, ceilings, doors and windows of a floor plan, as labelled items in world coordinates.
+"""Walls, floors, ceilings, doors and windows of a floor plan, as labelled items in their places.
 
 Each room builds its own half of a wall, so that it can have its own paint; a hole is cut out of both halves at the
 same place. Outer walls reach `OUTER_WALL_M` further out. Wheels run on one invisible slab under the whole home, so
@@ -8,15 +8,17 @@ that they never cross a seam; the floors of the rooms are only seen.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from sim.houses.build import Placed
 from sim.houses.floorplan import FloorPlan
 from sim.houses.furniture.item import Geom, Item, Look
-from sim.houses.geometry import EPS_M, SIDES, Interval, Rect, Side, subtract
+from sim.houses.geometry import EPS_M, OPPOSITE, SIDES, Interval, Rect, Side, subtract
 from sim.houses.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening, outer_spans
+from sim.houses.shapes3d import mesh_shape
 
 BASEBOARD_M = (0.012, 0.08)
 """Thickness and height."""
@@ -46,20 +48,22 @@ class Finish:
     sky: Look
 
 
-def build_structure(plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: Finish) -> list[Item]:
-    """Everything that is part of the building; positions are the world's."""
-    items = []
+def build_structure(plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: Finish) -> list[Placed]:
+    """Everything that is part of the building; doors and windows of one size are one design."""
+    placed = []
     rects = [room.rect for room in plan.rooms]
     for i, room in enumerate(plan.rooms):
         here = [opening for opening in openings if i in (opening.a, opening.b)]
-        items += [_floor(room.rect, finish.floors[room.name]), _ceiling(room.rect, ceiling_m, finish.ceiling)]
+        items = [_floor(room.rect, finish.floors[room.name]), _ceiling(room.rect, ceiling_m, finish.ceiling)]
         items += _room_walls(rects, i, here, ceiling_m, finish.walls[room.name], finish.trim)
+        placed += [Placed(item) for item in items]
+    designs = _Designs(finish)
     for opening in openings:
         if opening.kind == "window":
-            items.append(_window(opening, finish))
+            placed.append(_in_wall(designs.window(opening), opening))
         elif opening.kind in ("door", "entry"):
-            items += _door(opening, finish)
-    return items
+            placed += _door(opening, designs)
+    return placed
 
 
 def oriented_box(box: Box3, look: Look, facing: Side | None = None, *, solid: bool = True) -> Geom:
@@ -117,9 +121,9 @@ def _room_walls(
             geoms += _pierced(rect, side, _round_corner(rects, room, side, span), OUTER_WALL_M, holes, ceiling_m, paint)
         if geoms:
             walls.append(_item("wall", "side", geoms))
-        boards += _baseboards(rect, side, holes)
-    if walls:
-        walls[0] = _item("wall", "side", [*walls[0].geoms, *_seen_boxes(boards, trim)])
+        boards += [(side, board) for board in _baseboards(rect, side, holes)]
+    if walls and boards:
+        walls[0] = _item("wall", "side", [*walls[0].geoms, _boards_mesh(boards, rect.centre, trim)])
     return walls
 
 
@@ -142,15 +146,22 @@ def _round_corner(rects: Sequence[Rect], room: int, side: Side, span: Interval) 
 def _pierced(
     rect: Rect, side: Side, span: Interval, outward_m: float, holes: Sequence[Opening], ceiling_m: float, paint: Look
 ) -> list[Geom]:
-    """Boxes of one stretch of wall around its holes."""
+    """Boxes of one stretch of wall around its holes; over neighbouring holes lies one lintel."""
     holes = [hole for hole in holes if hole.span[1] > span[0] + EPS_M and hole.span[0] < span[1] - EPS_M]
-    boxes = [(piece, 0.0, ceiling_m) for piece in subtract(span, [hole.span for hole in holes])]
-    for hole in holes:
-        inside = max(hole.span[0], span[0]), min(hole.span[1], span[1])
-        if hole.bottom_m > 0.0:
-            boxes.append((inside, 0.0, hole.bottom_m))
-        if hole.top_m < ceiling_m:
-            boxes.append((inside, hole.top_m, ceiling_m))
+    boxes: list[tuple[Interval, float, float]] = []
+    for lo, hi in subtract(span, [hole.span for hole in holes if hole.top_m >= ceiling_m]):
+        here = [(max(h.span[0], lo), min(h.span[1], hi), h) for h in holes if lo < h.centre_m < hi]
+        if not here:
+            boxes.append(((lo, hi), 0.0, ceiling_m))
+            continue
+        first, last = min(start for start, _, _ in here), max(end for _, end, _ in here)
+        head_m = max(hole.top_m for _, _, hole in here)
+        boxes += [(pier, 0.0, ceiling_m) for pier in subtract((lo, hi), [(first, last)])]
+        boxes += [(pier, 0.0, head_m) for pier in subtract((first, last), [(start, end) for start, end, _ in here])]
+        boxes.append(((first, last), head_m, ceiling_m))
+        for start, end, hole in here:
+            edges = [(0.0, hole.bottom_m), (hole.top_m, head_m)]
+            boxes += [((start, end), z0, z1) for z0, z1 in edges if z1 - z0 > EPS_M]
     geoms = []
     for piece, z0, z1 in boxes:
         strip = rect.strip(side, piece, HALF_WALL_M, outward_m)
@@ -158,9 +169,8 @@ def _pierced(
     return geoms
 
 
-def _baseboards(rect: Rect, side: Side, holes: Sequence[Opening]) -> list[Box3]:
-    """Boards along a side, between the door frames."""
-    thick, high = BASEBOARD_M
+def _baseboards(rect: Rect, side: Side, holes: Sequence[Opening]) -> list[Rect]:
+    """Footprints of the boards along a side, between the door frames."""
     lo, hi = rect.span(side)
     inner = rect.grown(-HALF_WALL_M)
     gaps = []
@@ -168,65 +178,113 @@ def _baseboards(rect: Rect, side: Side, holes: Sequence[Opening]) -> list[Box3]:
         if hole.bottom_m == 0.0:
             margin = CASING_M[0] - JAMB_M if hole.kind in ("door", "entry") else 0.0
             gaps.append((hole.span[0] - margin, hole.span[1] + margin))
-    boxes = []
-    for piece in subtract((lo + HALF_WALL_M, hi - HALF_WALL_M), gaps, 0.03):
-        strip = inner.strip(side, piece, thick)
-        boxes.append((strip.x0, strip.x1, strip.y0, strip.y1, 0.0, high))
-    return boxes
+    pieces = subtract((lo + HALF_WALL_M, hi - HALF_WALL_M), gaps, 0.03)
+    return [inner.strip(side, piece, BASEBOARD_M[0]) for piece in pieces]
 
 
-def _across(side: Side, line: float, along: Interval, out_from: float, out_to: float, z0: float, z1: float) -> Box3:
-    """A box in a wall: `along` it, from `out_from` to `out_to` metres outward of its middle, between two heights."""
-    sign = 1.0 if side in ("east", "north") else -1.0
-    a, b = sorted((line + sign * out_from, line + sign * out_to))
-    return (a, b, *along, z0, z1) if side in ("east", "west") else (*along, a, b, z0, z1)
+def _boards_mesh(boards: Sequence[tuple[Side, Rect]], centre: tuple[float, float], look: Look) -> Geom:
+    """All baseboards of a room in one mesh: of each only its face and its upper edge, which is all that is seen."""
+    vertices: list[tuple[float, float, float]] = []
+    faces: list[tuple[int, int, int]] = []
+    for side, rect in boards:
+        back = rect.line(side)
+        front = rect.line(OPPOSITE[side])
+        n = len(vertices)
+        for along in rect.span(side):
+            for across, z in ((front, 0.0), (front, BASEBOARD_M[1]), (back, BASEBOARD_M[1])):
+                x, y = (across, along) if side in ("east", "west") else (along, across)
+                vertices.append((x - centre[0], y - centre[1], z))
+        quads = ((n, n + 3, n + 4, n + 1), (n + 1, n + 4, n + 5, n + 2))
+        for a, b, c, d in quads if side in ("north", "west") else [q[::-1] for q in quads]:
+            faces += [(a, b, c), (a, c, d)]
+    mesh = mesh_shape("boards", np.array(vertices), np.array(faces, dtype=np.int32))
+    return Geom("mesh", (), (*centre, 0.0), look, solid=False, mesh=mesh)
 
 
-def _window(hole: Opening, finish: Finish) -> Item:
+def _in_wall(item: Item, hole: Opening) -> Placed:
+    """A design for a hole in a north wall, turned to the hole's own wall."""
+    yaw = {"north": 0.0, "west": math.pi / 2, "south": math.pi, "east": -math.pi / 2}[hole.side]
+    x, y = (hole.centre_m, hole.line_m) if hole.side in ("north", "south") else (hole.line_m, hole.centre_m)
+    return Placed(item, x, y, 0.0, yaw)
+
+
+class _Designs:
+    """The home's windows and doors by size, each made once."""
+
+    def __init__(self, finish: Finish) -> None:
+        self._finish = finish
+        self._made: dict[tuple[object, ...], Item] = {}
+
+    def window(self, hole: Opening) -> Item:
+        """The window for a hole; in the frame of `_in_wall`."""
+        key = ("window", _width(hole), hole.bottom_m, hole.top_m)
+        return self._once(key, lambda: _window(_width(hole), hole.bottom_m, hole.top_m, self._finish))
+
+    def frame(self, hole: Opening) -> Item:
+        """The door frame for a hole; in the frame of `_in_wall`."""
+        key = ("frame", _width(hole), hole.kind)
+        return self._once(key, lambda: _frame(_width(hole), hole.top_m, hole.kind == "entry", self._finish))
+
+    def leaf(self, width_m: float, high_m: float, gap_m: float) -> Item:
+        """A leaf: hinge at the origin, along +x."""
+        key = ("leaf", width_m, high_m, gap_m)
+        return self._once(key, lambda: _item("door", "leaf", _leaf_geoms(width_m, high_m, self._finish, gap_m)))
+
+    def _once(self, key: tuple[object, ...], make: Callable[[], Item]) -> Item:
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]
+
+
+def _width(hole: Opening) -> float:
+    return round(hole.span[1] - hole.span[0], 3)
+
+
+def _window(width_m: float, z0: float, z1: float, finish: Finish) -> Item:
     """Frame with a cross, a sill, and daylight behind it."""
-    (lo, hi), z0, z1, side, line = hole.span, hole.bottom_m, hole.top_m, hole.side, hole.line_m
+    lo, hi = -0.5 * width_m, 0.5 * width_m
     bar, out = 0.05, OUTER_WALL_M - 0.02
-    middle = 0.5 * (lo + hi)
     bars = [((lo, lo + bar), z0, z1), ((hi - bar, hi), z0, z1), ((lo, hi), z0, z0 + bar), ((lo, hi), z1 - bar, z1)]
-    if hi - lo > 0.85:
-        bars.append(((middle - 0.025, middle + 0.025), z0, z1))
+    if width_m > 0.85:
+        bars.append(((-0.025, 0.025), z0, z1))
     if z1 - z0 > 1.3:
         bars.append(((lo, hi), z0 + 0.66 * (z1 - z0), z0 + 0.66 * (z1 - z0) + 0.04))
-    frame = [_across(side, line, span, out - 0.06, out, b, t) for span, b, t in bars]
-    frame.append(_across(side, line, (lo - 0.04, hi + 0.04), -HALF_WALL_M - 0.03, out, z0 - 0.025, z0))
-    pane = _across(side, line, (lo, hi), out - 0.02, OUTER_WALL_M, z0, z1)
-    return _item("window", "pane", [oriented_box(pane, finish.sky, side), *_seen_boxes(frame, finish.trim)])
+    frame: list[Box3] = [(*span, out - 0.06, out, b, t) for span, b, t in bars]
+    frame.append((lo - 0.04, hi + 0.04, -HALF_WALL_M - 0.03, out, z0 - 0.025, z0))
+    pane = (lo, hi, out - 0.02, OUTER_WALL_M, z0, z1)
+    return _item("window", "pane", [oriented_box(pane, finish.sky, "north"), *_seen_boxes(frame, finish.trim)])
 
 
-def _door(hole: Opening, finish: Finish) -> list[Item]:
+def _door(hole: Opening, designs: _Designs) -> list[Placed]:
     """Frame and, where it has one, leaf: two items, both labelled door."""
-    (lo, hi), top, side, line = hole.span, hole.top_m, hole.side, hole.line_m
-    inner, outer = -HALF_WALL_M - 0.004, HALF_WALL_M + 0.004 if hole.kind == "door" else OUTER_WALL_M
-    jambs = [_across(side, line, span, inner, outer, 0.0, top) for span in ((lo, lo + JAMB_M), (hi - JAMB_M, hi))]
-    boards = [_across(side, line, (lo + JAMB_M, hi - JAMB_M), inner, outer, top - JAMB_M, top)]
-    wide, thick = CASING_M
-    for face in (-1.0, 1.0) if hole.kind == "door" else (-1.0,):
-        near, far = sorted((face * HALF_WALL_M, face * (HALF_WALL_M + thick)))
-        for a, b in ((lo + JAMB_M - wide, lo + JAMB_M - 0.008), (hi - JAMB_M + 0.008, hi - JAMB_M + wide)):
-            boards.append(_across(side, line, (a, b), near, far, 0.0, top - JAMB_M + wide))
-        boards.append(
-            _across(
-                side,
-                line,
-                (lo + JAMB_M - 0.008, hi - JAMB_M + 0.008),
-                near,
-                far,
-                top - JAMB_M + 0.008,
-                top - JAMB_M + wide,
-            )
-        )
-    geoms = [oriented_box(box, finish.door_frame) for box in jambs]
-    items = [_item("door", "frame", [*geoms, *_seen_boxes(boards, finish.door_frame)])]
+    placed = [_in_wall(designs.frame(hole), hole)]
+    lo, hi = hole.clear_span()
     if hole.kind == "entry":
-        items.append(_closed_leaf(hole, finish))
+        leaf = designs.leaf(round(hi - lo, 4), hole.top_m - JAMB_M, 0.0)
+        level = hole.side in ("north", "south")
+        x, y = (lo, hole.line_m) if level else (hole.line_m, lo)  # where the floor ends: nothing is seen below it
+        placed.append(Placed(leaf, x, y, 0.0, 0.0 if level else math.pi / 2))
     elif hole.leaf is not None:
-        items.append(_ajar_leaf(hole, finish))
-    return items
+        leaf = designs.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01)
+        placed.append(_ajar(leaf, hole))
+    return placed
+
+
+def _frame(width_m: float, top: float, outside: bool, finish: Finish) -> Item:
+    """Jambs that are touched, and the boards around them on each face of an inner wall."""
+    lo, hi = -0.5 * width_m, 0.5 * width_m
+    inner, outer = -HALF_WALL_M - 0.004, OUTER_WALL_M if outside else HALF_WALL_M + 0.004
+    jambs: list[Box3] = [(*span, inner, outer, 0.0, top) for span in ((lo, lo + JAMB_M), (hi - JAMB_M, hi))]
+    boards: list[Box3] = [(lo + JAMB_M, hi - JAMB_M, inner, outer, top - JAMB_M, top)]
+    wide, thick = CASING_M
+    reveal = JAMB_M - 0.008
+    for face in (-1.0,) if outside else (-1.0, 1.0):
+        near, far = sorted((face * HALF_WALL_M, face * (HALF_WALL_M + thick)))
+        for a, b in ((lo + JAMB_M - wide, lo + reveal), (hi - reveal, hi - JAMB_M + wide)):
+            boards.append((a, b, near, far, 0.0, top - JAMB_M + wide))
+        boards.append((lo + reveal, hi - reveal, near, far, top - reveal, top - JAMB_M + wide))
+    geoms = [oriented_box(box, finish.door_frame) for box in jambs]
+    return _item("door", "frame", [*geoms, *_seen_boxes(boards, finish.door_frame)])
 
 
 def _leaf_geoms(width_m: float, high_m: float, finish: Finish, gap_m: float = 0.01) -> list[Geom]:
@@ -242,20 +300,10 @@ def _leaf_geoms(width_m: float, high_m: float, finish: Finish, gap_m: float = 0.
     return [*geoms, *_seen_boxes(handle, finish.handle)]
 
 
-def _closed_leaf(hole: Opening, finish: Finish) -> Item:
-    lo, hi = hole.clear_span()
-    leaf = _item("door", "leaf", _leaf_geoms(hi - lo, hole.top_m - JAMB_M, finish, 0.0))
-    yaw = 0.0 if hole.side in ("north", "south") else math.pi / 2
-    at = hole.line_m  # where the floor ends: nothing is seen below it
-    x, y = (lo, at) if hole.side in ("north", "south") else (at, lo)
-    return turned_item(leaf, x, y, yaw)
-
-
-def _ajar_leaf(hole: Opening, finish: Finish) -> Item:
+def _ajar(leaf: Item, hole: Opening) -> Placed:
     """The leaf of an inner door, turned about its hinge into the room it opens to."""
     assert hole.leaf is not None
     lo, hi = hole.clear_span()
-    leaf = _item("door", "leaf", _leaf_geoms(hi - lo - 0.004, hole.top_m - JAMB_M - 0.006, finish))
     side = hole.side_of(hole.leaf.room)
     into = {"east": math.pi, "west": 0.0, "north": -math.pi / 2, "south": math.pi / 2}[side]
     along = math.pi / 2 if side in ("east", "west") else 0.0
@@ -265,29 +313,4 @@ def _ajar_leaf(hole: Opening, finish: Finish) -> Item:
     sign = 1.0 if side in ("east", "north") else -1.0
     at = hole.line_m - sign * (HALF_WALL_M + 0.004 + 0.02)
     x, y = (hinge, at) if side in ("north", "south") else (at, hinge)
-    return turned_item(leaf, x, y, closed + swing * hole.leaf.angle_rad)
-
-
-def turned_item(item: Item, x_m: float, y_m: float, yaw_rad: float) -> Item:
-    """The item with its geoms turned about z and moved; only for geoms without a pitch of their own."""
-    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
-    geoms = []
-    for geom in item.geoms:
-        px, py, pz = geom.pos_m
-        at = (round(x_m + c * px - s * py, 4), round(y_m + s * px + c * py, 4), pz)
-        geoms.append(
-            Geom(geom.shape, geom.size_m, at, geom.look, _turned_euler(geom.euler_rad, yaw_rad), geom.solid, geom.mesh)
-        )
-    return Item(item.category, item.style, item.size_m, tuple(geoms))
-
-
-def _turned_euler(euler_rad: tuple[float, float, float], yaw_rad: float) -> tuple[float, float, float]:
-    """Intrinsic x-y-z angles after a turn about the world's z.
-
-    After a quarter turn about x the local y axis is the world's z, so the turn is about y.
-    """
-    if euler_rad == (0.0, 0.0, 0.0):
-        return 0.0, 0.0, yaw_rad
-    if abs(euler_rad[0] - math.pi / 2) < EPS_M:
-        return euler_rad[0], euler_rad[1] + yaw_rad, euler_rad[2]
-    raise ValueError(f"Only level geoms and quarter turns about x can be turned, got {euler_rad} rad.")
+    return Placed(leaf, x, y, 0.0, closed + swing * hole.leaf.angle_rad)

@@ -66,7 +66,7 @@ def test_bathrooms_open_to_hallways_and_bedrooms_only(kind: PlanKind, seed: int)
 def test_doors_are_wide_enough_and_lie_in_the_wall_that_two_rooms_share(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     try:
-        openings = cut_openings(np.random.default_rng(seed), plan, 2.6)
+        openings = cut_openings(np.random.default_rng(seed), plan)
     except PlanError:
         return  # the generator draws another plan
     for hole in openings:
@@ -85,7 +85,7 @@ def test_doors_are_wide_enough_and_lie_in_the_wall_that_two_rooms_share(kind: Pl
 def test_windows_look_outside(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     try:
-        openings = cut_openings(np.random.default_rng(seed), plan, 2.6)
+        openings = cut_openings(np.random.default_rng(seed), plan)
     except PlanError:
         return
     rects = [room.rect for room in plan.rooms]
