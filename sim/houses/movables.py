@@ -62,6 +62,8 @@ class Movable:
     friction: float
     rolls: bool = False
     """It needs rolling friction to come to rest."""
+    at_m: tuple[float, float] = (0.0, 0.0)
+    """Where its frame lies in that of the item it was part of; it is not turned against it."""
 
 
 def loosen(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
@@ -221,8 +223,12 @@ def _light_parts(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         if weight is None:
             rest += part
             continue
-        ball = part[0].shape == "sphere"
-        made.append(_movable(replace(item, geoms=tuple(part)), weight, RUBBER, rolls=ball or len(part) == 1))
+        rolls = part[0].shape == "sphere" or len(part) == 1
+        low, high = bounds(part)
+        x, y, _ = _rounded(0.5 * (low + high))
+        moved = tuple(replace(geom, pos_m=_rounded(np.subtract(geom.pos_m, (x, y, 0.0)))) for geom in part)
+        alone = replace(item, geoms=moved, size_m=_rounded(high - low), surfaces=())
+        made.append(replace(_movable(alone, weight, RUBBER, rolls=rolls), at_m=(x, y)))
     return (replace(item, geoms=tuple(rest)) if rest else None), tuple(made)
 
 

@@ -24,6 +24,8 @@ class Recipe:
     kind: PlanKind
     area_m2: float
     rooms: tuple[str, ...] = ()
+    movable: bool = False
+    """Its light furniture can be pushed."""
 
     def make(self) -> GeneratedHouse:
         """The house; the same bytes of XML every time.
@@ -31,8 +33,15 @@ class Recipe:
         Raises:
             HouseError: no try within the bound gave a house without a fault.
         """
-        config = HouseConfig(pool=self.pool, kind=self.kind, area_m2=self.area_m2, rooms=self.rooms, name=self.name)
+        config = HouseConfig(
+            pool=self.pool, kind=self.kind, area_m2=self.area_m2, rooms=self.rooms, name=self.name, movable=self.movable
+        )
         return generate_house(self.seed, config)
+
+
+def _is_movable(number: int) -> bool:
+    """Every third house of val and test has furniture that can be pushed."""
+    return number % 3 == 1
 
 
 _VAL: tuple[tuple[PlanKind, float, tuple[str, ...]], ...] = (
@@ -51,7 +60,7 @@ _VAL: tuple[tuple[PlanKind, float, tuple[str, ...]], ...] = (
 SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
     {
         "val": tuple(
-            Recipe(f"val_{n:02d}", 10_000 + n, "heldout", kind, area_m2, rooms)
+            Recipe(f"val_{n:02d}", 10_000 + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
             for n, (kind, area_m2, rooms) in enumerate(_VAL)
         ),
     }
