@@ -16,9 +16,10 @@ from sim.errors import EpisodeError
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, MPCAT40, SENSORS, Action, CameraModel, ConfigError
 from sim.pose import Pose
 from sim.robot.config import RobotConfig
+from sim.robot.drive import Motion
 from sim.sampling import sample_episode
 from sim.scene import Scene, SceneCache
-from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise
+from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 
 
 class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what they hold, not by what they are
@@ -63,6 +64,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         sensors: image sensors in the observation.
         profile: rendering profile, `fast` or `good`.
         noise: of sensors and drive, a preset of `sim.sensors.noise` or a config; what counts is never noisy.
+            A house whose sidecar (`sim.sidecar`) fixes noise keeps that.
         render_mode: `rgb_array` or None.
         max_steps: actions until truncation.
         camera: intrinsics and mount height.
@@ -98,8 +100,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         self.render_mode = render_mode
         self.camera_model = camera or CameraModel()
         self.robot_model = (robot or RobotConfig()).model
-        self._noise = SensorNoise(noise if isinstance(noise, NoiseConfig) else get_noise(noise), self.camera_model)
-        self._images = tuple(sorted({*self.sensors, "semantic", *self._noise.needs(self.sensors)}))
+        self._own_noise = SensorNoise(noise if isinstance(noise, NoiseConfig) else get_noise(noise), self.camera_model)
+        self._noise = self._own_noise
         self.observation_space = observation_space(self.sensors, self.camera_model)
         self.action_space = spaces.Discrete(len(Action))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
@@ -116,6 +118,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         )
         self._scene: Scene | None = None
         self._episode: Episode | None = None
+        self._motion: Motion | None = None
 
     @property
     def scene(self) -> Scene:
@@ -131,6 +134,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
         return self._episode
 
+    @property
+    def motion(self) -> Motion | None:
+        """What the last action did, contacts included; None before the first."""
+        return self._motion
+
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[dict[str, NDArray], dict[str, Any]]:
@@ -138,11 +146,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         super().reset(seed=seed)
         episode = self._choose(options or {})
         self._scene = self._scenes.get(episode.house)
+        self._noise = self._noise_in(episode.house)
         # A child of the seed takes no number from the stream that draws episodes.
         conditions = self._noise.begin(self.np_random.spawn(1)[0], self._scene.gloss)
         self._scene.world.reset(episode.start, conditions)
         self._scene.task.begin(episode.goal, episode.start)
-        self._episode = episode
+        self._episode, self._motion = episode, None
         observation, semantic = self._look()
         self._scene.task.look(semantic)
         return observation, self._info(collided=False)
@@ -150,7 +159,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Carry out one action; see the class."""
         scene = self.scene
-        motion = scene.world.move(Action(action))
+        motion = self._motion = scene.world.move(Action(action))
         observation, semantic = self._look()
         scene.task.observe(Action(action), motion, semantic)
         reward = float(scene.task.success)
@@ -159,13 +168,15 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
     def draw_episode(self, rng: np.random.Generator, *, episode_id: str = "drawn") -> Episode:
         """A new episode in the one house of this environment, with its `goal` and `start` where they are fixed.
 
+        What the environment leaves open, the sidecar of the house may fix.
+
         Raises:
             EpisodeError: the goal is not in the house or has no way to it, or the robot does not fit at the start.
         """
         (house,) = self.split.houses
-        return sample_episode(
-            self._scenes.get(house), house, rng, goal=self.goal, start=self.start, episode_id=episode_id
-        )
+        fixed = self.split.sidecar(house)
+        goal, start = self.goal or fixed.goal, self.start or fixed.start
+        return sample_episode(self._scenes.get(house), house, rng, goal=goal, start=start, episode_id=episode_id)
 
     def render(self) -> NDArray[np.uint8] | None:
         """What the robot's camera sees in colour, uint8 (h, w, 3), in render mode `rgb_array`."""
@@ -187,10 +198,16 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
             return self._episodes[self.np_random.integers(len(self._episodes))]
         return self.draw_episode(self.np_random)
 
+    def _noise_in(self, house: str) -> SensorNoise:
+        """The noise that the house's sidecar fixes, else the environment's."""
+        fixed = self.split.sidecar(house).noise
+        return SensorNoise(noise_from_dict(fixed), self.camera_model) if fixed else self._own_noise
+
     def _look(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
         """The observation, and the true segmentation that the task's metrics need even where no agent sees it."""
         world, start = self.scene.world, self.episode.start
-        images = self.scene.camera.render(world.data, world.pose, self._images)
+        wanted = sorted({*self.sensors, "semantic", *self._noise.needs(self.sensors)})
+        images = self.scene.camera.render(world.data, world.pose, wanted)
         pose = world.pose.relative_to(start)
         observation = {name: images[name] for name in self.sensors}
         observation["gps"] = np.array([pose.x_m, pose.y_m], np.float32)

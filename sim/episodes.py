@@ -21,6 +21,7 @@ from sim.houses.load import load_house
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.paths import assets_dir
 from sim.pose import Pose
+from sim.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, sidecar_path
 
 T = TypeVar("T")
 
@@ -46,7 +47,7 @@ class Split:
     version: str
     """Raised when a house or an episode of the split changes, so that results name what they were made on."""
     sha256: str
-    """Over the house files and the episodes."""
+    """Over the house files, their sidecars and the episodes."""
     house_paths: Mapping[str, Path]
     episodes: tuple[Episode, ...]
     labels_path: Path | None = None
@@ -65,6 +66,16 @@ class Split:
         if name not in self.house_paths:
             raise HouseError(f"Split '{self.name}' has no house '{name}'. It has: {', '.join(self.houses)}.")
         return load_house(self.house_paths[name], labels_path=self.labels_path)
+
+    def sidecar(self, house: str) -> Sidecar:
+        """What the file beside a house fixes; nothing where there is none, or where it holds the label rules.
+
+        Raises:
+            HouseError: it breaks the form of `sim.sidecar`.
+        """
+        path = self.house_paths[house]
+        is_rules = self.labels_path is not None and self.labels_path.resolve() == sidecar_path(path).resolve()
+        return NOTHING_FIXED if is_rules else read_sidecar(path)
 
     def episode(self, episode_id: str) -> Episode:
         """The episode of that id.
@@ -115,7 +126,7 @@ def one_house(path: str | Path, *, labels: str | Path | None = None) -> Split:
     if not path.is_file():
         raise HouseError(f"House '{path}': there is no such file.")
     labels_path = None if labels is None else Path(labels)
-    digest = hashlib.sha256(path.read_bytes())
+    digest = hashlib.sha256(path.read_bytes() + _sidecar_bytes(path))
     if labels_path is not None and labels_path.is_file():
         digest.update(labels_path.read_bytes())
     return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path)
@@ -181,9 +192,14 @@ def _episodes_of(content: habitat.Json) -> dict[str, Episode]:
 def _sha256(houses: Mapping[str, Path], episodes: Sequence[Episode]) -> str:
     digest = hashlib.sha256()
     for name, path in houses.items():
-        digest.update(name.encode() + path.read_bytes())
+        digest.update(name.encode() + path.read_bytes() + _sidecar_bytes(path))
     digest.update(json.dumps([_to_habitat("", episode) for episode in episodes]).encode())
     return digest.hexdigest()
+
+
+def _sidecar_bytes(house_file: Path) -> bytes:
+    file = sidecar_path(house_file)
+    return file.read_bytes() if file.is_file() else b""
 
 
 def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:

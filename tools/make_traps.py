@@ -1,0 +1,89 @@
+"""Write the trap scenes: an MJCF file and a sidecar each, and their episodes, laid out like any split.
+
+    python tools/make_traps.py --out assets/mjcf_houses/traps
+
+Three episodes a trap: from its sidecar's start, with three headings. The same code gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sim import cli, habitat
+from sim.episodes import Episode, write_split
+from sim.errors import HouseError
+from sim.houses.build import ASSETS_DIR, TEXTURE_DIR
+from sim.houses.load import load_house
+from sim.houses.traps.catalogue import TRAPS
+from sim.houses.traps.trap import START_TURNS_RAD, Trap
+from sim.interface import wrap_angle
+from sim.sidecar import write_sidecar
+from sim.task import Task
+from sim.world import World
+from tools.make_episodes import survey
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """What to write and where."""
+
+    out: Path = ASSETS_DIR / "traps"
+    """Folder for the scenes; its name is the split's."""
+    version: str = "1.0.0"
+    """Version of the split: raise it whenever a scene or an episode changes."""
+
+
+def main(args: Args) -> int:
+    """Write all scenes and their episodes."""
+    args.out.mkdir(parents=True, exist_ok=True)
+    episodes: list[Episode] = []
+    goals: dict[str, dict[str, list[habitat.Json]]] = {}
+    for name, make in TRAPS.items():
+        trap = make()
+        path = args.out / f"{name}.xml"
+        write_scene(path, trap)
+        task = Task(World(load_house(path)))
+        goals[name] = {goal: listed for goal, listed in survey(task).listed.items() if goal == trap.goal}
+        episodes += draw_episodes(name, trap, task)
+        print(f"{name}: {episodes[-1].shortest_path_m:.1f} m, {path.stat().st_size / 1000:.0f} KB")
+    write_split(args.out, list(in_turns(episodes)), goals, version=args.version)
+    return 0
+
+
+def write_scene(path: Path, trap: Trap) -> None:
+    """Write one scene and its sidecar; textures are found from where it lies."""
+    textures = os.path.relpath(ASSETS_DIR / "textures", path.parent.resolve())
+    xml = trap.site.spec.to_xml().replace(f'texturedir="{TEXTURE_DIR}"', f'texturedir="{textures}"', 1)
+    path.write_text(xml, encoding="utf-8")
+    write_sidecar(path, trap.sidecar)
+
+
+def draw_episodes(name: str, trap: Trap, task: Task) -> list[Episode]:
+    """One episode for each start heading.
+
+    Raises:
+        HouseError: there is no way out of the trap.
+    """
+    found = []
+    for i, yaw_rad in enumerate(START_TURNS_RAD):
+        start = replace(trap.start, yaw_rad=round(wrap_angle(trap.start.yaw_rad + yaw_rad), 4))
+        task.world.reset(start)
+        distance_m = task.distance_from(trap.goal, start)
+        if distance_m is None:
+            raise HouseError(f"Trap '{name}': there is no way from its start to '{trap.goal}'.")
+        found.append(Episode(f"{name}_{i}", name, trap.goal, start, distance_m))
+    return found
+
+
+def in_turns(episodes: list[Episode]) -> Iterator[Episode]:
+    """The first episode of every trap, then the second of every trap, and so on."""
+    for i in range(len(START_TURNS_RAD)):
+        yield from episodes[i :: len(START_TURNS_RAD)]
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
