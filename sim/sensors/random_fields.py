@@ -6,6 +6,7 @@ values, hence the largest normal is 4.3 standard deviations out.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import cv2
@@ -53,7 +54,9 @@ def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: fl
 
 
 def _levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint16]:
-    return rng.integers(0, _LEVELS, shape, dtype=np.uint16)
+    count = math.prod(shape)
+    words = rng.bit_generator.random_raw(-(-count // 4))  # 64 bits each; half the time of `rng.integers`
+    return words.view(np.uint16)[:count].reshape(shape)
 
 
 @cache
