@@ -12,7 +12,7 @@ import numpy as np
 from sim.gl import mujoco
 from sim.houses.furniture.item import Geom, Item, Look, MeshShape
 from sim.houses.geometry import Rect
-from sim.houses.joining import Assembly, assemble
+from sim.houses.joining import BYTES_PER_GEOM, Assembly, assemble
 from sim.houses.materials import texture_file, texture_mapping
 from sim.houses.movables import ROLLING_M, Movable, loosen
 
@@ -23,8 +23,8 @@ AMBIENT, HEADLIGHT = 0.36, 0.12
 """Light from everywhere, and from the camera: without some of both, walls that no lamp faces look black."""
 MESH_UNIT_M = 5e-4
 """Vertices are written in whole units of this: half the bytes of metres."""
-_SEEN, _TOUCHED = "seen", "hit"
-"""Default classes of geoms that nothing touches, and of those that nobody sees."""
+_SEEN, _SKIN, _TOUCHED = "seen", "skin", "hit"
+"""Default classes of geoms that nothing touches, of meshes among them, and of geoms that nobody sees."""
 _SHAPES = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -67,7 +67,8 @@ class Lamp:
 class HouseBuilder:
     """Collects a house's parts in one `MjSpec`; equal looks and meshes are written once."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, *, bytes_per_geom: int = BYTES_PER_GEOM) -> None:
+        self._bytes_per_geom = bytes_per_geom
         self._spec = mujoco.MjSpec()
         self._spec.modelname = name
         self._spec.texturedir = TEXTURE_DIR
@@ -80,6 +81,8 @@ class HouseBuilder:
         seen.geom.contype = 0
         seen.geom.conaffinity = 0
         self._seen = seen
+        self._skin = self._spec.add_default(_SKIN, seen)
+        self._skin.geom.type = mujoco.mjtGeom.mjGEOM_MESH
         self._touched = self._spec.add_default(_TOUCHED, self._spec.default)
         self._touched.geom.group = 3
         self._spec.default.mesh.scale = [MESH_UNIT_M] * 3
@@ -212,13 +215,15 @@ class HouseBuilder:
     def _assembly(self, item: Item) -> Assembly:
         """The item's parts; worked out once for each design."""
         if id(item) not in self._assemblies:
-            self._assemblies[id(item)] = (item, assemble(item, self._copies.get(id(item), 1)))
+            self._assemblies[id(item)] = (item, assemble(item, self._bytes_per_geom * self._copies.get(id(item), 1)))
         return self._assemblies[id(item)][1]
 
     def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:
         kind = _SHAPES[geom.shape]
-        # No default class for what is seen and touched: the standard one.
-        made = body.add_geom(type=kind) if geom.solid else body.add_geom(self._seen, type=kind)
+        if geom.solid:
+            made = body.add_geom(type=kind)  # of no class: the standard one is for what is seen and touched
+        else:
+            made = body.add_geom(self._skin if geom.mesh is not None else self._seen, type=kind)
         made.material = self._material(geom.look)
         self._add_shape(made, geom)
 

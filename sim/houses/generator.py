@@ -13,17 +13,18 @@ import numpy as np
 
 from sim.errors import HouseError
 from sim.gl import mujoco
-from sim.houses.build import HouseBuilder, RoomBox
+from sim.houses.build import HouseBuilder, Lamp, Placed, RoomBox
 from sim.houses.check import check_house
 from sim.houses.finish import draw_finish, draw_lamps
 from sim.houses.floorplan import FloorPlan, PlanError, draw_floorplan
 from sim.houses.furnish import furnish
 from sim.houses.furniture.item import Pool
 from sim.houses.kit import Kit
-from sim.houses.openings import HALF_WALL_M, OUTER_WALL_M, cut_openings
+from sim.houses.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
 from sim.houses.placement import RoomSpace
 from sim.houses.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
 from sim.houses.structure import build_structure
+from sim.houses.writing import house_text
 from sim.interface import ConfigError
 
 GENERATOR_VERSION = 1
@@ -31,6 +32,10 @@ GENERATOR_VERSION = 1
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 400.0)
+MAX_BYTES = 395_000
+"""Of a house as a file."""
+BYTES_PER_GEOM = (300, 120, 40)
+"""What one geom less to draw may cost in the file: less where the house would get too large otherwise."""
 _POOL_STREAM = {"train": 0, "heldout": 1}
 
 
@@ -125,18 +130,30 @@ def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHou
     for attempt in range(MAX_TRIES):
         rng = np.random.default_rng([seed, _POOL_STREAM[config.pool], attempt])
         try:
-            spec, plan = _try_house(rng, config)
+            draft = _draw_house(rng, config)
         except PlanError as error:
             rejects.append(str(error))
             continue
+        spec = _build_small(draft, config)
         faults = check_house(spec)
         if not faults:
-            return GeneratedHouse(spec, plan, len(spec.geoms), attempt + 1, tuple(rejects))
+            return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
         rejects.append("; ".join(faults))
     raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {' | '.join(rejects)}")
 
 
-def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.MjSpec, FloorPlan]:
+@dataclass(frozen=True)
+class _Draft:
+    """A home as it was drawn, before it becomes a specification."""
+
+    plan: FloorPlan
+    ceiling_m: float
+    structure: list[Placed]
+    spaces: list[RoomSpace]
+    lamps: list[Lamp]
+
+
+def _draw_house(rng: np.random.Generator, config: HouseConfig) -> _Draft:
     """One draw of everything.
 
     Raises:
@@ -145,38 +162,61 @@ def _try_house(rng: np.random.Generator, config: HouseConfig) -> tuple[mujoco.Mj
     area_m2, kind = _draw_size(rng, config)
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
     ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
-    for attempt in range(MAX_PLAN_TRIES):
-        try:
-            plan = draw_floorplan(rng, kind, area_m2, config.rooms)
-            openings = cut_openings(rng, plan)
-            break
-        except PlanError:
-            if attempt == MAX_PLAN_TRIES - 1:
-                raise
-    else:
-        raise PlanError("no floor plan")
+    plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
     finish = draw_finish(rng, plan, config.pool)
-    builder = HouseBuilder(config.name)
-    builder.add_ground(plan.bounds.grown(OUTER_WALL_M))
-    for room in plan.rooms:
-        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), ceiling_m)
     structure = build_structure(plan, openings, ceiling_m, finish)
     kit = Kit(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms))
     spaces = [RoomSpace(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for space in spaces:
         furnish(space, kit)
-    builder.expect([*structure, *(standing.placed for space in spaces for standing in space.standing)])
-    for placed in structure:
+    return _Draft(plan, ceiling_m, structure, spaces, draw_lamps(rng, plan, ceiling_m))
+
+
+def _draw_plan(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, rooms: tuple[str, ...]
+) -> tuple[FloorPlan, tuple[Opening, ...]]:
+    """A plan and the holes in its walls; many plans are drawn before one fits.
+
+    Raises:
+        PlanError: none fits.
+    """
+    for _ in range(MAX_PLAN_TRIES - 1):
+        try:
+            plan = draw_floorplan(rng, kind, area_m2, rooms)
+            return plan, cut_openings(rng, plan)
+        except PlanError:
+            continue
+    plan = draw_floorplan(rng, kind, area_m2, rooms)
+    return plan, cut_openings(rng, plan)
+
+
+def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec:
+    """The specification of a drawn home, its parts joined as far as the file's size allows."""
+    for bytes_per_geom in BYTES_PER_GEOM[:-1]:
+        spec = _build(draft, config, bytes_per_geom)
+        if len(house_text(spec)) <= MAX_BYTES:
+            return spec
+    return _build(draft, config, BYTES_PER_GEOM[-1])
+
+
+def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.MjSpec:
+    """The specification of a drawn home."""
+    builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom)
+    builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
+    for room in draft.plan.rooms:
+        builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
+    builder.expect([*draft.structure, *(standing.placed for space in draft.spaces for standing in space.standing)])
+    for placed in draft.structure:
         builder.add(placed)
-    for space in spaces:
+    for space in draft.spaces:
         for standing in space.standing:
             if config.movable and not space.carries(standing):
                 builder.add_loose(standing.placed)
             else:
                 builder.add(standing.placed)
-    for lamp in draw_lamps(rng, plan, ceiling_m):
+    for lamp in draft.lamps:
         builder.add_lamp(lamp)
-    return builder.spec, plan
+    return builder.spec
 
 
 def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:

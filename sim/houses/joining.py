@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.houses.furniture.item import Geom, Item, Look, Surface
 from sim.houses.furniture.workbench import geom_bounds, matrix_from_euler
@@ -23,7 +22,7 @@ from sim.houses.textures import TEXTURES
 SLAT_HALF_M, ROD_HALF_M = 0.045, 0.07
 """Textured boards and rods narrower than twice this lose their texture when they are joined: nobody sees its grain."""
 BYTES_PER_GEOM = 300
-"""What a geom less may cost in the house's file, shared by all copies of the thing."""
+"""What a geom less may cost in the house's file."""
 MAX_JOINED_VERTICES = 400
 SMALL_ITEM_M = 0.8
 """Things no wider than this are touched as blocks under their largest plate: the robot is 0.88 m high."""
@@ -42,8 +41,8 @@ BLOCKS = frozenset(("sink",))
 BUILDING = frozenset(("wall", "floor", "ceiling", "door", "window", "column"))
 """Lines of sight and places of the robot hang on their exact geoms."""
 
-Box = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Lowest and highest corner, (3,) each."""
+Box = tuple[float, float, float, float, float, float]
+"""Lowest x, y, z, then highest; plain numbers, since thousands of pairs are tried."""
 
 
 @dataclass(frozen=True)
@@ -61,28 +60,29 @@ class Assembly:
         return (*(geom for geom in self.drawn if geom.solid), *self.touched)
 
 
-def assemble(item: Item, copies: int = 1) -> Assembly:
+def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
     """The item in as few geoms as look and feel the same; its children are items of their own.
 
     Args:
         item: what is built.
-        copies: how often the house has it; its meshes are written once.
+        bytes_per_geom: by how much one geom less may lengthen the file; more for what a house has several times.
     """
     seen = [geom for geom in item.geoms if not geom.solid]
-    light = Assembly(tuple(_join(seen, copies) + [geom for geom in item.geoms if geom.solid]), ())
+    light = Assembly(tuple(_join(seen, bytes_per_geom) + [geom for geom in item.geoms if geom.solid]), ())
     if item.category in BUILDING or sum(geom.solid for geom in item.geoms) < 2:
         return light
-    joinable, rest = _partition(item.geoms, copies)
+    joinable, rest = _partition(item.geoms, bytes_per_geom)
     solid = [geom for geom in joinable if geom.solid]
     whole = Assembly(
-        tuple(_join([replace(geom, solid=False) for geom in joinable], copies) + rest), tuple(touch_boxes(solid, item))
+        tuple(_join([replace(geom, solid=False) for geom in joinable], bytes_per_geom) + rest),
+        tuple(touch_boxes(solid, item)),
     )
     return min(light, whole, key=lambda a: len(a.drawn) + len(a.touched))
 
 
-def _partition(geoms: Sequence[Geom], copies: int) -> tuple[list[Geom], list[Geom]]:
+def _partition(geoms: Sequence[Geom], bytes_per_geom: int) -> tuple[list[Geom], list[Geom]]:
     """Those that become part of a mesh, and the others: textured, transparent, or alone of their look."""
-    looks = [_plain(geom, copies) for geom in geoms]
+    looks = [_plain(geom, bytes_per_geom) for geom in geoms]
     alike = [look is not None and looks.count(look) > 1 for look in looks]
     return (
         [geom for geom, join in zip(geoms, alike, strict=True) if join],
@@ -90,10 +90,10 @@ def _partition(geoms: Sequence[Geom], copies: int) -> tuple[list[Geom], list[Geo
     )
 
 
-def _plain(geom: Geom, copies: int) -> Look | None:
+def _plain(geom: Geom, bytes_per_geom: int) -> Look | None:
     """The look of a geom as part of a mesh, which shows no texture; None where it is better left as it is."""
     look = geom.look
-    if look.rgba[3] < 1.0 or written_bytes(geom) > copies * BYTES_PER_GEOM:
+    if look.rgba[3] < 1.0 or written_bytes(geom) > bytes_per_geom:
         return None
     if look.texture is None:
         return look
@@ -128,12 +128,12 @@ def _mean_colour(texture: str) -> tuple[float, float, float]:
 # ---- drawn ---------------------------------------------------------------------------------------------------------
 
 
-def _join(geoms: Sequence[Geom], copies: int) -> list[Geom]:
+def _join(geoms: Sequence[Geom], bytes_per_geom: int) -> list[Geom]:
     """The same picture with the geoms of each plain look in one mesh."""
     kept: list[Geom] = []
     groups: dict[Look, list[tuple[Geom, Facets]]] = {}
     for geom in geoms:
-        look = _plain(geom, copies)
+        look = _plain(geom, bytes_per_geom)
         if look is None:
             kept.append(geom)
         else:
@@ -171,7 +171,7 @@ def touch_boxes(solid: Sequence[Geom], item: Item) -> list[Geom]:
     """What is touched in place of some solid parts of an item: fewer shapes that the robot cannot tell from them."""
     if not solid:
         return []
-    parts: list[tuple[Box, Geom | None]] = [(geom_bounds(geom), geom) for geom in solid]
+    parts: list[tuple[Box, Geom | None]] = [(_bounds(geom), geom) for geom in solid]
     if item.category in BLOCKS:
         return [_box_geom(functools.reduce(_union, (box for box, _ in parts)))]
     parts = _under_plate(parts, item)
@@ -187,15 +187,15 @@ def _under_plate(parts: list[tuple[Box, Geom | None]], item: Item) -> list[tuple
     """Legs and rails under the largest plate of a small thing become one block with it."""
     if max(item.size_m[:2]) > SMALL_ITEM_M:
         return parts
-    top = max((geom for geom in item.geoms if geom.solid), key=lambda geom: _plan_m2(geom_bounds(geom)))
-    plate = geom_bounds(top)
-    low, high = plate[0] - OVERHANG_M, plate[1] + OVERHANG_M
-    shelves = any(0.03 < surface.centre_m[2] < plate[1][2] - 0.02 for surface in item.surfaces)
-    if shelves or top.shape in ("sphere", "ellipsoid") or plate[1][2] < 0.1 or plate[0][2] > ROBOT_HEIGHT_M:
+    top = max((geom for geom in item.geoms if geom.solid), key=lambda geom: _plan_m2(_bounds(geom)))
+    x0, y0, z0, x1, y1, z1 = _bounds(top)
+    shelves = any(0.03 < surface.centre_m[2] < z1 - 0.02 for surface in item.surfaces)
+    if shelves or top.shape in ("sphere", "ellipsoid") or z1 < 0.1 or z0 > ROBOT_HEIGHT_M:
         return parts
 
     def carries(box: Box) -> bool:
-        return bool((box[0][:2] >= low[:2]).all() and (box[1][:2] <= high[:2]).all() and box[1][2] <= plate[1][2])
+        low = box[0] >= x0 - OVERHANG_M and box[1] >= y0 - OVERHANG_M
+        return low and box[3] <= x1 + OVERHANG_M and box[4] <= y1 + OVERHANG_M and box[5] <= z1
 
     under = [part for part in parts if carries(part[0])]
     if len(under) < 2:
@@ -208,9 +208,8 @@ def _drum(block: Box, plate: Geom) -> Geom | None:
     """A cylinder in the block, where what it carries is round."""
     if plate.shape != "cylinder" or abs(plate.euler_rad[0]) + abs(plate.euler_rad[1]) > 0.01:
         return None
-    x, y, z = np.round(0.5 * (block[0] + block[1]), 4).tolist()
-    half = 0.5 * (block[1] - block[0])
-    return Geom("cylinder", (round(float(half[:2].max()), 4), round(float(half[2]), 4)), (x, y, z), Look())
+    box = _box_geom(block)
+    return replace(box, shape="cylinder", size_m=(max(box.size_m[:2]), box.size_m[2]))
 
 
 def _best_pair(
@@ -239,30 +238,38 @@ def _covers_a_top(joined: Box, parts: tuple[Box, Box], surfaces: Sequence[Surfac
     """Whether a box takes room above a surface that its parts left free."""
     for surface in surfaces:
         (x, y, z), (hx, hy) = surface.centre_m, surface.half_size_m
-        room = (np.array([x - hx, y - hy, z + 0.005]), np.array([x + hx, y + hy, z + ABOVE_SURFACE_M]))
+        room = (x - hx, y - hy, z + 0.005, x + hx, y + hy, z + ABOVE_SURFACE_M)
         if _volume_m3(_overlap(joined, room)) > sum(_volume_m3(_overlap(part, room)) for part in parts) + 1e-5:
             return True
     return False
 
 
+def _bounds(geom: Geom) -> Box:
+    (x0, y0, z0), (x1, y1, z1) = (corner.tolist() for corner in geom_bounds(geom))
+    return x0, y0, z0, x1, y1, z1
+
+
 def _union(a: Box, b: Box) -> Box:
-    return np.minimum(a[0], b[0]), np.maximum(a[1], b[1])
+    return (
+        min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]),
+        max(a[3], b[3]), max(a[4], b[4]), max(a[5], b[5]),
+    )  # fmt: skip
 
 
 def _overlap(a: Box, b: Box) -> Box:
-    low = np.maximum(a[0], b[0])
-    return low, np.maximum(low, np.minimum(a[1], b[1]))
-
-
-def _volume_m3(box: Box) -> float:
-    return float(np.prod(box[1] - box[0]))
+    x, y, z = max(a[0], b[0]), max(a[1], b[1]), max(a[2], b[2])
+    return x, y, z, max(x, min(a[3], b[3])), max(y, min(a[4], b[4])), max(z, min(a[5], b[5]))
 
 
 def _plan_m2(box: Box) -> float:
-    return float(np.prod((box[1] - box[0])[:2]))
+    return (box[3] - box[0]) * (box[4] - box[1])
+
+
+def _volume_m3(box: Box) -> float:
+    return _plan_m2(box) * (box[5] - box[2])
 
 
 def _box_geom(box: Box) -> Geom:
-    x, y, z = np.round(0.5 * (box[0] + box[1]), 4).tolist()
-    half = np.round(0.5 * (box[1] - box[0]), 4).tolist()
-    return Geom("box", tuple(half), (x, y, z), Look())
+    x, y, z = (round(0.5 * (box[i] + box[i + 3]), 4) for i in range(3))
+    half = tuple(round(0.5 * (box[i + 3] - box[i]), 4) for i in range(3))
+    return Geom("box", half, (x, y, z), Look())
