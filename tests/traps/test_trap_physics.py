@@ -1,0 +1,136 @@
+"""Agents in traps: who gets out, and that what held them was there, where it was marked, and gave way to nothing."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sim.env import ObjectNavEnv
+from sim.houses.traps.catalogue import TRAPS
+from sim.houses.traps.trap import START_TURNS_RAD
+from sim.interface import FORWARD_M, Action
+from sim.pose import Pose
+from stubborn.agent import StubbornAgent
+from stubborn.agents import ABLATION
+from stubborn.navmap import NavMap
+from tests.helpers.sampling import sample
+from tools.trap_report import make_agent
+from tools.trap_trial import Trial, run_trial
+
+HEADINGS = range(len(START_TURNS_RAD))
+CASES = list(itertools.product(TRAPS, HEADINGS))
+AGENT_CASES = [(*case, agent) for case in CASES for agent in ABLATION]
+BLIND = ("glass_pane", "scan_artifact", "hanging_shelf", "dead_end_corridor", "wedged_spawn", "chair_in_doorway")
+"""Traps of one obstacle across the straight way."""
+FAILED_M = 0.20
+"""A forward that moved less is one that the agent marks."""
+MARK_REACH_M = 0.05 + 0.0354
+"""From a contact to the centre of the nearest marked cell: one cell, and from a cell's corner to its centre."""
+
+
+@pytest.fixture(scope="module")
+def truth_env() -> Iterator[ObjectNavEnv]:
+    env = ObjectNavEnv(split="traps", sensors=())
+    yield env
+    env.close()
+
+
+@pytest.fixture(scope="module")
+def agent_env() -> Iterator[ObjectNavEnv]:
+    env = ObjectNavEnv(split="traps", sensors=("depth", "semantic"))
+    yield env
+    env.close()
+
+
+@pytest.fixture(scope="module")
+def short_env() -> Iterator[ObjectNavEnv]:
+    env = ObjectNavEnv(split="traps", sensors=("depth", "semantic"), max_steps=200)
+    yield env
+    env.close()
+
+
+def play(env: ObjectNavEnv, trap: str, heading: int, name: str) -> tuple[Trial, StubbornAgent]:
+    agent = make_agent(name, env)
+    assert isinstance(agent, StubbornAgent)
+    return run_trial(env, agent, name, env.split.episode(f"{trap}_{heading}")), agent
+
+
+@pytest.mark.parametrize(("trap", "heading"), sample(CASES, 8))
+def test_the_oracle_gets_out_of_every_trap_without_touching_it(truth_env, trap, heading):
+    episode = truth_env.split.episode(f"{trap}_{heading}")
+    trial = run_trial(truth_env, make_agent("oracle", truth_env), "oracle", episode)
+    assert trial.escaped
+    assert trial.metrics["collisions"] == 0
+    assert trial.metrics["spl"] > 0.8
+
+
+@pytest.mark.parametrize(("trap", "heading", "name"), sample(AGENT_CASES, 3))
+def test_in_a_trap_nothing_gives_way_and_no_forward_goes_too_far(short_env, trap, heading, name):
+    trial, _ = play(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError
+    assert trial.deepest_m < 0.003
+    assert trial.metrics["collisions"] == sum(motion.collided for motion in trial.motions)
+    if trap != "slippery_floor":  # a robot on wet tiles glides on
+        assert max(trial.forwards_m) <= FORWARD_M + 0.006
+        for motion in trial.motions:
+            if motion.action == Action.MOVE_FORWARD:
+                assert motion.collided or motion.displacement_m > FAILED_M, "a short move that nothing stopped"
+
+
+@pytest.mark.parametrize("trap", sample(BLIND, 1))
+def test_the_full_agent_gets_out_where_the_one_without_collision_avoidance_stays(short_env, trap):
+    full, _ = play(short_env, trap, 0, "stubborn-v")
+    bare, _ = play(short_env, trap, 0, "stubborn-i")
+    assert full.escaped
+    assert not bare.escaped
+    assert bare.metrics["collisions"] > 5 * full.metrics["collisions"]
+    assert bare.steps_in_trap > full.steps_in_trap
+    assert np.mean(bare.forwards_m) < 0.5 * np.mean(full.forwards_m)
+
+
+@pytest.mark.parametrize(("trap", "heading"), sample([case for case in CASES if case[0] != "slippery_floor"], 2))
+def test_what_stopped_a_forward_lies_within_a_cell_of_a_mark_and_each_mark_at_a_contact(short_env, trap, heading):
+    trial, agent = play(short_env, trap, heading, "stubborn-v")
+    start = short_env.split.episode(f"{trap}_{heading}").start
+    marks_m = marked_places(agent.navmap)
+    for i in failed_forwards(trial):
+        gaps_m = [np.hypot(*(marks_m - place).T).min() for place in contacts_in_start_frame(trial, i, start)]
+        assert gaps_m, f"step {i}: the map has a mark where nothing was touched"
+        assert min(gaps_m) <= MARK_REACH_M, f"step {i}: the nearest mark is {min(gaps_m):.3f} m from the contact"
+
+
+def test_on_wet_tiles_a_forward_falls_short_without_any_contact(agent_env):
+    trial, _ = play(agent_env, "slippery_floor", 0, "stubborn-v")
+    slips = [m for m in trial.motions if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]
+    assert sum(not motion.contacts for motion in slips) > 5
+
+
+@pytest.mark.slow
+def test_the_full_agent_gets_out_of_most_traps_and_of_more_than_the_bare_one(agent_env):
+    out = {
+        name: sum(play(agent_env, trap, heading, name)[0].escaped for trap, heading in CASES)
+        for name in ("stubborn-v", "stubborn-i")
+    }
+    assert out["stubborn-v"] >= 0.8 * len(CASES)
+    assert out["stubborn-v"] > out["stubborn-i"]
+
+
+def failed_forwards(trial: Trial) -> list[int]:
+    """Steps of the forwards that the agent took for collisions; it never learns how its last action ended."""
+    motions = trial.motions[:-1]
+    return [i for i, m in enumerate(motions) if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]
+
+
+def contacts_in_start_frame(trial: Trial, step: int, start: Pose) -> NDArray[np.float64]:
+    """(n, 2) where the motion of that step touched something, in the agent's frame."""
+    places = [Pose(*contact.position_m[:2], 0.0).relative_to(start) for contact in trial.motions[step].contacts]
+    return np.array([(place.x_m, place.y_m) for place in places]).reshape(-1, 2)
+
+
+def marked_places(navmap: NavMap) -> NDArray[np.float64]:
+    """(n, 2) centres of the cells with a collision mark, in the agent's frame."""
+    x_m, y_m = navmap.frame.centres(*np.nonzero(navmap.bumped_wide)[:2])
+    return np.stack([x_m, y_m], axis=1)

@@ -1,0 +1,140 @@
+"""The trap scenes as files: they keep the house format, are deterministic, and their sidecars hold."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.env import ObjectNavEnv
+from sim.episodes import load_split, one_house
+from sim.errors import HouseError
+from sim.houses.load import load_house
+from sim.houses.traps.catalogue import TRAPS
+from sim.houses.traps.trap import START_TURNS_RAD
+from sim.interface import MPCAT40_ID
+from sim.paths import assets_dir
+from sim.pose import Pose
+from sim.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, write_sidecar
+from tests.helpers.sampling import sample
+from tools.make_traps import write_scene
+
+SHIPPED = assets_dir() / "traps"
+
+
+def test_there_are_at_least_twelve_traps_and_each_is_shipped_with_episodes():
+    split = load_split("traps")
+    assert set(split.houses) == set(TRAPS)
+    assert len(TRAPS) >= 12
+    for name in TRAPS:
+        assert sum(episode.house == name for episode in split.episodes) == len(START_TURNS_RAD)
+
+
+def test_the_first_episodes_of_the_split_go_round_the_traps():
+    split = load_split("traps")
+    assert [episode.house for episode in split.episodes[: len(TRAPS)]] == list(TRAPS)
+
+
+@pytest.mark.parametrize("name", sample(list(TRAPS), 6))
+def test_a_shipped_trap_says_where_it_starts_what_it_seeks_and_why_it_holds(name):
+    sidecar = read_sidecar(SHIPPED / f"{name}.xml")
+    assert sidecar.start is not None
+    assert sidecar.goal is not None
+    assert sidecar.zone_m is not None
+    assert 20 < len(sidecar.reason) < 130
+    episode = load_split("traps").episode(f"{name}_0")
+    assert (episode.start.x_m, episode.start.y_m, episode.goal) == (
+        pytest.approx(sidecar.start.x_m),
+        pytest.approx(sidecar.start.y_m),
+        sidecar.goal,
+    )
+
+
+@pytest.mark.parametrize("name", sample(list(TRAPS), 3))
+def test_a_trap_is_written_with_the_same_bytes_each_time_and_is_a_house(name, tmp_path):
+    texts = []
+    for folder in (tmp_path / "one", tmp_path / "two"):
+        folder.mkdir()
+        write_scene(folder / f"{name}.xml", TRAPS[name]())
+        texts.append((folder / f"{name}.xml").read_bytes() + (folder / f"{name}.json").read_bytes())
+    assert texts[0] == texts[1]
+    assert load_house(tmp_path / "one" / f"{name}.xml").name == name
+
+
+def test_the_traps_together_stay_below_a_megabyte():
+    assert sum(file.stat().st_size for file in SHIPPED.rglob("*") if file.is_file()) < 1_000_000
+
+
+def test_a_sidecar_comes_back_as_it_was_written(tmp_path):
+    sidecar = Sidecar(
+        start=Pose(1.0, -2.0, 0.5, 3.0),
+        goal="bed",
+        noise={"depth": {"hole_share": 1.0}},
+        reason="why",
+        zone_m=(0.0, 1.0, 2.0, 3.0),
+    )
+    write_sidecar(tmp_path / "a.xml", sidecar)
+    assert read_sidecar(tmp_path / "a.xml") == sidecar
+    assert read_sidecar(tmp_path / "b.xml") == NOTHING_FIXED
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ({"gaol": "bed"}, "gaol"),
+        ({"goal": "spoon"}, "spoon"),
+        ({"start": {"x_m": 1.0}}, "y_m"),
+        ({"start": {"x_m": 1.0, "y_m": float("inf"), "yaw_rad": 0.0}}, "finite"),
+        ({"zone_m": [1.0, 2.0]}, "zone_m"),
+        ([1], "a.json"),
+    ],
+)
+def test_a_sidecar_that_cannot_be_is_refused_by_name(content, told, tmp_path):
+    (tmp_path / "a.json").write_text(json.dumps(content))
+    with pytest.raises(HouseError, match=told):
+        read_sidecar(tmp_path / "a.xml")
+
+
+def test_the_sidecar_counts_in_the_hash_of_what_was_played(tmp_path: Path):
+    house = tmp_path / "glass_pane.xml"
+    write_scene(house, TRAPS["glass_pane"]())
+    before = one_house(house).sha256
+    write_sidecar(house, Sidecar(goal="bed", noise={"preset": "harsh"}))
+    assert one_house(house).sha256 != before
+
+
+def test_label_rules_named_like_the_house_are_no_sidecar(tmp_path: Path):
+    house = tmp_path / "glass_pane.xml"
+    write_scene(house, TRAPS["glass_pane"]())
+    (tmp_path / "glass_pane.json").write_text('{"sofa.*": "bed"}')
+    split = one_house(house, labels=tmp_path / "glass_pane.json")
+    assert split.sidecar("glass_pane") == NOTHING_FIXED
+
+
+def test_a_house_with_a_sidecar_starts_where_and_seeks_what_it_says():
+    env = ObjectNavEnv(house=SHIPPED / "glass_pane.xml", sensors=())
+    try:
+        drawn = env.draw_episode(np.random.default_rng(3))
+        fixed = read_sidecar(SHIPPED / "glass_pane.xml")
+        assert (drawn.start, drawn.goal) == (fixed.start, fixed.goal)
+    finally:
+        env.close()
+
+
+def test_the_noise_of_a_sidecar_reaches_the_depth_image_and_no_other_scene_has_it():
+    env = ObjectNavEnv(split="traps", sensors=("depth", "semantic"))
+    try:
+        holes = {}
+        for name in ("mirror_holes", "glass_pane", "mirror_holes"):
+            observation, _ = env.reset(seed=0, options={"episode_id": f"{name}_0"})
+            holes[name] = observation["depth"] == 0.0
+            mirror = observation["semantic"] == MPCAT40_ID["mirror"]
+            if name == "mirror_holes":
+                assert mirror.sum() > 5000
+                assert holes[name][mirror].mean() > 0.99
+                assert holes[name][~mirror].mean() < 0.1
+        assert not holes["glass_pane"].any()
+    finally:
+        env.close()

@@ -1,0 +1,200 @@
+"""Who gets out of which trap: a table (terminal, Markdown, CSV) and pictures of where each agent went.
+
+    python -m tools.trap_report --out runs/traps
+
+Each agent plays every trap from the start headings of the split. A run that was stopped goes on where it was. A
+picture has the trap from above with the robot's true path (blue) and where contacts stopped it (red), and the agent's
+map at the end.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from rich.table import Table
+
+from sim import cli, tables
+from sim.env import ObjectNavEnv
+from sim.episodes import Episode
+from sim.interface import Agent, ConfigError
+from sim.oracle import Oracle
+from stubborn import agents, draw
+from stubborn.agent import StubbornAgent
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tools.trap_picture import draw_trial
+from tools.trap_trial import Trial, run_trial
+
+DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
+COLUMNS = (
+    "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
+    "forward_mean_m", "deepest_mm",
+)  # fmt: skip
+"""Of the CSV, a row an episode."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Which agents, which traps, where to."""
+
+    out: Path
+    """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
+    split: str = "traps"
+    """The traps: a shipped split, or a folder laid out like one."""
+    agents: tuple[str, ...] = DEFAULT_AGENTS
+    """Who plays: oracle, or names of `stubborn.agents`."""
+    traps: tuple[str, ...] = ()
+    """Only these; all if not given."""
+    headings: int = 3
+    """So many start headings of each trap."""
+    max_steps: int = 500
+    """Actions of an episode."""
+    pictures: bool = True
+    """Draw the first heading of each trap, and every episode that an agent did not get out of."""
+
+
+def main(args: Args) -> int:
+    """Play what is missing, then write the table."""
+    console = tables.make_console()
+    args.out.mkdir(parents=True, exist_ok=True)
+    results = args.out / "results.jsonl"
+    rows = [json.loads(line) for line in results.read_text().splitlines()] if results.is_file() else []
+    for name in args.agents:
+        env = ObjectNavEnv(
+            split=args.split, sensors=() if name == "oracle" else ("depth", "semantic"), max_steps=args.max_steps
+        )
+        try:
+            agent = make_agent(name, env)
+            for episode in wanted(env, args):
+                if any((row["agent"], row["episode_id"]) == (name, episode.episode_id) for row in rows):
+                    continue
+                trial = run_trial(env, agent, name, episode)
+                rows.append(row_of(trial))
+                with results.open("a") as file:
+                    file.write(json.dumps(rows[-1]) + "\n")
+                outcome = "out" if trial.escaped else "held"
+                console.print(f"{name} {episode.episode_id}: {outcome} after {len(trial.motions)} steps")
+                if args.pictures and (episode.episode_id.endswith("_0") or not trial.escaped):
+                    belief = draw.draw_belief(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+                    picture = draw_trial(env, trial, belief)
+                    (args.out / "pictures").mkdir(exist_ok=True)
+                    cv2.imwrite(str(args.out / "pictures" / f"{episode.episode_id}_{name}.png"), picture[..., ::-1])
+        finally:
+            env.close()
+    write_csv(args.out / "traps.csv", rows)
+    (args.out / "traps.md").write_text(as_markdown(rows))
+    console.print(as_table(rows))
+    return 0
+
+
+def make_agent(name: str, env: ObjectNavEnv) -> Agent:
+    """The agent of that name with ground-truth segmentation.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    if name == "oracle":
+        return Oracle(env)
+    return agents.make(name, camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
+
+
+def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:
+    """The episodes to play, trap by trap.
+
+    Raises:
+        ConfigError: a trap that there is not.
+    """
+    unknown = sorted(set(args.traps) - set(env.split.houses))
+    if unknown:
+        raise ConfigError(f"No trap '{unknown[0]}'. There is: {', '.join(env.split.houses)}.")
+    of_trap: dict[str, list[Episode]] = {}
+    for episode in env.split.episodes:
+        if not args.traps or episode.house in args.traps:
+            of_trap.setdefault(episode.house, []).append(episode)
+    return [episode for episodes in of_trap.values() for episode in episodes[: args.headings]]
+
+
+def row_of(trial: Trial) -> dict[str, Any]:
+    """One episode as a row of the CSV."""
+    forwards_m = trial.forwards_m
+    return {
+        "trap": trial.trap,
+        "episode_id": trial.episode_id,
+        "agent": trial.agent,
+        "escaped": trial.escaped,
+        "steps": len(trial.motions),
+        "steps_in_trap": trial.steps_in_trap,
+        "collisions": int(trial.metrics["collisions"]),
+        "trapped": bool(trial.metrics["trapped"]),
+        "spl": round(float(trial.metrics["spl"]), 3),
+        "forward_mean_m": round(float(np.mean(forwards_m)), 4) if forwards_m else None,
+        "deepest_mm": round(1000 * trial.deepest_m, 2),
+    }
+
+
+def write_csv(file: Path, rows: Sequence[dict[str, Any]]) -> None:
+    """All rows, an episode each."""
+    with file.open("w", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS)
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
+    """Header and lines of the table: traps against agents, and their shares, steps and collisions at the end."""
+    names = list(dict.fromkeys(row["agent"] for row in rows))
+    traps = list(dict.fromkeys(row["trap"] for row in rows))
+    lines = []
+    for trap in traps:
+        cells = [[row for row in rows if (row["trap"], row["agent"]) == (trap, name)] for name in names]
+        lines.append([trap, *(_cell(cell) for cell in cells)])
+    every = [[row for row in rows if row["agent"] == name] for name in names]
+    lines.append(["**out of**", *(f"**{sum(r['escaped'] for r in of)}/{len(of)}**" for of in every)])
+    for label, key in (("steps in the trap, median", "steps_in_trap"), ("collisions, median", "collisions")):
+        lines.append([label, *(f"{np.median([row[key] for row in of]):.0f}" for of in every)])
+    lines.append(["metres a forward, mean", *(f"{_forward_m(of):.2f}" for of in every)])
+    lines.append(["deepest contact, mm", *(f"{max(row['deepest_mm'] for row in of):.1f}" for of in every)])
+    return ["trap", *names], lines
+
+
+def as_markdown(rows: Sequence[dict[str, Any]]) -> str:
+    """The table for docs/traps.md."""
+    header, lines = grid(rows)
+    rule = ["---", *("---:" for _ in header[1:])]
+    return "".join("| " + " | ".join(line) + " |\n" for line in (header, rule, *lines))
+
+
+def as_table(rows: Sequence[dict[str, Any]]) -> Table:
+    """The table for the terminal."""
+    header, lines = grid(rows)
+    table = Table(title="episodes out of the trap (steps in it, collisions: medians)")
+    table.add_column(header[0])
+    for name in header[1:]:
+        table.add_column(name, justify="right")
+    for line in lines:
+        table.add_row(*(cell.strip("*") for cell in line))
+    return table
+
+
+def _cell(rows: Sequence[dict[str, Any]]) -> str:
+    if not rows:
+        return "-"
+    steps = np.median([row["steps_in_trap"] for row in rows])
+    collisions = np.median([row["collisions"] for row in rows])
+    return f"{sum(row['escaped'] for row in rows)}/{len(rows)} ({steps:.0f}, {collisions:.0f})"
+
+
+def _forward_m(rows: Sequence[dict[str, Any]]) -> float:
+    moved = [row["forward_mean_m"] for row in rows if row["forward_mean_m"] is not None]
+    return float(np.mean(moved)) if moved else 0.0
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
