@@ -46,6 +46,8 @@ class Args:
     """Without a split: floor area; drawn when not given."""
     clutter: float | None = None
     """Without a split: 0 bare to 1 full; drawn when not given."""
+    movable: bool = False
+    """Without a split: light furniture can be pushed."""
 
 
 def main(args: Args) -> int:
@@ -78,7 +80,9 @@ def _jobs(args: Args):
         if args.split not in SPLITS:
             raise ConfigError(f"No split '{args.split}'. There is: {', '.join(SPLITS)}.")
         return [(recipe.name, recipe.make) for recipe in SPLITS[args.split][: args.houses]]
-    config = HouseConfig(pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter)
+    config = HouseConfig(
+        pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
+    )
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     return [(f"house_{seed:05d}", lambda seed=seed: generate_house(seed, config)) for seed in seeds]
 
