@@ -48,7 +48,7 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
                 step_1_m=round(1.0 / 32.0 / _D435_FOCAL_BASELINE, 5),
                 lateral_px=0.5,
                 edge_dropout=0.3,
-                edge_flying=0.15,
+                edge_flying=0.05,
                 hole_share=0.8,
             ),
             rgb=RgbNoise(gain_std=0.02, shot_electrons_1=1 / 5000, read_std=1.0),
