@@ -149,7 +149,7 @@ def write_csv(file: Path, rows: Sequence[dict[str, Any]]) -> None:
 
 def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
     """Header and lines of the table: traps against agents, and their shares, steps and collisions at the end."""
-    names = list(dict.fromkeys(row["agent"] for row in rows))
+    names = sorted({row["agent"] for row in rows})
     traps = list(dict.fromkeys(row["trap"] for row in rows))
     lines = []
     for trap in traps:

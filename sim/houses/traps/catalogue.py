@@ -30,6 +30,7 @@ TRAPS: Mapping[str, TrapMaker] = MappingProxyType(
             solid.string_curtain,
             glass.glass_cell,
             glass.scan_forest,
+            glass.glass_comb,
         )
     }
 )

@@ -141,6 +141,19 @@ def scan_forest() -> Trap:
     ))  # fmt: skip
 
 
+def glass_comb() -> Trap:
+    """Four pockets of glass side by side."""
+    site = TrapSite("glass_comb", 9.5, 7.0)
+    site.pane("window", (5.2, 1.0), (5.2, 6.0))
+    for y in (1.0, 2.25, 3.5, 4.75, 6.0):
+        site.pane("window", (3.0, y), (5.2, y))
+    site.furniture("sofa", 8.8, 3.0, math.pi)
+    return Trap(site, Sidecar(
+        start=Pose(1.2, 3.0, 0.0), goal="sofa", zone_m=(3.0, 1.0, 5.2, 6.0),
+        reason="Four glass pockets side by side, 2.2 m deep: whoever leaves one finds the next one on the way.",
+    ))  # fmt: skip
+
+
 def _glass_table(site: TrapSite, x: float, y: float, yaw_rad: float) -> None:
     """1.4 x 0.5 m, 0.45 m high: four visible legs of 2 cm, an invisible top."""
     places = [(sx * 0.66, sy * 0.22) for sx in (-1, 1) for sy in (-1, 1)]

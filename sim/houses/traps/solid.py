@@ -61,11 +61,11 @@ def slippery_floor() -> Trap:
     """A doorway of glass behind a wet floor, and an open one."""
     site = TrapSite("slippery_floor", 8.0, 6.0, kind="bathroom")
     site.wall_across(4.0, (0.9, 2.1), (4.6, 5.5))
-    site.slick((2.5, 4.6), (0.2, 2.6), 0.012)
+    site.slick((2.5, 4.6), (0.6, 2.4), 0.012)
     site.pane("door", (4.0, 0.9), (4.0, 2.1))
     site.furniture("bathtub", 7.0, 1.5, math.pi)
     return Trap(site, Sidecar(
-        start=Pose(1.2, 1.5, 0.0), goal="bathtub", zone_m=(2.5, 0.2, 4.6, 2.6),
+        start=Pose(1.2, 1.5, 0.0), goal="bathtub", zone_m=(2.5, 0.6, 4.6, 2.4),
         reason="Wet tiles before a closed glass door: wheels spin, and on the way back short moves look like bumps.",
     ))  # fmt: skip
 
