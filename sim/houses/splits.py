@@ -44,25 +44,65 @@ def _is_movable(number: int) -> bool:
     return number % 3 == 1
 
 
-_VAL: tuple[tuple[PlanKind, float, tuple[str, ...]], ...] = (
+_Shape = tuple[PlanKind, float, tuple[str, ...]]
+"""Plan kind, area in square metres, and the rooms it must have beside the usual ones."""
+
+_VAL: tuple[_Shape, ...] = (
     ("flat", 95.0, ("gym",)),
     ("corridor", 140.0, ("office",)),
     ("lshape", 150.0, ("gym", "laundry")),
     ("openplan", 130.0, ()),
-    ("studio", 62.0, ()),
-    ("large", 200.0, ("gym", "laundry", "office")),
+    ("studio", 55.0, ()),
+    ("large", 270.0, ("gym", "laundry", "office")),
     ("flat", 115.0, ("office",)),
     ("openplan", 175.0, ("gym", "closet")),
     ("lshape", 190.0, ("laundry",)),
-    ("corridor", 110.0, ("gym",)),
+    ("corridor", 260.0, ("gym",)),
+    ("large", 320.0, ("office", "laundry")),
+    ("flat", 75.0, ()),
+    ("corridor", 180.0, ("office", "gym")),
+    ("openplan", 220.0, ("laundry",)),
+    ("large", 400.0, ("gym", "office", "laundry", "closet")),
+    ("lshape", 120.0, ("gym",)),
+    ("flat", 160.0, ("gym",)),
+    ("large", 290.0, ("gym",)),
+    ("openplan", 100.0, ("office",)),
+    ("corridor", 210.0, ("laundry",)),
 )
 
-SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
-    {
-        "val": tuple(
-            Recipe(f"val_{n:02d}", 10_000 + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
-            for n, (kind, area_m2, rooms) in enumerate(_VAL)
-        ),
-    }
+_TEST: tuple[_Shape, ...] = (
+    ("lshape", 110.0, ("gym",)),
+    ("flat", 125.0, ("office",)),
+    ("corridor", 155.0, ("gym",)),
+    ("large", 300.0, ("gym", "office")),
+    ("openplan", 145.0, ("laundry",)),
+    ("flat", 65.0, ()),
+    ("corridor", 265.0, ("office", "gym")),
+    ("studio", 50.0, ()),
+    ("lshape", 200.0, ("gym", "office")),
+    ("openplan", 185.0, ("closet",)),
+    ("large", 360.0, ("gym", "laundry", "office")),
+    ("flat", 90.0, ("gym",)),
+    ("lshape", 165.0, ("laundry",)),
+    ("corridor", 120.0, ()),
+    ("openplan", 255.0, ("gym", "laundry")),
+    ("flat", 150.0, ("gym", "office")),
+    ("large", 390.0, ("gym", "laundry", "closet")),
+    ("corridor", 225.0, ("laundry",)),
+    ("lshape", 135.0, ("office",)),
+    ("openplan", 80.0, ()),
 )
-"""Recipes by split, in the order in which episodes go round the houses."""
+
+
+def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
+    """The recipes of a split of held-out houses."""
+    return tuple(
+        Recipe(f"{split}_{n:02d}", first_seed + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
+        for n, (kind, area_m2, rooms) in enumerate(shapes)
+    )
+
+
+SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
+    {"val": _heldout("val", 10_000, _VAL), "test": _heldout("test", 20_000, _TEST)}
+)
+"""Recipes by split, in the order in which episodes go round the houses; a quarter of each is above 250 m2."""
