@@ -15,6 +15,8 @@ from sim.houses.structure import Finish
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
 SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
+PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
+"""Rooms that may have patterned wallpaper, one of them in a home."""
 MAX_POINT_LAMPS = 4
 """Fixed-function OpenGL has eight lights; four shine everywhere."""
 
@@ -25,8 +27,10 @@ def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish
     main_floor = materials.floor_look("living_room", rng, pool)
     main_wall = _wall(rng, pool, "hallway")
     shared = _flowing(plan)
+    papered = False
     for i, room in enumerate(plan.rooms):
-        own = _wall(rng, pool, room.kind)
+        own = _wall(rng, pool, room.kind, paper=not papered and room.kind in PAPERED)
+        papered = papered or _is_paper(own)
         floor = materials.floor_look(room.kind, rng, pool)
         same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
@@ -40,12 +44,18 @@ def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish
     )  # fmt: skip
 
 
-def _wall(rng: np.random.Generator, pool: Pool, room_kind: str) -> Look:
-    """Paint, more often than not: patterned paper only in every other draw that gives it."""
+def _wall(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
+    """Tiles where it is wet, else paint: smooth more often than rough, patterned paper only where it is asked for."""
     look = materials.wall_look(rng, pool, room_kind)
-    papered = look.texture is not None and look.texture.startswith("paper")
-    plain = (papered and room_kind == "hallway") or (look.texture is not None and rng.random() < 0.5)
-    return replace(look, texture=None) if plain and not (look.texture or "").startswith("tiles") else look
+    smooth = bool(rng.random() < 0.6)
+    if look.texture is None or look.texture.startswith("tiles"):
+        return look
+    plain = not paper if _is_paper(look) else smooth
+    return replace(look, texture=None) if plain else look
+
+
+def _is_paper(look: Look) -> bool:
+    return look.texture is not None and look.texture.startswith("paper")
 
 
 def _flowing(plan: FloorPlan) -> set[int]:

@@ -106,7 +106,7 @@ class _Row:
         usable = self.depth_m if len(rules) == 1 else self.depth_m / 2
         low = max(max(rule.area_m2[0] / usable for rule in rules), max(rule.short_m for rule in rules))
         low = max(low, max(usable / rule.aspect for rule in rules))
-        largest = max(rule.area_m2[2] for rule in rules) * max(self.scale, 1.0)
+        largest = max(rule.area_m2[2] * (max(self.scale, 1.0) if rule.grows else 1.0) for rule in rules)
         high = min(largest / usable, min(rule.aspect for rule in rules) * usable)
         usual = self.scale * sum(rule.area_m2[1] for rule in rules) / self.depth_m
         return low, min(max(usual, low), max(high, low)), max(high, low)

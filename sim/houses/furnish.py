@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
+from sim.houses.fill import fill, runners
 from sim.houses.furniture.item import Item, Look
 from sim.houses.geometry import SIDES, Side
 from sim.houses.groups import (
@@ -26,6 +27,7 @@ from sim.houses.placement import RoomSpace, Standing
 def furnish(space: RoomSpace, kit: Kit) -> None:
     """Fill a room by the rules of its kind, then hang curtains, pictures and a lamp."""
     RULES.get(space.kind, _other)(space, kit)
+    fill(space, kit)
     _curtains(space, kit)
     _ceiling_lamp(space, kit)
 
@@ -253,6 +255,8 @@ def _hallway(space: RoomSpace, kit: Kit) -> None:
                 hang_over(space, kit, board, "mirror" if kit.chance(0.6) else "picture")
         if kit.chance(0.5):
             place(space, kit, "seating", "bench", front_m=0.45)
+    if kit.chance(0.6):
+        runners(space, kit)
     pictures = int(space.inner.long_m / 4.0)
     _extras(space, kit, plants=0.6, pictures=(min(1, pictures), min(3, 1 + pictures)))
 

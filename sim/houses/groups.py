@@ -14,6 +14,8 @@ from sim.houses.geometry import INWARD_YAW_RAD, OPPOSITE, SIDES, Side, footprint
 from sim.houses.kit import Kit
 from sim.houses.placement import WALL_GAP_M, Along, RoomSpace, Standing
 
+RUNNER_M = 1.0
+"""Narrower rugs are runners."""
 AISLE_M = 0.75
 """Floor kept free before what one works at."""
 
@@ -87,11 +89,13 @@ def before(
     return space.at(item, x, y, yaw + math.pi if facing else yaw)
 
 
-def lay_rug(space: RoomSpace, kit: Kit, x_m: float, y_m: float, yaw_rad: float, **hints: Any) -> None:
-    """A rug under what stands there."""
-    rug = kit.make("floor", "rug", **hints)
-    if rug is not None:
-        space.lay(rug, x_m, y_m, yaw_rad)
+def lay_rug(space: RoomSpace, kit: Kit, x_m: float, y_m: float, yaw_rad: float, *, runner: bool | None = None) -> None:
+    """A rug under what stands there; a narrow one for halls if `runner`, a wide one if False."""
+    for n in range(3):
+        rug = kit.make("floor", "rug", fresh=n > 0)
+        if rug is not None and (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)):
+            space.lay(rug, x_m, y_m, yaw_rad)
+            return
 
 
 def bed_group(space: RoomSpace, kit: Kit, *, large: bool) -> Standing | None:
@@ -132,7 +136,7 @@ def put_things(space: RoomSpace, kit: Kit, host: Standing, categories: Sequence[
     """Small things on top of something, each with its usual chance."""
     uses = {
         "lighting": ("table",),
-        "objects": (),
+        "objects": ("kitchen", "top") if space.kind in ("kitchen", "dining_room") else ("top",),
         "plant": ("table", "small", "top"),
         "tv_monitor": ("monitor",),
         "cushion": ("throw",),
@@ -174,7 +178,7 @@ def sofa_group(space: RoomSpace, kit: Kit) -> Standing | None:
             put_things(space, kit, table, ("objects", "plant", "objects"), (0.6, 0.3, 0.3))
     ahead = sofa.placed.item.size_m[0] / 2 + 0.65
     if kit.chance(0.8):
-        lay_rug(space, kit, sofa.placed.x_m + c * ahead, sofa.placed.y_m + s * ahead, yaw + math.pi / 2)
+        lay_rug(space, kit, sofa.placed.x_m + c * ahead, sofa.placed.y_m + s * ahead, yaw + math.pi / 2, runner=False)
     easy = kit.make("chair", "arm") if kit.chance(0.75) else kit.make("seating", "ottoman")
     if easy is not None:
         for end in kit.rng.permutation([1.0, -1.0]).tolist()[: 1 if kit.chance(0.5) else 2]:

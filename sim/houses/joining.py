@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.houses.furniture.item import Geom, Item, Look, Surface
+from sim.houses.furniture.item import Geom, Item, Look, Mount, Surface
 from sim.houses.furniture.workbench import geom_bounds, matrix_from_euler
 from sim.houses.shapes3d import Facets, facets, mesh_shape
 from sim.houses.textures import TEXTURES
@@ -68,32 +68,33 @@ def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
         bytes_per_geom: by how much one geom less may lengthen the file; more for what a house has several times.
     """
     seen = [geom for geom in item.geoms if not geom.solid]
-    light = Assembly(tuple(_join(seen, bytes_per_geom) + [geom for geom in item.geoms if geom.solid]), ())
-    if item.category in BUILDING or sum(geom.solid for geom in item.geoms) < 2:
+    solid = [geom for geom in item.geoms if geom.solid]
+    light = Assembly((*_join(seen, item, bytes_per_geom), *solid), ())
+    small = _joinable(item)
+    if item.category in BUILDING or sum(geom.solid for geom in small) < 2:
         return light
-    joinable, rest = _partition(item.geoms, bytes_per_geom)
-    solid = [geom for geom in joinable if geom.solid]
-    whole = Assembly(
-        tuple(_join([replace(geom, solid=False) for geom in joinable], bytes_per_geom) + rest),
-        tuple(touch_boxes(solid, item)),
-    )
+    rest = [geom for geom in item.geoms if not any(geom is other for other in small)]
+    shown = _join([replace(geom, solid=False) for geom in small], item, bytes_per_geom)
+    whole = Assembly((*shown, *rest), tuple(touch_boxes([geom for geom in small if geom.solid], item)))
     return min(light, whole, key=lambda a: len(a.drawn) + len(a.touched))
 
 
-def _partition(geoms: Sequence[Geom], bytes_per_geom: int) -> tuple[list[Geom], list[Geom]]:
-    """Those that become part of a mesh, and the others: textured, transparent, or alone of their look."""
-    looks = [_plain(geom, bytes_per_geom) for geom in geoms]
-    alike = [look is not None and looks.count(look) > 1 for look in looks]
-    return (
-        [geom for geom, join in zip(geoms, alike, strict=True) if join],
-        [geom for geom, join in zip(geoms, alike, strict=True) if not join],
-    )
+def touched_at_most(item: Item) -> list[Geom]:
+    """Every shape that may be touched of an item, however it is assembled; children left out."""
+    solid = [geom for geom in item.geoms if geom.solid]
+    return solid + touch_boxes(solid, item) + touch_boxes([geom for geom in _joinable(item) if geom.solid], item)
 
 
-def _plain(geom: Geom, bytes_per_geom: int) -> Look | None:
-    """The look of a geom as part of a mesh, which shows no texture; None where it is better left as it is."""
+def _joinable(item: Item) -> list[Geom]:
+    """Parts that may become one mesh with others of their look: neither textured nor transparent nor alone of it."""
+    looks = [_plain(geom) for geom in item.geoms]
+    return [geom for geom, look in zip(item.geoms, looks, strict=True) if look is not None and looks.count(look) > 1]
+
+
+def _plain(geom: Geom) -> Look | None:
+    """The look of a geom as part of a mesh, which shows no texture; None where that would be missed."""
     look = geom.look
-    if look.rgba[3] < 1.0 or written_bytes(geom) > bytes_per_geom:
+    if look.rgba[3] < 1.0:
         return None
     if look.texture is None:
         return look
@@ -106,6 +107,8 @@ def _plain(geom: Geom, bytes_per_geom: int) -> Look | None:
 
 def written_bytes(geom: Geom) -> int:
     """About how much longer a geom makes the file as part of a mesh than by itself."""
+    if geom.shape == "box":
+        return 84
     if geom.mesh is not None and len(geom.mesh.faces):
         return 0
     corners, triangles = facets(geom)
@@ -128,16 +131,19 @@ def _mean_colour(texture: str) -> tuple[float, float, float]:
 # ---- drawn ---------------------------------------------------------------------------------------------------------
 
 
-def _join(geoms: Sequence[Geom], bytes_per_geom: int) -> list[Geom]:
+def _join(geoms: Sequence[Geom], item: Item, bytes_per_geom: int) -> list[Geom]:
     """The same picture with the geoms of each plain look in one mesh."""
     kept: list[Geom] = []
     groups: dict[Look, list[tuple[Geom, Facets]]] = {}
+    blocks = [
+        _bounds(geom) for geom in item.geoms if geom.shape == "box" and _is_square(geom) and geom.look.rgba[3] == 1
+    ]
     for geom in geoms:
-        look = _plain(geom, bytes_per_geom)
-        if look is None:
+        look = _plain(geom)
+        if look is None or written_bytes(geom) > bytes_per_geom:
             kept.append(geom)
         else:
-            groups.setdefault(look, []).append((geom, facets(geom)))
+            groups.setdefault(look, []).append((geom, _seen_facets(geom, item.mount, blocks)))
     for look, alike in groups.items():
         part: list[tuple[Geom, Facets]] = []
         for one in alike:
@@ -147,6 +153,43 @@ def _join(geoms: Sequence[Geom], bytes_per_geom: int) -> list[Geom]:
             part.append(one)
         kept.append(_mesh_of(part, look))
     return kept
+
+
+def _seen_facets(geom: Geom, mount: Mount, blocks: Sequence[Box]) -> Facets:
+    """A geom's triangles; of an upright box without the faces that lie on another block, the floor or the wall."""
+    corners, triangles = facets(geom)
+    if geom.shape != "box" or not _is_square(geom):
+        return corners, triangles
+    rotation, box = matrix_from_euler(*geom.euler_rad), _bounds(geom)
+    shown = []
+    for side, pair in enumerate(triangles.reshape(6, 2, 3)):  # -x, +x, -y, +y, -z, +z of the geom
+        out = rotation[:, side // 2] * (1 if side % 2 else -1)
+        axis = int(np.abs(out).argmax())
+        if not _is_buried(box, axis, out[axis] > 0, mount, blocks):
+            shown.append(pair)
+    return corners, (np.concatenate(shown) if shown else triangles)
+
+
+def _is_buried(box: Box, axis: int, upper: bool, mount: Mount, blocks: Sequence[Box]) -> bool:
+    """Whether the upper or lower face of a box across an axis cannot be seen."""
+    at, sign = (box[axis + 3], 1.0) if upper else (box[axis], -1.0)
+    if sign * at > -0.002 and (mount, axis, upper) in _HIDDEN_BY_MOUNT:
+        return True
+    others = [i for i in range(3) if i != axis]
+    return any(
+        block[axis] < at + 0.0015 * sign < block[axis + 3]
+        and all(block[i] < box[i] + 0.001 and box[i + 3] - 0.001 < block[i + 3] for i in others)
+        for block in blocks
+    )
+
+
+_HIDDEN_BY_MOUNT = frozenset((("floor", 2, False), ("top", 2, False), ("wall", 0, False), ("ceiling", 2, True)))
+"""Which faces lie on what an item is mounted on: mount, axis, upper face or lower."""
+
+
+def _is_square(geom: Geom) -> bool:
+    """Whether a geom is turned by nothing but quarter turns."""
+    return all(abs(math.remainder(angle, math.pi / 2)) < 1e-3 for angle in geom.euler_rad)
 
 
 def _mesh_of(parts: Sequence[tuple[Geom, Facets]], look: Look) -> Geom:

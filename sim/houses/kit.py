@@ -15,9 +15,8 @@ from sim.houses.furniture.item import Item, Look, Pool
 T = TypeVar("T")
 DESIGNS: Mapping[str, int] = MappingProxyType(
     {
-        "objects": 5, "picture": 6, "cushion": 4, "floor": 4, "bed": 3, "plant": 3, "mirror": 3, "clothes": 2,
-        "cabinet": 2, "chest_of_drawers": 2, "shelving": 2, "table": 2, "seating": 2, "towel": 2, "lighting": 2,
-        "stool": 2, "sink": 2, "tv_monitor": 2, "chair": 2, "gym_equipment": 99,
+        "objects": 4, "picture": 6, "cushion": 4, "floor": 3, "bed": 3, "plant": 2, "mirror": 2, "cabinet": 2,
+        "shelving": 2, "towel": 2, "lighting": 2, "stool": 2, "sink": 2, "tv_monitor": 2, "gym_equipment": 99,
     }
 )  # fmt: skip
 """How many designs of a category, for each use, one home has at most (else one): people buy by the set."""
@@ -41,8 +40,8 @@ class Kit:
     def make(self, category: str, *uses: str, fresh: bool = False, **hints: Any) -> Item | None:
         """An item for the first of these uses that the pool has a style for, for any use when none is given.
 
-        The same hints give one of the home's few designs again, but for `fresh`. Returns None where the pool has
-        nothing that fits.
+        The same hints give one of the home's few designs again; with `fresh` there may be one more of them. Returns
+        None where the pool has nothing that fits.
         """
         if category not in CATALOGUE:
             return None
@@ -54,7 +53,7 @@ class Kit:
     def _design(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item:
         key = repr((category, use, sorted(hints.items())))
         known = self._designs.setdefault(key, [])
-        if len(known) >= self._variety(category, use) and not fresh:
+        if len(known) >= self._variety(category, use) + fresh:
             return self.pick(known)
         item = make_item(category, self.rng, pool=self.pool, **({"use": use} if use else {}), **hints)
         known.append(item)

@@ -30,13 +30,15 @@ from sim.houses.geometry import (
     rotated_extent,
     subtract,
 )
-from sim.houses.joining import touch_boxes
+from sim.houses.joining import touched_at_most
 from sim.houses.openings import HALF_WALL_M, Opening, leaf_keep_out
 
 Along = Literal["any", "middle", "corner"]
 """Where along a wall: anywhere, as near its middle as can be, or in a corner."""
 
 CELL_M = 0.05
+MAX_WALKS = 16
+"""Places along the walls that are given up one after the other because they would cut the room in two."""
 ROBOT_M = 0.22
 """Half the width kept free for the robot: its radius of 0.18 m and 4 cm to spare."""
 ROBOT_HEIGHT_M = 0.9
@@ -83,6 +85,7 @@ class RoomSpace:
         self._gates: list[tuple[float, float]] = []
         self._holes: dict[Side, list[Opening]] = {side: [] for side in SIDES}
         self._on_surface: dict[tuple[int, int], list[Rect]] = {}
+        self._walks = 0  # how often the robot's ways were looked at
         shape = (math.ceil(self.inner.depth_m / CELL_M) + 2, math.ceil(self.inner.width_m / CELL_M) + 2)
         self._taken = np.zeros(shape, dtype=np.uint8)
         self._taken[[0, -1], :] = 1
@@ -98,6 +101,15 @@ class RoomSpace:
     def doors(self) -> list[tuple[Side, Opening]]:
         """Whatever one can walk through, and the front door."""
         return [(side, hole) for side in SIDES for hole in self._holes[side] if hole.kind != "window"]
+
+    def filled_share(self) -> float:
+        """Part of the floor that things stand on."""
+        taken = sum(
+            s.placed.item.size_m[0] * s.placed.item.size_m[1]
+            for s in self.standing
+            if s.placed.item.mount == "floor" and not s.placed.item.walk_over
+        )
+        return taken / self.inner.area_m2
 
     def wall_length(self, side: Side) -> float:
         """Longest stretch of a side without a door."""
@@ -128,8 +140,11 @@ class RoomSpace:
             gap_m: between its back and the wall.
         """
         order = list(sides) if sides is not None else [SIDES[i] for i in rng.permutation(4)]
+        patience = self._walks + MAX_WALKS
         for side in order:
             for at in self._positions(rng, side, item.size_m[1], along, beside_m):
+                if self._walks >= patience:
+                    return None
                 standing = self._stand(item, side, at, gap_m)
                 zones = [_ahead(standing.rect, side, front_m)] if front_m else []
                 if self._blocks_window(side, standing.rect, item.size_m[2]):
@@ -198,8 +213,8 @@ class RoomSpace:
     ) -> Standing | None:
         """Put an item partly under `host` (a chair, a table), drawn back along its own -x until nothing touches."""
         c, s = math.cos(yaw_rad), math.sin(yaw_rad)
-        host_boxes = geom_boxes(touched_shapes(host.placed.item), host.placed)
-        shapes = touched_shapes(item)
+        host_boxes = geom_boxes(touched_at_most(host.placed.item), host.placed)
+        shapes = touched_at_most(item)
         for step in range(int(out_m / 0.04) + 1):
             x, y = x_m - c * 0.04 * step, y_m - s * 0.04 * step
             placed = Placed(item, x, y, 0.0, yaw_rad)
@@ -508,11 +523,15 @@ class RoomSpace:
         return any(block.rect.overlaps(zone, 0.02) and block.z0_m < ROBOT_HEIGHT_M for block in self._blocks)
 
     def _mark(self, raster: NDArray[np.uint8], rect: Rect) -> None:
+        raster[self._window(rect)] = 1
+
+    def _window(self, rect: Rect) -> tuple[slice, slice]:
+        """Cells that a rectangle touches."""
         c0 = max(0, math.floor((rect.x0 - self.inner.x0) / CELL_M) + 1)
         c1 = math.ceil((rect.x1 - self.inner.x0) / CELL_M) + 1
         r0 = max(0, math.floor((rect.y0 - self.inner.y0) / CELL_M) + 1)
         r1 = math.ceil((rect.y1 - self.inner.y0) / CELL_M) + 1
-        raster[r0:r1, c0:c1] = 1
+        return slice(r0, r1), slice(c0, c1)
 
     def _cell(self, x_m: float, y_m: float) -> tuple[int, int]:
         row = int((y_m - self.inner.y0) / CELL_M) + 1
@@ -521,6 +540,7 @@ class RoomSpace:
 
     def _walkable(self, raster: NDArray[np.uint8], rects: Sequence[Rect]) -> bool:
         """True where the robot gets from each doorway to all others, to nearly all floor, and near every rectangle."""
+        self._walks += 1
         taken = raster.copy()
         for x, y in self._gates:  # walls beside a doorway do not stop a robot that passes through it
             row, col = self._cell(x, y)
@@ -540,15 +560,8 @@ class RoomSpace:
         sizes = np.bincount(parts.ravel())[1:]
         if sizes.sum() - sizes[part - 1] > POCKET_CELLS:
             return False
-        rows, cols = np.nonzero(parts == part)
-        xs = self.inner.x0 + (cols - 0.5) * CELL_M
-        ys = self.inner.y0 + (rows - 0.5) * CELL_M
-        for rect in rects:
-            dx = np.maximum(np.maximum(rect.x0 - xs, xs - rect.x1), 0.0)
-            dy = np.maximum(np.maximum(rect.y0 - ys, ys - rect.y1), 0.0)
-            if not (dx * dx + dy * dy < REACH_M**2).any():
-                return False
-        return True
+        away = cv2.distanceTransform((parts != part).astype(np.uint8), cv2.DIST_L2, 3)
+        return all(away[self._window(rect)].min(initial=np.inf) * CELL_M < REACH_M for rect in rects)
 
     def _spot(
         self,
@@ -616,11 +629,6 @@ def geom_boxes(solid: Sequence[Geom], placed: Placed) -> NDArray[np.float64]:
         low, high = geom_bounds(replace(geom, pos_m=(x, y, z), euler_rad=euler))
         boxes.append(np.concatenate([low + shift, high + shift]))
     return np.array(boxes).reshape(-1, 6)
-
-
-def touched_shapes(item: Item) -> list[Geom]:
-    """What of an item is touched at most, children left out: its parts in as few blocks as it may get."""
-    return touch_boxes([geom for geom in item.geoms if geom.solid], item)
 
 
 def boxes_touch(a: NDArray[np.float64], b: NDArray[np.float64], margin_m: float) -> bool:

@@ -50,6 +50,8 @@ class RoomRule:
     """Longest side over shortest at most."""
     windows: bool = True
     """False: no daylight needed."""
+    grows: bool = True
+    """False: in large homes it is hardly larger than elsewhere."""
 
 
 ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
@@ -59,11 +61,11 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "dining_room": RoomRule((9.0, 14.0, 28.0), 2.7),
         "studio": RoomRule((26.0, 34.0, 48.0), 4.4, 1.8),
         "bedroom": RoomRule((9.5, 14.5, 27.0), 2.7),
-        "bathroom": RoomRule((4.2, 6.5, 13.0), 1.75, 2.6),
+        "bathroom": RoomRule((4.2, 6.5, 15.0), 1.75, 2.6, grows=False),
         "office": RoomRule((8.0, 11.5, 22.0), 2.4),
         "gym": RoomRule((13.0, 18.0, 32.0), 3.1),
-        "laundry": RoomRule((4.0, 5.5, 10.0), 1.75, 2.6, windows=False),
-        "closet": RoomRule((3.4, 4.5, 9.0), 1.7, 2.6, windows=False),
+        "laundry": RoomRule((4.0, 5.5, 13.0), 1.75, 2.6, windows=False, grows=False),
+        "closet": RoomRule((3.4, 4.5, 11.0), 1.7, 2.6, windows=False, grows=False),
         "hallway": RoomRule((2.0, 10.0, 60.0), 1.1, 30.0, windows=False),
     }
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import itertools
 import math
@@ -67,6 +68,11 @@ def _ball(radius_m: float) -> list[tuple[float, float]]:
 
 def _turned(rings: list[tuple[float, float]], segments: int = 0) -> Facets:
     """A body of revolution about z from (radius, height) of its rings, lowest first; radius 0 is a pole."""
+    return _turned_once(tuple(rings), segments)
+
+
+@functools.lru_cache(maxsize=512)
+def _turned_once(rings: tuple[tuple[float, float], ...], segments: int) -> Facets:
     segments = segments or segments_for(max(radius for radius, _ in rings))
     turns = np.arange(segments) * (math.tau / segments)
     circle = np.column_stack([np.cos(turns), np.sin(turns)])
@@ -92,8 +98,12 @@ def _turned(rings: list[tuple[float, float]], segments: int = 0) -> Facets:
 
 def _mesh(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Facets:
     """A mesh as it is, or its convex hull where it has no faces."""
-    if len(faces):
-        return vertices, faces
+    return (vertices, faces) if len(faces) else _hull(vertices.tobytes())
+
+
+@functools.lru_cache(maxsize=512)
+def _hull(points: bytes) -> Facets:
+    vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     hull = ConvexHull(vertices)
     new = np.full(len(vertices), -1)
     new[hull.vertices] = np.arange(len(hull.vertices))

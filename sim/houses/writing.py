@@ -7,13 +7,14 @@ import re
 from sim.gl import mujoco
 
 _NO_TURN = ' quat="1 0 0 0"'
-_ROOT_HALF = re.compile(r'quat="(?:-?0\.707107|0)(?: (?:-?0\.707107|0)){3}"')
-"""Quaternions of quarter turns; MuJoCo scales what it reads to length 1."""
+_QUAT = re.compile(r' quat="([^"]*)"')
+_LEADING_ZERO = re.compile(r'(?<=[" -])0\.')
 _INDENT = re.compile(r"\n\s+")
+_QUAT_DIGITS = 4
 
 
 def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
-    """The XML of a specification, a tenth shorter than `to_xml` gives it and equal in meaning.
+    """The XML of a specification, a tenth shorter than `to_xml` gives it and equal in meaning to 0.1 mrad.
 
     Args:
         spec: a house.
@@ -22,5 +23,14 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
     text = spec.to_xml()
     if textures is not None:
         text = text.replace(f'texturedir="{spec.texturedir}"', f'texturedir="{textures}"', 1)
-    text = _ROOT_HALF.sub(lambda found: found.group().replace("0.707107", "1"), text.replace(_NO_TURN, ""))
-    return _INDENT.sub("\n ", text)
+    text = _QUAT.sub(_short_quat, text.replace(_NO_TURN, ""))
+    return _INDENT.sub("\n ", _LEADING_ZERO.sub(".", text))
+
+
+def _short_quat(found: re.Match[str]) -> str:
+    """A quaternion in few digits, quarter turns in whole numbers: MuJoCo scales what it reads to length 1."""
+    values = [float(number) for number in found[1].split()]
+    largest = max(abs(value) for value in values)
+    if all(abs(value) in (0.0, largest) for value in values):
+        values = [value / largest for value in values]
+    return ' quat="' + " ".join(f"{round(value, _QUAT_DIGITS) + 0.0:g}" for value in values) + '"'
