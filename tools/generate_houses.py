@@ -23,6 +23,7 @@ from sim.houses.furniture.item import Pool
 from sim.houses.generator import GeneratedHouse, HouseConfig, generate_house
 from sim.houses.rooms import PlanKind
 from sim.houses.splits import SPLITS
+from sim.houses.writing import house_text
 from sim.interface import ConfigError
 
 
@@ -89,10 +90,9 @@ def _jobs(args: Args):
 
 def _write(house: GeneratedHouse, path: Path) -> float:
     """Write a house whose textures are found from where it lies; returns kilobytes."""
-    xml = house.spec.to_xml()
-    shipped = f'texturedir="{house.spec.texturedir}"'
     textures = os.path.relpath(ASSETS_DIR / "textures", path.parent.resolve())
-    path.write_text(xml.replace(shipped, f'texturedir="{textures}"', 1), encoding="utf-8")
+    xml = house_text(house.spec, textures)
+    path.write_text(xml, encoding="utf-8")
     return len(xml) / 1000.0
 
 

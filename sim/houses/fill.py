@@ -14,7 +14,7 @@ from sim.houses.placement import RoomSpace, Standing
 
 Filler = Callable[[RoomSpace, Kit], object]
 """Adds something to a room; a false value where there is no place for it."""
-PICTURE_PER_M2 = 0.07
+PICTURE_PER_M2 = 0.04
 """Pictures a room may have more than its rule gives it."""
 
 
@@ -34,7 +34,7 @@ def fill(space: RoomSpace, kit: Kit) -> None:
     filling = FILLINGS.get(space.kind)
     if filling is None:
         return
-    wanted = filling.share * (0.75 + 0.5 * kit.clutter)
+    wanted = filling.share * (0.5 + 0.5 * kit.clutter)
     left = list(filling.with_)
     for _ in range(filling.rounds):
         order = [left[n] for n in kit.rng.permutation(len(left)).tolist()]

@@ -34,7 +34,7 @@ MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 400.0)
 MAX_BYTES = 395_000
 """Of a house as a file."""
-BYTES_PER_GEOM = (300, 200, 130, 100, 80)
+BYTES_PER_GEOM = (500, 300, 200, 130, 100, 80)
 """What one geom less to draw may cost in the file: less where the house would get too large otherwise."""
 _POOL_STREAM = {"train": 0, "heldout": 1}
 
