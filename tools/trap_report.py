@@ -33,7 +33,7 @@ from tools.trap_picture import draw_trial
 from tools.trap_trial import Trial, run_trial
 
 DEFAULT_AGENTS = ("oracle", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "stubborn-v")
-COLUMNS = (
+COLUMNS: tuple[str, ...] = (
     "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
     "forward_mean_m", "deepest_mm",
 )  # fmt: skip

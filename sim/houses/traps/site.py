@@ -113,7 +113,7 @@ class TrapSite:
     def _light(self) -> None:
         """Daylight from two sides, the same everywhere."""
         for direction, strength in (((0.5, 0.4, -0.8), 0.42), ((-0.6, -0.3, -0.7), 0.24)):
-            self._builder.add_lamp(Lamp((0.0, 0.0, CEILING_M), (strength,) * 3, direction))
+            self._builder.add_lamp(Lamp((0.0, 0.0, CEILING_M), (strength, strength, strength), direction))
 
     def _add(self, category: str, geoms: list[Geom]) -> mujoco.MjsBody:
         return self.thing(category, geoms, 0.0, 0.0)
