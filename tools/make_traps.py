@@ -1,6 +1,6 @@
 """Write the trap scenes: an MJCF file and a sidecar each, and their episodes, laid out like any split.
 
-    python tools/make_traps.py --out assets/mjcf_houses/traps
+    python -m tools.make_traps --out assets/mjcf_houses/traps
 
 Three episodes a trap: from its sidecar's start, with three headings. The same code gives the same bytes.
 """
