@@ -23,6 +23,7 @@ from sim.interface import (
 )
 from stubborn.collisions import CollisionConfig, is_collision, mark_collision, mark_visited
 from stubborn.exploration import CornerExplorer, ExplorationConfig, Route
+from stubborn.glance import GlanceConfig, Glancer
 from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping import Mapper, MappingConfig, Sighting
 from stubborn.navmap import NavMap
@@ -60,6 +61,7 @@ class AgentConfig:
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     exploration: ExplorationConfig = field(default_factory=ExplorationConfig)
+    glance: GlanceConfig = field(default_factory=GlanceConfig)
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
     target: TargetConfig = field(default_factory=TargetConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
@@ -94,6 +96,7 @@ class StubbornAgent:
         self.explorer = CornerExplorer(
             config.exploration, self.planner, averse=avoidance.averse_exploration, bumps=avoidance.collision_layers
         )
+        self.glancer = Glancer(config.glance, camera)
         self.seeker = TargetSeeker(
             config.target, self.planner, verifier or AcceptAll(), bumps=avoidance.collision_layers
         )
@@ -113,6 +116,7 @@ class StubbornAgent:
         self.approach: Approach | None = None
         """The candidate being approached, for pictures."""
         self.explorer.reset()
+        self.glancer.reset()
         self.seeker.reset(goal)
         self.untrap.reset()
 
@@ -157,6 +161,10 @@ class StubbornAgent:
             return self._inspect(self.approach, pose)
         if self.approach is None and self.explorer.looks_around():
             return Action.TURN_LEFT
+        if self.approach is None:
+            glance = self.glancer.next_action(self.navmap, pose)
+            if glance is not None:
+                return glance
         self.route = self.approach.route if self.approach else self.explorer.route(self.navmap, window, pose)
         if self.route is None:  # walled in by the map: push in one direction after the other
             return Action.MOVE_FORWARD if self.last_action is Action.TURN_LEFT else Action.TURN_LEFT

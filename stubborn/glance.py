@@ -1,0 +1,112 @@
+"""A look to the side in passing: turning costs no way, and a room seen from its door need not be entered.
+
+Not in the paper, whose agent looks where it goes. Where a turn on the spot would show much ground that was never in
+view, because an open door is passed or a corner is turned, the agent looks there before it goes on.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
+from stubborn.grid import PlanarPose
+from stubborn.navmap import NavMap
+
+_RAYS = 72
+_STEP_M = 0.05  # a cell: longer steps would pass through thin walls
+_GAP_STEPS = 4
+_SAME_HEADING_RAD = 0.5 * TURN_RAD
+
+
+@dataclass(frozen=True, kw_only=True)
+class GlanceConfig:
+    """When a look to the side is worth its turns."""
+
+    gain_per_turn_m2: float = 0.75
+    """Ground never in view that a look must show for each turn there and back; infinity: it never looks aside."""
+    range_m: float = 3.5
+    """How far such ground counts."""
+    not_again_within_m: float = 1.0
+    """Around a place from where it looked in a direction, it does not look in that direction again."""
+
+    def __post_init__(self) -> None:
+        if self.range_m <= 0:
+            raise ConfigError(f"GlanceConfig.range_m must be > 0 m, got {self.range_m}.")
+
+
+class Glancer:
+    """Decides when to look aside; remembers from where it has looked in which direction."""
+
+    def __init__(self, config: GlanceConfig, camera: CameraModel) -> None:
+        self.config = config
+        self._half_view_rad = 0.5 * camera.hfov_rad
+        # Nearer floor is below the image.
+        nearest_m = camera.height_m / math.tan(0.5 * camera.vfov_rad)
+        self._range_m = np.arange(_STEP_M, config.range_m, _STEP_M)
+        self._bearing_rad = np.arange(_RAYS) * (math.tau / _RAYS)
+        self._area_m2 = np.where(self._range_m >= nearest_m, self._range_m, 0.0) * _STEP_M * (math.tau / _RAYS)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the last episode."""
+        self._looks: list[PlanarPose] = []
+        self._aim_rad: float | None = None
+
+    def next_action(self, navmap: NavMap, pose: PlanarPose) -> Action | None:
+        """A turn towards what is worth a look; None when nothing is."""
+        self._looks.append(pose)
+        if self._aim_rad is None and math.isfinite(self.config.gain_per_turn_m2):
+            self._aim_rad = self._worth_a_look(navmap, pose)
+        if self._aim_rad is None:
+            return None
+        off_rad = wrap_angle(self._aim_rad - pose.yaw_rad)
+        if abs(off_rad) <= _SAME_HEADING_RAD:
+            self._aim_rad = None
+            return self.next_action_after_look(navmap, pose)
+        return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT
+
+    def next_action_after_look(self, navmap: NavMap, pose: PlanarPose) -> Action | None:
+        """The same once more: one look may show that another is worth it."""
+        self._aim_rad = self._worth_a_look(navmap, pose)
+        if self._aim_rad is None:
+            return None
+        return Action.TURN_LEFT if wrap_angle(self._aim_rad - pose.yaw_rad) > 0 else Action.TURN_RIGHT
+
+    def _worth_a_look(self, navmap: NavMap, pose: PlanarPose) -> float | None:
+        """The heading, of those the robot can turn to, that would show most new ground, if it is enough."""
+        hidden_m2 = self.hidden_area_m2(navmap, pose)
+        best_gain_m2, best_rad = 0.0, None
+        for turn in (*range(-5, 0), *range(1, 7)):
+            heading_rad = wrap_angle(pose.yaw_rad + turn * TURN_RAD)
+            in_view = np.abs(np.arctan2(*_sin_cos(self._bearing_rad - heading_rad))) <= self._half_view_rad
+            gain_m2 = float(hidden_m2[in_view].sum()) - 2 * abs(turn) * self.config.gain_per_turn_m2
+            if gain_m2 > best_gain_m2 and not self._looked(pose, heading_rad):
+                best_gain_m2, best_rad = gain_m2, heading_rad
+        return best_rad
+
+    def hidden_area_m2(self, navmap: NavMap, pose: PlanarPose) -> NDArray[np.float64]:
+        """Per bearing of the map, ground never in view that nothing known hides from the robot."""
+        x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
+        y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
+        rows, cols = navmap.frame.cells(x_m, y_m)
+        rows, cols = np.clip(rows, 0, navmap.frame.shape[0] - 1), np.clip(cols, 0, navmap.frame.shape[1] - 1)
+        open_so_far = ~np.logical_or.accumulate(navmap.seen_obstacle[rows, cols], axis=1)
+        seen = (navmap.frames_in_view[rows, cols] > 0).view(np.uint8)
+        near_seen = cv2.dilate(seen, np.ones((1, 2 * _GAP_STEPS + 1), np.uint8))  # far floor is seen with gaps
+        return np.asarray((open_so_far & (near_seen == 0)) @ self._area_m2)
+
+    def _looked(self, pose: PlanarPose, heading_rad: float) -> bool:
+        return any(
+            look.distance_to(pose.x_m, pose.y_m) <= self.config.not_again_within_m
+            and abs(wrap_angle(look.yaw_rad - heading_rad)) <= _SAME_HEADING_RAD
+            for look in self._looks
+        )
+
+
+def _sin_cos(angle_rad: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return np.sin(angle_rad), np.cos(angle_rad)
