@@ -11,6 +11,8 @@ from typing import Any, TypeVar
 from sim.interface import Agent, CameraModel, ConfigError, RobotModel, Segmenter
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.random import RandomAgent, RandomConfig
+from stubborn.exploration import ExplorationConfig
+from stubborn.glance import GlanceConfig
 from stubborn.target import Verifier
 
 Factory = Callable[..., Agent]
@@ -28,6 +30,16 @@ ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
     }
 )
 """The rows of the paper's ablation table; v is the full agent."""
+
+ADDITIONS: Mapping[str, Any] = MappingProxyType(
+    {
+        "exploration": ExplorationConfig(
+            look_around_turns=11, unseen_area_m2=(0.25, 0.05), unvisited_m=(1.5, 1.0, 0.6)
+        ),
+        "glance": GlanceConfig(gain_per_turn_m2=0.75),
+    }
+)
+"""What `stubborn-plus` does that the paper's agent does not: it looks around and aside, and goes where it never was."""
 
 
 def make(name: str, *, camera: CameraModel, robot: RobotModel, segmenter: Segmenter, **options: Any) -> Agent:
@@ -52,7 +64,10 @@ def _stubborn(
     verifier: Verifier | None = None,
     **options: Any,
 ) -> StubbornAgent:
-    config = _configured(AgentConfig(avoidance=ABLATION.get(name, CollisionAvoidance())), name, options)
+    config = AgentConfig(avoidance=ABLATION.get(name, CollisionAvoidance()))
+    if name == "stubborn-plus":
+        config = replace(config, **ADDITIONS)
+    config = _configured(config, name, options)
     return StubbornAgent(camera=camera, robot=robot, segmenter=segmenter, verifier=verifier, config=config)
 
 
@@ -73,6 +88,7 @@ _FACTORIES: Mapping[str, Factory] = MappingProxyType(
     {
         "stubborn": _stubborn,
         **dict.fromkeys(ABLATION, _stubborn),
+        "stubborn-plus": _stubborn,
         "random": _random,
     }
 )

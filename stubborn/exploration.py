@@ -27,12 +27,12 @@ class ExplorationConfig:
     """A corner with a longer way counts as infeasible."""
     first_corner: int = 0
     """Which corner comes first: 0 ahead left, 1 ahead right, 2 behind right, 3 behind left of the start heading."""
-    look_around_turns: int = 11
+    look_around_turns: int = 0
     """Turns on the spot at the start and where a place is visited for its own sake; 11 show everything around."""
-    unseen_area_m2: tuple[float, ...] = (0.25, 0.05)
-    """Least area of ground never in view that is worth an errand, first and later; empty: none is."""
-    unvisited_m: tuple[float, ...] = (1.5, 1.0, 0.6)
-    """Least distance from the robot's trail that is worth an errand, first and later; empty: none is."""
+    unseen_area_m2: tuple[float, ...] = ()
+    """Least area of ground never in view that is worth an errand, first and later; empty: none is (the paper)."""
+    unvisited_m: tuple[float, ...] = ()
+    """Least distance from the robot's trail that is worth an errand, first and later; empty: none is (the paper)."""
     regain_m2: float = 2.0
     """A corner given up is tried again when this much more ground has been in view."""
     margin_cells: int = 20
@@ -84,9 +84,10 @@ class CornerExplorer:
 
     The window moves with the robot, and what is infeasible here may be feasible a step further on. So that the robot
     does not swing between two such places, a corner given up counts as infeasible until new ground has been seen.
-    When all four are infeasible it goes on an errand and sees it through: to the nearest reachable ground that was
-    never in view (behind a door, a shelf); when there is none, to where it has never been (a bathroom seen from its
-    door only), and there it looks around; at last to the reachable place nearest the corner.
+    When all four are infeasible it goes on an errand and sees it through: to the reachable place nearest the corner.
+    Errands that the paper does not have can be put before that one: to the nearest reachable ground that was never in
+    view (behind a door, a shelf), and to where it has never been (a bathroom seen from its door only), where it looks
+    around.
     """
 
     def __init__(self, config: ExplorationConfig, planner: Planner, *, averse: bool, bumps: bool) -> None:

@@ -27,7 +27,7 @@ _SAME_HEADING_RAD = 0.5 * TURN_RAD
 class GlanceConfig:
     """When a look to the side is worth its turns."""
 
-    gain_per_turn_m2: float = 0.75
+    gain_per_turn_m2: float = math.inf
     """Ground never in view that a look must show for each turn there and back; infinity: it never looks aside."""
     range_m: float = 3.5
     """How far such ground counts."""

@@ -16,6 +16,8 @@ PLANNER = Planner(PlanningConfig(), trust_visited=True)
 
 
 def explorer(averse: bool = True, bumps: bool = True, **options: object) -> CornerExplorer:
+    """An explorer that goes on errands."""
+    options = {"unseen_area_m2": (0.25, 0.05), "unvisited_m": (1.5, 1.0, 0.6), "look_around_turns": 11} | options
     return CornerExplorer(ExplorationConfig(**options), PLANNER, averse=averse, bumps=bumps)  # type: ignore[arg-type]
 
 

@@ -13,7 +13,7 @@ START = PlanarPose(0.0, 0.0, 0.0)
 
 
 def glancer(**options: float) -> Glancer:
-    return Glancer(GlanceConfig(**options), CameraModel())
+    return Glancer(GlanceConfig(**{"gain_per_turn_m2": 0.75, **options}), CameraModel())
 
 
 def corridor() -> NavMap:
