@@ -11,11 +11,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.houses.furniture.item import Pool
+if TYPE_CHECKING:  # the furniture package imports this module
+    from sim.houses.furniture.item import Pool
 
 Image = NDArray[np.float64]
 """(px, px) grey or (px, px, 3) RGB, both in [0, 1]."""
