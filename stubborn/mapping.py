@@ -166,8 +166,12 @@ class Mapper:
             return NOTHING_SIGHTED
         rows, cols = np.divmod(np.unique(flat[found]), window.frame.shape[1])
         x_m, y_m = window.frame.centres(rows, cols)
-        distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m).astype(np.float32)
-        return Sighting(rows + window.rows.start, cols + window.cols.start, distance_m)
+        to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
+        distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
+        rows, cols = rows + window.rows.start, cols + window.cols.start
+        navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
+        navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
+        return Sighting(rows, cols, distance_m)
 
     def _accumulate(
         self,

@@ -40,6 +40,10 @@ class NavMap:
     """Highest score of any other category in any frame [7]."""
     found_step: NDArray[np.int16]
     """Step at which `score_max` first made this cell a candidate; meaningful only where it did."""
+    shown_x: NDArray[np.float32]
+    """Sum over frames of the unit vector from a target point to the camera, along x: the side that it shows."""
+    shown_y: NDArray[np.float32]
+    """The same along y."""
     rejected: NDArray[np.bool_]
     """True: verification refused a candidate here; it never counts again in this episode."""
     set_aside: NDArray[np.bool_]
@@ -67,6 +71,8 @@ class NavMap:
             score_max=layer(np.float32),
             other_max=layer(np.float32),
             found_step=layer(np.int16),
+            shown_x=layer(np.float32),
+            shown_y=layer(np.float32),
             rejected=layer(np.bool_),
             set_aside=layer(np.bool_),
         )

@@ -51,6 +51,10 @@ class PlanningConfig:
     """Distance of the short-term goal: 5 cells, one forward."""
     turn_cost_m: float = 0.02
     """What a turn of 30 degrees weighs against a shorter way; keeps the choice from swinging to and fro."""
+    comfort_m: float = 0.24
+    """A straight forward that comes nearer to an obstacle than this is taken only where others are worse."""
+    comfort_cost: float = 1.5
+    """What each metre short of `comfort_m` weighs, in metres of way."""
     aligned_rad: float = math.radians(15.0)
     """Turn when the short-term goal is farther off the heading than this, else go forward."""
 
@@ -178,15 +182,20 @@ class Planner:
             pose.x_m + self.config.ring_m * np.cos(yaw_rad),
             pose.y_m + self.config.ring_m * np.sin(yaw_rad),
         )
-        distance_m[~self._sweep_is_clear(free, pose, yaw_rad)] = np.inf
-        cost_m = distance_m + self.config.turn_cost_m * np.abs(turns_rad) / TURN_RAD
+        clear, clearance_m = self._sweep(free, pose, yaw_rad)
+        distance_m[~clear] = np.inf
+        discomfort_m = np.maximum(self.config.comfort_m - clearance_m, 0.0)
+        turns = np.abs(turns_rad) / TURN_RAD
+        cost_m = distance_m + self.config.turn_cost_m * turns + self.config.comfort_cost * discomfort_m
         best = int(np.argmin(cost_m))
         if distance_m[best] < plan.length_m:
             return float(turns_rad[best])
         return wrap_angle(descent_direction(plan, pose, self.config.ring_m) - pose.yaw_rad)
 
-    def _sweep_is_clear(self, free: FreeSpace, pose: PlanarPose, yaw_rad: NDArray[np.floating]) -> NDArray[np.bool_]:
-        """Whether a straight forward in each direction stays traversable.
+    def _sweep(
+        self, free: FreeSpace, pose: PlanarPose, yaw_rad: NDArray[np.floating]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+        """Whether a straight forward in each direction stays traversable, and its least clearance in metres.
 
         A robot that already stands nearer than the safety distance may leave, but not come nearer still.
         """
@@ -196,8 +205,9 @@ class Planner:
         inside = free.frame.contains(rows, cols)
         rows, cols = np.clip(rows, 0, free.frame.shape[0] - 1), np.clip(cols, 0, free.frame.shape[1] - 1)
         here_m = free.clearance_m[free.frame.cell(pose.x_m, pose.y_m)]
-        clear = free.traversable[rows, cols] | (free.clearance_m[rows, cols] >= max(here_m, free.frame.cell_m))
-        return np.asarray((clear & inside).all(axis=0))
+        clearance_m = free.clearance_m[rows, cols]
+        clear = free.traversable[rows, cols] | (clearance_m >= max(here_m, free.frame.cell_m))
+        return np.asarray((clear & inside).all(axis=0)), clearance_m.min(axis=0)
 
     def _speed(self, clearance_m: NDArray[np.float32]) -> NDArray[np.float32]:
         """1 in the open, less along obstacles."""

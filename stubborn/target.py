@@ -45,7 +45,8 @@ class TargetConfig:
     verify_until_step: int = 200
     """A candidate first found later is not verified: no time is left to look elsewhere."""
     retry_after_steps: int = 15
-    """A candidate that could not be reached is tried again after so many steps of exploring."""
+    """A candidate that could not be reached is tried again after so many steps of exploring, then after twice as
+    many, and so on."""
     margin_cells: int = 40
     """Ground around the known part of the map on which ways to a far candidate may run."""
     target_edge_m: float = 0.08
@@ -110,6 +111,8 @@ class TargetSeeker:
         """Forget the last episode."""
         self.goal = goal
         self._retry_step = 0
+        self._patience_steps = self.config.retry_after_steps
+        self._far = False  # whether the candidate pursued needs more than the local window
 
     def candidates(self, view: NavMap) -> NDArray[np.bool_]:
         """Cells that look like the target and were neither rejected nor set aside."""
@@ -129,17 +132,22 @@ class TargetSeeker:
         if step >= self._retry_step:
             navmap.view(whole).set_aside[:] = False
         if not self.candidates(navmap.view(whole)).any():
+            self._far = False
             return None
-        for part in (window, whole):
+        # A way that needs the whole map is kept on the whole map: else each step could choose another one.
+        for part in (whole,) if self._far else (window, whole):
             view = navmap.view(part)
             candidates = self.candidates(view)
             if candidates.any():
                 found = self._approach_on(view, candidates, pose, late=step >= self.config.last_resort_step)
                 if found is not None:
+                    self._far = part is whole
                     row, col = found.cell
                     return Approach(found.route, found.bearing_rad, (row + part.rows.start, col + part.cols.start))
         navmap.view(whole).set_aside[self.candidates(navmap.view(whole))] = True
-        self._retry_step = step + self.config.retry_after_steps
+        self._far = False
+        self._retry_step = step + self._patience_steps
+        self._patience_steps *= 2
         return None
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
@@ -194,6 +202,9 @@ class TargetSeeker:
         seen = ends[0][rows, cols], ends[1][rows, cols]
         in_sight = np.zeros_like(view.rejected)
         in_sight[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), seen, edge_cells)
+        # What hangs on a wall hides that wall: behind it there may seem to be free ground, on which it cannot be seen.
+        shown = (rows - seen[0]) * view.shown_y[seen] + (cols - seen[1]) * view.shown_x[seen]
+        in_sight[rows, cols] &= (shown > 0) | (view.frames_in_view[rows, cols] > 0)
         unseen = self.planner.unseen(view)
         free_spaces: dict[Bumps, FreeSpace] = {}
         for within_m in (self.config.stand_m, self.config.far_stand_m):

@@ -9,7 +9,7 @@ from stubborn.navmap import NavMap
 from stubborn.planning import Bumps, Plan, Planner, PlanningConfig, march
 from tests.helpers.asciimap import enlarged, map_of, mask_of
 
-STRAIGHT = PlanningConfig(wary_speed=1.0)
+STRAIGHT = PlanningConfig(wary_speed=1.0, comfort_cost=0.0)
 
 
 def planned(text: str, config: PlanningConfig = STRAIGHT, bumps: Bumps = Bumps.PESSIMISTIC, yaw_rad: float = 0.0):

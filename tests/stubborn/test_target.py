@@ -96,6 +96,30 @@ def test_no_stand_lies_behind_a_wall_however_near():
     assert cols.min() > 39
 
 
+def test_no_stand_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
+    """The wall behind a picture is hidden by it, and the ground behind that wall was never in view."""
+    rows = room(R=(30, 10), T=(30, 40))
+    for row in range(20, 40):
+        for col in range(30, 41):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "#" if col == 40 else "o"
+    navmap, pose = known(text_of(rows))
+    navmap.frames_in_view[:, 41:] = 0
+    navmap.shown_x[30, 40] = -1.0  # it was seen from the left
+    seek = seeker()
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.max() <= 40
+    navmap.frames_in_view[:, 41:] = 1  # now the ground behind is known to be open
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.max() > 40
+
+
 def test_low_furniture_hides_nothing():
     rows = room(R=(30, 20), T=(30, 45))
     for row in range(20, 40):
@@ -126,6 +150,17 @@ def test_an_unreachable_candidate_is_set_aside_and_tried_again_later():
     navmap.seen_obstacle[20:40, 35:38] = navmap.seen_at_eye_level[20:40, 35:38] = False
     assert seek.approach(navmap, whole(navmap), pose, 9) is None
     assert seek.approach(navmap, whole(navmap), pose, 10) is not None
+
+
+def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
+    navmap, pose = enclosed_target()
+    seek, tried = seeker(retry_after_steps=10), []
+    for step in range(80):
+        navmap.set_aside[0, 0] = True  # gone when all that was set aside is tried again
+        assert seek.approach(navmap, whole(navmap), pose, step) is None
+        if not navmap.set_aside[0, 0]:
+            tried.append(step)
+    assert tried == [0, 10, 30, 70]
 
 
 def test_late_in_the_episode_the_nearest_reachable_place_will_do():
