@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
 from stubborn.grid import PlanarPose, Window
 from stubborn.navmap import NavMap
+from stubborn.objects import AllFrames, FrameScores, ObjectLayers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +116,11 @@ NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(
 class Mapper:
     """Writes frames into a `NavMap`. Holds precomputed rays, no memory of the episode."""
 
-    def __init__(self, camera: CameraModel, robot: RobotModel, config: MappingConfig) -> None:
+    def __init__(
+        self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
+    ) -> None:
+        """`layers` is how scores are kept; by default over all frames, as in the paper."""
+        self.layers = layers or AllFrames(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
         if config.obstacle_min_height_m >= top_m:
             raise ConfigError(
@@ -145,10 +150,7 @@ class Mapper:
     def add_scores(
         self, navmap: NavMap, depth: NDArray[np.float32], scores: Scores, pose: PlanarPose, step: int
     ) -> Sighting:
-        """Enter one frame of class scores into the object layers; returns the target points it shows.
-
-        A cell takes the highest score of its pixels: a picture shares its cell with the wall above and below it.
-        """
+        """Enter one frame of class scores into the object layers; returns the target points it shows."""
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
@@ -160,7 +162,7 @@ class Mapper:
         flat = points.rows[low] * np.int32(window.frame.shape[1]) + points.cols[low]
         target = scores.target[score_pick][points.valid][low]
         other = scores.best_other[score_pick][points.valid][low]
-        self._accumulate(navmap.view(window), flat, target, other, step)
+        self.layers.add(navmap.view(window), FrameScores(window.frame.shape, flat, target, other), step)
         found = target > self.config.candidate_score
         if not found.any():
             return NOTHING_SIGHTED
@@ -172,33 +174,6 @@ class Mapper:
         navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
         navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
         return Sighting(rows, cols, distance_m)
-
-    def _accumulate(
-        self,
-        view: NavMap,
-        flat: NDArray[np.int32],
-        target: NDArray[np.float32],
-        other: NDArray[np.float32],
-        step: int,
-    ) -> None:
-        """Reduce one frame's pixels to one score a cell, then add them to the layers of `view`."""
-        shape = view.frame.shape
-        in_view = np.zeros(shape, np.bool_)
-        in_view.reshape(-1)[flat] = True
-        view.frames_in_view += in_view
-        frame_other = np.zeros(shape, np.float32)
-        np.maximum.at(frame_other.reshape(-1), flat, other)
-        np.maximum(view.other_max, frame_other, out=view.other_max)
-        hit = target > 0
-        if not hit.any():
-            return
-        frame_target = np.zeros(shape, np.float32)
-        np.maximum.at(frame_target.reshape(-1), flat[hit], target[hit])
-        threshold = self.config.candidate_score
-        newly_found = (frame_target > threshold) & (view.score_max <= threshold)
-        view.found_step[newly_found] = step
-        view.score_sum += frame_target
-        np.maximum(view.score_max, frame_target, out=view.score_max)
 
     def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
         x_m, y_m = pose.ahead(self.camera_forward_m)

@@ -1,0 +1,88 @@
+"""How the scores of one frame enter the object layers of the map (paper: Mapping Module, channels 4 to 7).
+
+A cell takes the highest score of its pixels: a picture shares its cell with the wall above and below it.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stubborn.navmap import NavMap
+
+
+class ObjectLayers(Protocol):
+    """Writes one frame of scores into the object layers."""
+
+    def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
+        """Enter a frame seen at `step` into a view of the map that holds everything within sight."""
+        ...
+
+
+class FrameScores:
+    """One frame's pixels reduced to one score a cell, on the grid of a view."""
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        flat: NDArray[np.integer],
+        target: NDArray[np.float32],
+        other: NDArray[np.float32],
+    ) -> None:
+        """`flat` (n,) is the row-major cell of each pixel; `target` and `other` (n,) are its scores in [0, 1]."""
+        self.in_view = np.zeros(shape, np.bool_)
+        """(rows, cols) True where a pixel fell."""
+        self.in_view.reshape(-1)[flat] = True
+        self.other = np.zeros(shape, np.float32)
+        """(rows, cols) Highest score of any other category; 0 out of view."""
+        np.maximum.at(self.other.reshape(-1), flat, other)
+        self.target: NDArray[np.float32] | None = None
+        """(rows, cols) Highest score of the target; 0 out of view. None: 0 everywhere."""
+        hit = target > 0
+        if hit.any():
+            self.target = np.zeros(shape, np.float32)
+            np.maximum.at(self.target.reshape(-1), flat[hit], target[hit])
+
+
+class AllFrames:
+    """The paper's layers: frames counted, the target's scores summed, the highest of either kept."""
+
+    def __init__(self, candidate_score: float) -> None:
+        """A cell becomes a candidate at a score higher than `candidate_score`."""
+        self.candidate_score = candidate_score
+
+    def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
+        """See `ObjectLayers`."""
+        view.frames_in_view += frame.in_view
+        np.maximum(view.other_max, frame.other, out=view.other_max)
+        if frame.target is None:
+            return
+        _note_found(view, frame.target, self.candidate_score, step)
+        view.score_sum += frame.target
+        np.maximum(view.score_max, frame.target, out=view.score_max)
+
+
+class LatestFrame:
+    """One frame's score in place of the layers: what a cell looked like when it was last in view.
+
+    The single-frame detector of the paper's comparison. `frames_in_view` still counts: it also says what is known.
+    """
+
+    def __init__(self, candidate_score: float) -> None:
+        """A cell becomes a candidate at a score higher than `candidate_score`."""
+        self.candidate_score = candidate_score
+
+    def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
+        """See `ObjectLayers`."""
+        view.frames_in_view += frame.in_view
+        target = np.zeros_like(frame.other) if frame.target is None else frame.target
+        _note_found(view, target, self.candidate_score, step)
+        for layer, score in ((view.score_sum, target), (view.score_max, target), (view.other_max, frame.other)):
+            np.copyto(layer, score, where=frame.in_view)
+
+
+def _note_found(view: NavMap, target: NDArray[np.float32], candidate_score: float, step: int) -> None:
+    """Write down when a cell became a candidate."""
+    view.found_step[(target > candidate_score) & (view.score_max <= candidate_score)] = step
