@@ -1,0 +1,251 @@
+"""RedNet, an encoder-decoder for RGB-D segmentation (Jiang et al. 2018, arXiv:1806.01054).
+
+Two residual encoders, one for colour and one for depth; depth features are added to those of colour after the stem and
+after each of the four stages. 1x1 convolutions bring the sums to the width of the decoder, whose residual blocks double
+the resolution stage by stage and take them in as skips. Side heads on four decoder stages are trained as well (pyramid
+supervision). Module names are those of the checkpoints in circulation, so that they load without conversion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from torch import Tensor, nn
+
+from sim.interface import MPCAT40, ConfigError
+from stubborn.segmentation.preprocess import STRIDE_PX
+
+CLASSES = len(MPCAT40) - 1
+"""mpcat40 without void: channel c of the output is category id c + 1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RedNetConfig:
+    """Size of a RedNet; the default is the published one (81,972,552 parameters)."""
+
+    width: int = 64
+    """Channels after the stem."""
+    encoder_blocks: tuple[int, int, int, int] = (3, 4, 6, 3)
+    """Residual blocks of each encoder stage."""
+    bottleneck: bool = True
+    """Blocks of 1x1, 3x3 and 1x1 convolutions with four times the channels (ResNet-50), else two 3x3 (ResNet-18)."""
+    decoder_blocks: tuple[int, int, int, int] = (6, 4, 3, 3)
+    """Residual blocks of each decoder stage, the upsampling one included."""
+    final_blocks: int = 3
+    """Residual blocks at half the input's resolution, before the last upsampling."""
+    classes: int = CLASSES
+
+    def __post_init__(self) -> None:
+        counts = (self.width, self.classes, self.final_blocks, *self.encoder_blocks, *self.decoder_blocks)
+        if min(counts) < 1:
+            raise ConfigError(f"RedNetConfig needs at least one channel, block and class everywhere, got {self}.")
+
+
+PUBLISHED = RedNetConfig()
+"""The network of the paper, with ResNet-50 encoders."""
+COMPACT = RedNetConfig(
+    width=32, encoder_blocks=(2, 2, 2, 2), bottleneck=False, decoder_blocks=(2, 2, 2, 2), final_blocks=1
+)
+"""A narrow, shallow one that a CPU can run beside a simulator."""
+SIZES: dict[str, RedNetConfig] = {"compact": COMPACT, "published": PUBLISHED}
+
+
+class BasicBlock(nn.Module):
+    """Two 3x3 convolutions and a shortcut (He et al. 2015)."""
+
+    expansion = 1
+
+    def __init__(self, channels_in: int, channels: int, stride: int = 1) -> None:
+        super().__init__()
+        self.conv1 = _conv3x3(channels_in, channels, stride)
+        self.bn1 = nn.BatchNorm2d(channels)
+        self.conv2 = _conv3x3(channels, channels)
+        self.bn2 = nn.BatchNorm2d(channels)
+        self.relu = nn.ReLU(inplace=True)
+        self.downsample = _shortcut(channels_in, channels, stride)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(n, c, h, w) to (n, channels, h / stride, w / stride)."""
+        y = self.relu(self.bn1(self.conv1(x)))
+        y = self.bn2(self.conv2(y))
+        return self.relu(y + (x if self.downsample is None else self.downsample(x)))
+
+
+class Bottleneck(nn.Module):
+    """1x1, 3x3 and 1x1 convolutions and a shortcut; the stride is on the 3x3 (He et al. 2015)."""
+
+    expansion = 4
+
+    def __init__(self, channels_in: int, channels: int, stride: int = 1) -> None:
+        super().__init__()
+        channels_out = channels * self.expansion
+        self.conv1 = nn.Conv2d(channels_in, channels, 1, bias=False)
+        self.bn1 = nn.BatchNorm2d(channels)
+        self.conv2 = _conv3x3(channels, channels, stride)
+        self.bn2 = nn.BatchNorm2d(channels)
+        self.conv3 = nn.Conv2d(channels, channels_out, 1, bias=False)
+        self.bn3 = nn.BatchNorm2d(channels_out)
+        self.relu = nn.ReLU(inplace=True)
+        self.downsample = _shortcut(channels_in, channels_out, stride)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(n, c, h, w) to (n, 4 channels, h / stride, w / stride)."""
+        y = self.relu(self.bn1(self.conv1(x)))
+        y = self.relu(self.bn2(self.conv2(y)))
+        y = self.bn3(self.conv3(y))
+        return self.relu(y + (x if self.downsample is None else self.downsample(x)))
+
+
+class DecoderBlock(nn.Module):
+    """Two 3x3 convolutions and a shortcut; with `upsample` both ways double the resolution."""
+
+    def __init__(self, channels_in: int, channels_out: int, *, upsample: bool) -> None:
+        super().__init__()
+        self.conv1 = _conv3x3(channels_in, channels_in)
+        self.bn1 = nn.BatchNorm2d(channels_in)
+        self.conv2: nn.Module = _conv3x3(channels_in, channels_out)
+        self.upsample: nn.Module | None = None
+        if upsample:
+            self.conv2 = nn.ConvTranspose2d(
+                channels_in, channels_out, 3, stride=2, padding=1, output_padding=1, bias=False
+            )
+        self.bn2 = nn.BatchNorm2d(channels_out)
+        self.relu = nn.ReLU(inplace=True)
+        if upsample:
+            self.upsample = nn.Sequential(
+                nn.ConvTranspose2d(channels_in, channels_out, 2, stride=2, bias=False), nn.BatchNorm2d(channels_out)
+            )
+
+    def forward(self, x: Tensor) -> Tensor:
+        """(n, channels_in, h, w) to (n, channels_out, h, w), or twice as high and wide."""
+        y = self.relu(self.bn1(self.conv1(x)))
+        y = self.bn2(self.conv2(y))
+        return self.relu(y + (x if self.upsample is None else self.upsample(x)))
+
+
+class RedNet(nn.Module):
+    """Class logits from normalised colour and depth; see the module and `stubborn.segmentation.preprocess`."""
+
+    def __init__(self, config: RedNetConfig = PUBLISHED) -> None:
+        super().__init__()
+        self.config = config
+        block = Bottleneck if config.bottleneck else BasicBlock
+        w = config.width
+        widths = (w, 2 * w, 4 * w, 8 * w)
+        self.conv1, self.bn1 = _stem(3, w)
+        self.layer1, self.layer2, self.layer3, self.layer4 = _stages(block, w, widths, config.encoder_blocks)
+        self.conv1_d, self.bn1_d = _stem(1, w)
+        self.layer1_d, self.layer2_d, self.layer3_d, self.layer4_d = _stages(block, w, widths, config.encoder_blocks)
+        self.relu = nn.ReLU(inplace=True)
+        self.maxpool = nn.MaxPool2d(3, stride=2, padding=1)
+
+        ends = (4 * w, 2 * w, w, w)  # channels after each decoder stage
+        counts = config.decoder_blocks
+        self.deconv1 = _decoder_stage(8 * w, ends[0], counts[0])
+        self.deconv2 = _decoder_stage(ends[0], ends[1], counts[1])
+        self.deconv3 = _decoder_stage(ends[1], ends[2], counts[2])
+        self.deconv4 = _decoder_stage(ends[2], ends[3], counts[3])
+        self.agant0 = _skip(w, ends[3])
+        self.agant1 = _skip(widths[0] * block.expansion, ends[2])
+        self.agant2 = _skip(widths[1] * block.expansion, ends[1])
+        self.agant3 = _skip(widths[2] * block.expansion, ends[0])
+        self.agant4 = _skip(widths[3] * block.expansion, 8 * w)
+        self.final_conv = nn.Sequential(*(DecoderBlock(w, w, upsample=False) for _ in range(config.final_blocks)))
+        self.final_deconv_custom = nn.ConvTranspose2d(w, config.classes, 2, stride=2)
+        self.out5_conv_custom = nn.Conv2d(ends[0], config.classes, 1)
+        self.out4_conv_custom = nn.Conv2d(ends[1], config.classes, 1)
+        self.out3_conv_custom = nn.Conv2d(ends[2], config.classes, 1)
+        self.out2_conv_custom = nn.Conv2d(ends[3], config.classes, 1)
+        self._initialise()
+
+    def forward(self, rgb: Tensor, depth: Tensor) -> Tensor:
+        """Logits (n, classes, h, w) of normalised `rgb` (n, 3, h, w) and `depth` (n, 1, h, w)."""
+        return self.pyramid(rgb, depth, sides=False)[0]
+
+    def pyramid(self, rgb: Tensor, depth: Tensor, *, sides: bool = True) -> tuple[Tensor, ...]:
+        """Logits at full size and, with `sides`, at 1/2, 1/4, 1/8 and 1/16 of it.
+
+        Raises:
+            ConfigError: height or width is no multiple of 32.
+        """
+        height, width = rgb.shape[-2:]
+        if height % STRIDE_PX or width % STRIDE_PX:
+            raise ConfigError(f"RedNet takes multiples of {STRIDE_PX} pixels each way, got {height} x {width}.")
+        skips = self._encode(rgb, depth)
+        stages = (self.deconv1, self.deconv2, self.deconv3, self.deconv4)
+        heads = (self.out5_conv_custom, self.out4_conv_custom, self.out3_conv_custom, self.out2_conv_custom)
+        x = skips[-1]
+        outputs: list[Tensor] = []
+        for stage, head, skip in zip(stages, heads, reversed(skips[:-1]), strict=True):
+            x = stage(x)
+            if sides:
+                outputs.append(head(x))
+            x = x + skip
+        logits = self.final_deconv_custom(self.final_conv(x))
+        return (logits, *reversed(outputs))
+
+    def _encode(self, rgb: Tensor, depth: Tensor) -> list[Tensor]:
+        """Skips from the finest (half the input) to the coarsest (a 32nd), each as wide as the decoder wants it."""
+        y = self.relu(self.bn1_d(self.conv1_d(depth)))
+        x = self.relu(self.bn1(self.conv1(rgb))) + y
+        skips = [self.agant0(x)]
+        x, y = self.maxpool(x), self.maxpool(y)
+        for layer, layer_d, skip in (
+            (self.layer1, self.layer1_d, self.agant1),
+            (self.layer2, self.layer2_d, self.agant2),
+            (self.layer3, self.layer3_d, self.agant3),
+            (self.layer4, self.layer4_d, self.agant4),
+        ):
+            y = layer_d(y)
+            x = layer(x) + y
+            skips.append(skip(x))
+        return skips
+
+    def _initialise(self) -> None:
+        for module in self.modules():
+            if isinstance(module, nn.Conv2d | nn.ConvTranspose2d):
+                nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
+                if module.bias is not None:
+                    nn.init.zeros_(module.bias)
+
+
+def _conv3x3(channels_in: int, channels_out: int, stride: int = 1) -> nn.Conv2d:
+    return nn.Conv2d(channels_in, channels_out, 3, stride=stride, padding=1, bias=False)
+
+
+def _stem(channels_in: int, channels: int) -> tuple[nn.Conv2d, nn.BatchNorm2d]:
+    return nn.Conv2d(channels_in, channels, 7, stride=2, padding=3, bias=False), nn.BatchNorm2d(channels)
+
+
+def _shortcut(channels_in: int, channels_out: int, stride: int) -> nn.Module | None:
+    if stride == 1 and channels_in == channels_out:
+        return None
+    return nn.Sequential(
+        nn.Conv2d(channels_in, channels_out, 1, stride=stride, bias=False), nn.BatchNorm2d(channels_out)
+    )
+
+
+def _stages(
+    block: type[BasicBlock] | type[Bottleneck], channels_in: int, widths: Sequence[int], counts: Sequence[int]
+) -> list[nn.Sequential]:
+    stages = []
+    for number, (width, count) in enumerate(zip(widths, counts, strict=True)):
+        blocks = [block(channels_in, width, stride=1 if number == 0 else 2)]
+        channels_in = width * block.expansion
+        blocks += [block(channels_in, width) for _ in range(count - 1)]
+        stages.append(nn.Sequential(*blocks))
+    return stages
+
+
+def _decoder_stage(channels_in: int, channels_out: int, count: int) -> nn.Sequential:
+    blocks = [DecoderBlock(channels_in, channels_in, upsample=False) for _ in range(count - 1)]
+    return nn.Sequential(*blocks, DecoderBlock(channels_in, channels_out, upsample=True))
+
+
+def _skip(channels_in: int, channels_out: int) -> nn.Sequential:
+    return nn.Sequential(
+        nn.Conv2d(channels_in, channels_out, 1, bias=False),
+        nn.BatchNorm2d(channels_out),
+        nn.ReLU(inplace=True),
+    )

@@ -1,0 +1,98 @@
+"""Weights in files: what loads, and what is refused with the first name that differs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from sim.interface import ConfigError
+from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
+
+TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+@pytest.fixture(scope="module")
+def published_state() -> dict[str, torch.Tensor]:
+    """A made-up checkpoint of the published network: every tensor is filled with its place in the order."""
+    with torch.device("meta"):
+        shapes = {name: (tensor.shape, tensor.dtype) for name, tensor in RedNet().state_dict().items()}
+    values = ((name, shape, dtype, i) for i, (name, (shape, dtype)) in enumerate(shapes.items()))
+    return {name: torch.tensor(i % 7, dtype=dtype).expand(shape) for name, shape, dtype, i in values}
+
+
+def test_a_checkpoint_in_the_circulating_wrapper_loads_into_the_published_network(
+    published_state: dict[str, torch.Tensor], tmp_path: Path
+) -> None:
+    file = tmp_path / "rednet_semmap_mp3d_40.pth"
+    torch.save({"model_state": {f"module.{name}": value for name, value in published_state.items()}}, file)
+    model, _ = load_rednet(file)
+    loaded = model.state_dict()
+    assert list(loaded) == list(published_state)
+    assert all(bool((loaded[name] == published_state[name]).all()) for name in loaded)
+    assert not model.training
+
+
+def test_another_shape_is_refused_by_name(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
+    wrong = dict(published_state)
+    wrong["layer2.0.conv1.weight"] = torch.zeros(128, 255, 1, 1)
+    wrong["out2_conv_custom.bias"] = torch.zeros(21)
+    torch.save(wrong, tmp_path / "wrong.pth")
+    with pytest.raises(ConfigError, match=r"'layer2\.0\.conv1\.weight' is \(128, 255, 1, 1\), not \(128, 256, 1, 1\)"):
+        load_rednet(tmp_path / "wrong.pth")
+
+
+def test_a_missing_and_a_foreign_name_are_refused(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
+    missing = {name: value for name, value in published_state.items() if name != "agant3.1.bias"}
+    torch.save(missing, tmp_path / "missing.pth")
+    with pytest.raises(ConfigError, match=r"'agant3\.1\.bias' is missing"):
+        load_rednet(tmp_path / "missing.pth")
+    torch.save({**published_state, "head.weight": torch.zeros(1)}, tmp_path / "foreign.pth")
+    with pytest.raises(ConfigError, match=r"'head\.weight' is not in it"):
+        load_rednet(tmp_path / "foreign.pth")
+
+
+class _Runs:
+    def __reduce__(self) -> tuple:
+        return (Path.touch, (Path("/tmp/a-pickle-was-run"),))
+
+
+def test_no_pickle_is_run(tmp_path: Path) -> None:
+    torch.save({"model_state": _Runs()}, tmp_path / "evil.pth")
+    with pytest.raises(ConfigError, match="cannot be read as a PyTorch checkpoint"):
+        load_rednet(tmp_path / "evil.pth")
+    assert not Path("/tmp/a-pickle-was-run").exists()
+
+
+@pytest.mark.parametrize("name", ["broken.pth", "broken.safetensors"])
+def test_a_broken_file_is_one_clear_sentence(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_bytes(b"not weights at all")
+    with pytest.raises(ConfigError, match=f"{name}' cannot be read"):
+        load_rednet(tmp_path / name)
+
+
+def test_a_truncated_file_is_one_clear_sentence(tmp_path: Path) -> None:
+    file = tmp_path / "net.safetensors"
+    save_rednet(file, RedNet(TINY))
+    file.write_bytes(file.read_bytes()[:-100])
+    with pytest.raises(ConfigError, match="cannot be read"):
+        load_rednet(file)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"No weights at '.*nowhere\.pth'"):
+        load_rednet(tmp_path / "nowhere.pth")
+
+
+def test_saved_and_loaded_is_the_same_network_of_the_same_size(tmp_path: Path) -> None:
+    torch.manual_seed(1)
+    model = RedNet(TINY).eval()
+    save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.25, "command": "none"}, half=False)
+    loaded, metadata = load_rednet(tmp_path / "net.safetensors")
+    rgb, depth = torch.randn(1, 3, 32, 64), torch.randn(1, 1, 32, 64)
+    assert loaded.config == TINY
+    assert metadata == {"temperature": 1.25, "command": "none"}
+    with torch.inference_mode():
+        assert torch.equal(model(rgb, depth), loaded(rgb, depth))

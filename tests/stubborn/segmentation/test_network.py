@@ -1,0 +1,101 @@
+"""A network as the agent's segmenter."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation.checkpoints import save_rednet
+from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
+
+TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+@pytest.fixture(scope="module")
+def model() -> RedNet:
+    torch.manual_seed(0)
+    return RedNet(TINY).eval()
+
+
+@pytest.fixture(scope="module")
+def frame() -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(0)
+    return {
+        "rgb": rng.integers(0, 256, (480, 640, 3), dtype=np.uint8),
+        "depth": rng.uniform(0.0, 5.0, (480, 640)).astype(np.float32),
+    }
+
+
+def test_scores_are_the_softmax_of_the_blocks_middle_pixels(model: RedNet, frame: dict[str, np.ndarray]) -> None:
+    segmenter = RedNetSegmenter(model, temperature=2.0)
+    scores = segmenter.scores(frame, "sofa")
+    logits = segmenter.logits(frame["rgb"], frame["depth"]).numpy()[:, 1::2, 1::2] / 2.0
+    probability = np.exp(logits - logits.max(axis=0))
+    probability /= probability.sum(axis=0)
+    channel = MPCAT40_ID["sofa"] - 1
+    np.testing.assert_allclose(scores.target, probability[channel], atol=1e-6)
+    np.testing.assert_allclose(scores.best_other, np.delete(probability, channel, axis=0).max(axis=0), atol=1e-6)
+
+
+@pytest.mark.parametrize("goal", GOAL_CATEGORIES)
+def test_scores_of_every_goal_are_probabilities(model: RedNet, frame: dict[str, np.ndarray], goal: str) -> None:
+    target, best_other = RedNetSegmenter(model).scores(frame, goal)
+    assert target.shape == best_other.shape == (120, 160)
+    assert target.dtype == best_other.dtype == np.float32
+    assert target.min() >= 0.0
+    assert float((target + best_other).max()) <= 1.0 + 1e-6
+
+
+def test_the_frame_is_not_changed_and_the_same_frame_gives_the_same_scores(
+    model: RedNet, frame: dict[str, np.ndarray]
+) -> None:
+    before = {name: image.copy() for name, image in frame.items()}
+    segmenter = RedNetSegmenter(model)
+    first, second = segmenter.scores(frame, "bed"), segmenter.scores(frame, "bed")
+    assert np.array_equal(first.target, second.target)
+    assert all(np.array_equal(before[name], frame[name]) for name in frame)
+
+
+def test_padding_keeps_every_pixel_in_its_place(model: RedNet) -> None:
+    """240 rows are padded to 256: what the crop leaves is where it was."""
+    rgb = np.random.default_rng(1).integers(0, 256, (240, 320, 3), dtype=np.uint8)
+    pad = padding(240, 320)
+    assert pad == (8, 8, 0, 0)
+    back = pad.crop(normalise_rgb(rgb))
+    assert back.shape == (3, 240, 320)
+    np.testing.assert_allclose(back[0] * 0.544 + 0.493, rgb[..., 0] / 255.0, atol=1e-5)
+
+
+def test_no_return_and_too_near_read_as_nearest_and_far_as_farthest() -> None:
+    depth = np.full((32, 32), 5.0, np.float32)
+    depth[0, :3] = 0.0, 0.3, 0.5
+    scaled = normalise_depth(depth, CameraModel())[0] * 0.285 + 0.213
+    np.testing.assert_allclose(scaled[0, :4], [0.0, 0.0, 0.0, 1.0], atol=1e-6)
+
+
+def test_shrinking_takes_labels_and_never_mixes_them() -> None:
+    labels = np.array([[1, 1, 9, 9], [1, 1, 9, 9]], np.uint8)
+    assert shrink(labels, 2).tolist() == [[1, 9]]
+    with pytest.raises(ConfigError, match="no whole number of 3 pixel blocks"):
+        shrink(labels, 3)
+
+
+def test_unknown_goals_and_impossible_blocks_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
+    with pytest.raises(ConfigError, match="No category 'unicorn'"):
+        RedNetSegmenter(model).scores(frame, "unicorn")
+    with pytest.raises(ConfigError, match="multiple of block_px"):
+        RedNetSegmenter(model, block_px=3, score_block_px=4)
+    with pytest.raises(ConfigError, match="temperature must be > 0"):
+        RedNetSegmenter(model, temperature=0.0)
+
+
+def test_resolution_and_temperature_come_with_the_weights(model: RedNet, tmp_path: Path) -> None:
+    save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.5, "block_px": 4})
+    segmenter = RedNetSegmenter.from_file(tmp_path / "net.safetensors")
+    assert (segmenter.temperature, segmenter.block_px) == (1.5, 4)

@@ -1,0 +1,72 @@
+"""The network: the published one to the name, and the laws of its shapes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from sim.interface import ConfigError
+from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
+
+NAMES_AND_SHAPES = Path(__file__).with_name("rednet_state_dict.txt")
+
+
+def shape_text(tensor: torch.Tensor) -> str:
+    return "x".join(map(str, tensor.shape)) or "scalar"
+
+
+@pytest.fixture(scope="module")
+def published() -> RedNet:
+    with torch.device("meta"):
+        return RedNet(PUBLISHED)
+
+
+def test_the_published_network_has_81972552_parameters(published: RedNet) -> None:
+    assert sum(parameter.numel() for parameter in published.parameters()) == 81_972_552
+
+
+def test_names_and_shapes_are_those_of_the_checkpoints_in_circulation(published: RedNet) -> None:
+    lines = NAMES_AND_SHAPES.read_text(encoding="utf-8").splitlines()
+    wanted = [tuple(line.split()) for line in lines if line and not line.startswith("#")]
+    assert [(name, shape_text(tensor)) for name, tensor in published.state_dict().items()] == wanted
+
+
+@pytest.mark.parametrize("config", [PUBLISHED, COMPACT], ids=["published", "compact"])
+def test_five_scales_halve(config: RedNetConfig) -> None:
+    with torch.device("meta"):
+        outputs = RedNet(config).eval().pyramid(torch.zeros(2, 3, 480, 640), torch.zeros(2, 1, 480, 640))
+    assert [tuple(out.shape) for out in outputs] == [
+        (2, 40, 480, 640),
+        (2, 40, 240, 320),
+        (2, 40, 120, 160),
+        (2, 40, 60, 80),
+        (2, 40, 30, 40),
+    ]
+
+
+def test_sizes_that_five_halvings_do_not_divide_are_refused() -> None:
+    with pytest.raises(ConfigError, match="multiples of 32"):
+        RedNet(COMPACT)(torch.zeros(1, 3, 240, 320), torch.zeros(1, 1, 240, 320))
+
+
+def test_both_colour_and_depth_reach_the_output() -> None:
+    torch.manual_seed(0)
+    model = RedNet(RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1)))
+    model.eval()
+    rgb, depth = torch.zeros(1, 3, 64, 64), torch.zeros(1, 1, 64, 64)
+    with torch.inference_mode():
+        plain, coloured, deep = model(rgb, depth), model(rgb + 1, depth), model(rgb, depth + 1)
+    assert not torch.allclose(plain, coloured)
+    assert not torch.allclose(plain, deep)
+    assert not torch.allclose(coloured, deep)
+
+
+def test_every_parameter_learns_from_the_five_outputs() -> None:
+    torch.manual_seed(0)
+    model = RedNet(RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1)))
+    outputs = model.pyramid(torch.randn(2, 3, 64, 64), torch.randn(2, 1, 64, 64))
+    sum(out.square().mean() for out in outputs).backward()  # type: ignore[union-attr]
+    silent = [name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0]
+    assert silent == []
