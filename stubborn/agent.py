@@ -22,14 +22,16 @@ from sim.interface import (
     wrap_angle,
 )
 from stubborn.collisions import CollisionConfig, is_collision, mark_collision, mark_visited
-from stubborn.exploration import CornerExplorer, ExplorationConfig, Route
+from stubborn.exploration import CornerExplorer, ExplorationConfig, Explorer, Route
 from stubborn.glance import GlanceConfig, Glancer
 from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping import Mapper, MappingConfig, Sighting
 from stubborn.navmap import NavMap
+from stubborn.objects import ObjectLayers
 from stubborn.planning import Planner, PlanningConfig
-from stubborn.target import AcceptAll, Approach, TargetConfig, TargetSeeker, Verifier
+from stubborn.target import Approach, TargetConfig, TargetSeeker
 from stubborn.untrap import Untrap, UntrapConfig
+from stubborn.verification import AcceptAll, Verifier
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,15 +87,28 @@ class StubbornAgent:
         robot: RobotModel,
         segmenter: Segmenter,
         verifier: Verifier | None = None,
+        explorer: Explorer | None = None,
+        layers: ObjectLayers | None = None,
         config: AgentConfig = AgentConfig(),
     ) -> None:
+        """Parts that a baseline exchanges are passed in.
+
+        Args:
+            camera: what the observations are taken with.
+            robot: the body that is driven.
+            segmenter: where scores come from.
+            verifier: judges candidates; by default it accepts all.
+            explorer: chooses where to look; by default the paper's, from `config.exploration`.
+            layers: keeps the scores; by default over all frames.
+            config: everything else.
+        """
         self.config = config
         self.robot = robot
         self.segmenter = segmenter
         avoidance = config.avoidance
-        self.mapper = Mapper(camera, robot, config.mapping)
+        self.mapper = Mapper(camera, robot, config.mapping, layers)
         self.planner = Planner(config.planning, trust_visited=avoidance.visited_is_free)
-        self.explorer = CornerExplorer(
+        self.explorer: Explorer = explorer or CornerExplorer(
             config.exploration, self.planner, averse=avoidance.averse_exploration, bumps=avoidance.collision_layers
         )
         self.glancer = Glancer(config.glance, camera)
@@ -175,7 +190,11 @@ class StubbornAgent:
         off_rad = wrap_angle(approach.bearing_rad - pose.yaw_rad)
         if abs(off_rad) > self.config.planning.aligned_rad:
             return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT
-        return Action.STOP if self.seeker.judge(self.navmap, approach.cell) else Action.TURN_LEFT
+        if self.seeker.judge(self.navmap, approach.cell):
+            if approach.near_enough:
+                return Action.STOP
+            self.seeker.postpone(self.navmap, self.step)
+        return Action.TURN_LEFT
 
     def _follow(self, pose: PlanarPose) -> Window:
         """The local window, moved with the robot when its time has come."""

@@ -6,16 +6,18 @@ import difflib
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from sim.interface import Agent, CameraModel, ConfigError, RobotModel, Segmenter
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
+from stubborn.baselines.frontier import FrontierConfig, FrontierExplorer
 from stubborn.baselines.random import RandomAgent, RandomConfig
+from stubborn.baselines.single_frame import single_frame_agent
 from stubborn.exploration import ExplorationConfig
 from stubborn.glance import GlanceConfig
-from stubborn.target import Verifier
+from stubborn.planning import Planner
+from stubborn.verification import Verifier
 
-Factory = Callable[..., Agent]
 C = TypeVar("C", AgentConfig, RandomConfig)
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
@@ -42,20 +44,7 @@ ADDITIONS: Mapping[str, Any] = MappingProxyType(
 """What `stubborn-plus` does that the paper's agent does not: it looks around and aside, and goes where it never was."""
 
 
-def make(name: str, *, camera: CameraModel, robot: RobotModel, segmenter: Segmenter, **options: Any) -> Agent:
-    """Build an agent by name.
-
-    Options are the fields of the agent's config (`stubborn.agent.AgentConfig`, `RandomConfig`), and `verifier` for the
-    agents that verify. Raises `ConfigError` for a name or an option that there is not.
-    """
-    if name not in _FACTORIES:
-        near = difflib.get_close_matches(name, NAMES, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"No agent {name!r}.{hint} There is: {', '.join(NAMES)}.")
-    return _FACTORIES[name](name, camera=camera, robot=robot, segmenter=segmenter, **options)
-
-
-def _stubborn(
+def make(
     name: str,
     *,
     camera: CameraModel,
@@ -63,15 +52,66 @@ def _stubborn(
     segmenter: Segmenter,
     verifier: Verifier | None = None,
     **options: Any,
-) -> StubbornAgent:
+) -> Agent:
+    """Build an agent by name.
+
+    Args:
+        name: one of `NAMES`.
+        camera: what the observations are taken with.
+        robot: the body that is driven.
+        segmenter: where scores come from.
+        verifier: judges candidates where the agent verifies at all (`stubborn.verification`); None accepts all.
+        options: fields of the agent's config (`stubborn.agent.AgentConfig`, `RandomConfig`), and `frontier`, a
+            `FrontierConfig`, for the frontier agents.
+
+    Raises:
+        ConfigError: a name or an option that there is not.
+    """
+    if name not in _FACTORIES:
+        near = difflib.get_close_matches(name, NAMES, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        raise ConfigError(f"No agent {name!r}.{hint} There is: {', '.join(NAMES)}.")
+    return _FACTORIES[name](name, _Given(camera, robot, segmenter, verifier), options)
+
+
+class _Given(NamedTuple):
+    """What every agent is built from."""
+
+    camera: CameraModel
+    robot: RobotModel
+    segmenter: Segmenter
+    verifier: Verifier | None
+
+
+def _stubborn(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
     config = AgentConfig(avoidance=ABLATION.get(name, CollisionAvoidance()))
     if name == "stubborn-plus":
         config = replace(config, **ADDITIONS)
-    config = _configured(config, name, options)
-    return StubbornAgent(camera=camera, robot=robot, segmenter=segmenter, verifier=verifier, config=config)
+    return StubbornAgent(**given._asdict(), config=_configured(config, name, options))
 
 
-def _random(name: str, *, camera: CameraModel, robot: RobotModel, segmenter: Segmenter, **options: Any) -> RandomAgent:
+def _single_frame(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
+    config = _configured(AgentConfig(), name, options)
+    return single_frame_agent(camera=given.camera, robot=given.robot, segmenter=given.segmenter, config=config)
+
+
+def _frontier(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
+    """The Stubborn agent with another explorer; collision avoidance is that of the ablation's last or first row."""
+    avoidance = ABLATION["stubborn-v" if name == "frontier-avoid" else "stubborn-i"]
+    options = dict(options)
+    frontier = options.pop("frontier", FrontierConfig())
+    config = _configured(AgentConfig(avoidance=avoidance), name, options)
+    avoidance = config.avoidance
+    explorer = FrontierExplorer(
+        frontier,
+        Planner(config.planning, trust_visited=avoidance.visited_is_free),
+        averse=avoidance.averse_exploration,
+        bumps=avoidance.collision_layers,
+    )
+    return StubbornAgent(**given._asdict(), explorer=explorer, config=config)
+
+
+def _random(name: str, given: _Given, options: Mapping[str, Any]) -> RandomAgent:
     return RandomAgent(_configured(RandomConfig(), name, options))
 
 
@@ -84,11 +124,14 @@ def _configured(config: C, name: str, options: Mapping[str, Any]) -> C:
     return replace(config, **options)
 
 
-_FACTORIES: Mapping[str, Factory] = MappingProxyType(
+_FACTORIES: Mapping[str, Callable[[str, _Given, Mapping[str, Any]], Agent]] = MappingProxyType(
     {
         "stubborn": _stubborn,
         **dict.fromkeys(ABLATION, _stubborn),
         "stubborn-plus": _stubborn,
+        "single-frame": _single_frame,
+        "frontier": _frontier,
+        "frontier-avoid": _frontier,
         "random": _random,
     }
 )

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stubborn.agent import StubbornAgent
-from stubborn.exploration import corner_xy_m
 from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 from stubborn.planning import Plan, trace
@@ -59,8 +58,10 @@ def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False
         plan = agent.route.plan
         canvas.outline(plan.goal, plan.frame, GOAL)
         canvas.line(trace_xy_m(plan, pose), PLAN, 2)
-    if agent.route is not None and agent.approach is None and not agent.explorer.on_errand:
-        canvas.cross(corner_xy_m(agent.route.plan.frame, agent.explorer.corner, agent.config.exploration.inset), GOAL)
+    if agent.route is not None and agent.approach is None:
+        goal_xy_m = agent.explorer.goal_xy_m(agent.route.plan.frame)
+        if goal_xy_m is not None:
+            canvas.cross(goal_xy_m, GOAL)
     canvas.robot(pose, agent.robot.radius_m)
     caption = f"{agent.goal}, step {agent.step}"
     return np.hstack([canvas.image, _legend(size_px, caption)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,26 @@ class Route:
 
     plan: Plan
     free: FreeSpace
+
+
+class Explorer(Protocol):
+    """Chooses where to go while there is no candidate."""
+
+    def reset(self) -> None:
+        """Forget the last episode."""
+        ...
+
+    def looks_around(self) -> bool:
+        """Whether the next step of exploring is a turn on the spot rather than a route; counts the turns."""
+        ...
+
+    def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+        """The way to go on exploring; None when the robot is walled in."""
+        ...
+
+    def goal_xy_m(self, frame: GridFrame) -> tuple[float, float] | None:
+        """The point that the last route on this frame stood for, for pictures; None: its own end."""
+        ...
 
 
 CLOCKWISE_CORNERS: tuple[tuple[int, int], ...] = ((1, 1), (1, -1), (-1, -1), (-1, 1))
@@ -110,6 +131,10 @@ class CornerExplorer:
     def on_errand(self) -> bool:
         """Whether the last route led elsewhere than to a corner."""
         return self._errand is not None
+
+    def goal_xy_m(self, frame: GridFrame) -> tuple[float, float] | None:
+        """The corner; None when the last route led elsewhere."""
+        return None if self.on_errand else corner_xy_m(frame, self.corner, self.config.inset)
 
     def looks_around(self) -> bool:
         """Whether the next step of exploring is a turn on the spot rather than a route; counts the turns."""

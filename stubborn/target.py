@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from stubborn.mapping import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning import Bumps, FreeSpace, Planner
 from stubborn.raster import Cells, connected, distance_to, nearest, sight_is_clear
+from stubborn.verification import Features, Verifier
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,9 +37,10 @@ class TargetConfig:
     far_stand_m: float = 0.93
     """Where there is no such stand, this will do."""
     last_resort_m: float = 1.6
-    """Late in an episode, the nearest reachable place within this distance of a candidate is better than nothing."""
+    """Where there is no stand at all, a candidate is verified from the nearest reachable place within this distance;
+    late in an episode the agent stops there, which is better than nothing."""
     last_resort_step: int = 420
-    """From this step on the last resort counts."""
+    """From this step on it stops there."""
     rejection_margin_m: float = 0.25
     """Around rejected cells this much is rejected too."""
     verify_until_step: int = 200
@@ -60,31 +61,6 @@ class TargetConfig:
             )
 
 
-class Features(NamedTuple):
-    """What the object layers hold at a candidate cell: the input of a verifier."""
-
-    total_view: int
-    cumulative: float
-    maximum: float
-    maximum_other: float
-
-
-class Verifier(Protocol):
-    """Decides whether a candidate is what it seems; belongs to a kind of semantics."""
-
-    def accepts(self, goal: str, features: Features) -> bool:
-        """True: stop here. False: never come back to this candidate."""
-        ...
-
-
-class AcceptAll:
-    """The verifier of ground truth: there is nothing to verify."""
-
-    def accepts(self, goal: str, features: Features) -> bool:
-        """True for everything."""
-        return True
-
-
 @dataclass(frozen=True)
 class Approach:
     """The way to the nearest stand of any candidate."""
@@ -95,6 +71,8 @@ class Approach:
     """World angle from the robot to its nearest candidate cell."""
     cell: tuple[int, int]
     """Row and column of that candidate cell on the whole map."""
+    near_enough: bool = True
+    """False: a stop there would not count; it is the place to verify from when no other can be reached."""
 
 
 class TargetSeeker:
@@ -139,16 +117,24 @@ class TargetSeeker:
             view = navmap.view(part)
             candidates = self.candidates(view)
             if candidates.any():
-                found = self._approach_on(view, candidates, pose, late=step >= self.config.last_resort_step)
+                late = step >= self.config.last_resort_step
+                found = self._approach_on(
+                    view, candidates, pose, late=late, anywhere=late or (part is whole and self.verifier.may_refuse)
+                )
                 if found is not None:
                     self._far = part is whole
                     row, col = found.cell
-                    return Approach(found.route, found.bearing_rad, (row + part.rows.start, col + part.cols.start))
-        navmap.view(whole).set_aside[self.candidates(navmap.view(whole))] = True
+                    return replace(found, cell=(row + part.rows.start, col + part.cols.start))
+        self.postpone(navmap, step)
+        return None
+
+    def postpone(self, navmap: NavMap, step: int) -> None:
+        """Set all candidates aside: they cannot be reached from what is known now."""
+        view = navmap.view(navmap.known_window(margin_cells=self.config.margin_cells))
+        view.set_aside[self.candidates(view)] = True
         self._far = False
         self._retry_step = step + self._patience_steps
         self._patience_steps *= 2
-        return None
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verify the candidate at a map cell; a rejected one never counts again in this episode."""
@@ -170,21 +156,24 @@ class TargetSeeker:
         return False
 
     def _approach_on(
-        self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool
+        self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool, anywhere: bool
     ) -> Approach | None:
-        """The same on one window, with the candidate cell counted in that window."""
+        """The same on one window, with the candidate cell counted in that window.
+
+        `anywhere` takes the nearest reachable place where there is no stand; `late` holds that to be near enough.
+        """
         gap_cells, nearest_row, nearest_col = nearest(candidates)
         gap_m = gap_cells * np.float32(view.frame.cell_m)
         here = view.frame.cell(pose.x_m, pose.y_m)
         cell = int(nearest_row[here]), int(nearest_col[here])
         x_m, y_m = view.frame.centres(*cell)
         bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
-        for free, stands in self._stands(view, pose, gap_m, (nearest_row, nearest_col), late=late):
+        for free, stands, is_stand in self._stands(view, pose, gap_m, (nearest_row, nearest_col), anywhere=anywhere):
             if stands[here]:
-                return Approach(None, bearing_rad, cell)
+                return Approach(None, bearing_rad, cell, is_stand or late)
             plan = self.planner.plan(free, stands, pose)
             if plan is not None:
-                return Approach(Route(plan, free), bearing_rad, cell)
+                return Approach(Route(plan, free), bearing_rad, cell, is_stand or late)
         return None
 
     def _stands(
@@ -194,9 +183,9 @@ class TargetSeeker:
         gap_m: NDArray[np.float32],
         ends: Cells,
         *,
-        late: bool,
-    ) -> Iterator[tuple[FreeSpace, NDArray[np.bool_]]]:
-        """Reachable cells to stop on, from the best kind to the last resort."""
+        anywhere: bool,
+    ) -> Iterator[tuple[FreeSpace, NDArray[np.bool_], bool]]:
+        """Reachable cells to stop on, from the best kind to the last resort, and whether they are more than that."""
         edge_cells = self.config.target_edge_m / view.frame.cell_m
         rows, cols = np.nonzero(gap_m <= self.config.far_stand_m)
         seen = ends[0][rows, cols], ends[1][rows, cols]
@@ -213,9 +202,9 @@ class TargetSeeker:
                     free_spaces[bumps] = self.planner.free_space(view, pose, bumps, unseen)
                 stands = free_spaces[bumps].reachable & in_sight & (gap_m <= within_m)
                 if stands.any():
-                    yield free_spaces[bumps], stands
-        if late:
+                    yield free_spaces[bumps], stands, True
+        if anywhere:
             free = free_spaces[self._maps[-1]]
             reach_m = np.where(free.reachable, gap_m, np.inf)
             if reach_m.min() <= self.config.last_resort_m:
-                yield free, reach_m <= reach_m.min() + view.frame.cell_m
+                yield free, reach_m <= reach_m.min() + view.frame.cell_m, False

@@ -10,6 +10,7 @@ from examples import my_agent
 from sim.interface import Action, Agent, ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.exploration import CornerExplorer
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.untrap import UntrapConfig
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
@@ -86,6 +87,7 @@ def test_reset_leaves_nothing_of_the_last_episode():
     assert not any(layer.any() for layer in layers.values())
     assert agent.navmap.known is None
     assert (agent.step, agent.pose, agent.last_action, agent.route, agent.approach) == (0, None, None, None, None)
+    assert isinstance(agent.explorer, CornerExplorer)
     assert agent.explorer.corner == agent.config.exploration.first_corner
     assert not agent.untrap.active
 

@@ -9,7 +9,8 @@ from stubborn.mapping import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning import Planner, PlanningConfig
 from stubborn.raster import distance_to, nearest, sight_is_clear
-from stubborn.target import AcceptAll, Features, TargetConfig, TargetSeeker
+from stubborn.target import TargetConfig, TargetSeeker
+from stubborn.verification import AcceptAll, Features
 from tests.helpers.asciimap import map_of
 
 PLANNER = Planner(PlanningConfig(), trust_visited=True)
@@ -17,6 +18,8 @@ PLANNER = Planner(PlanningConfig(), trust_visited=True)
 
 class RefuseAll:
     """A verifier that keeps what it was asked."""
+
+    may_refuse = True
 
     def __init__(self) -> None:
         self.asked: list[tuple[str, Features]] = []
