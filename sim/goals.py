@@ -118,16 +118,27 @@ class GoalRegion:
         self.reach_m = reach_m
         around = surroundings or Surroundings.of(model, data, labels, floor_z_m=floor_z_m)
         self._blockers = around.blockers
-        footprints = (footprint_of(model, data, instance, around.floors) for instance in labels.of_category(goal))
+        everywhere = [footprint_of(model, data, instance, around.floors) for instance in labels.of_category(goal)]
+        self.exists = any(footprint is not None for footprint in everywhere)
+        """Whether some storey of the house has an instance."""
         self.footprints = tuple(
             footprint
-            for footprint in footprints
+            for footprint in everywhere
             if footprint is not None and abs(footprint.floor_z_m - floor_z_m) < SAME_STOREY_M
         )
 
     def succeeds(self, x_m: float, y_m: float) -> bool:
         """Whether a STOP at this place of the storey succeeds."""
         return bool(self.satisfied(np.array([[x_m, y_m]], dtype=np.float64))[0])
+
+    def nearest_m(self, x_m: float, y_m: float) -> float | None:
+        """Metres in plan from a place to the nearest footprint, walls ignored; None where the storey has none."""
+        here = np.array([[x_m, y_m]], dtype=np.float64)
+        distances = [
+            0.0 if footprint.contains(here)[0] else float(footprint.boundary_m.query(here)[0][0])
+            for footprint in self.footprints
+        ]
+        return min(distances, default=None)
 
     def satisfied(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) at which of the places (n, 2) a STOP succeeds."""

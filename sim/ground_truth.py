@@ -51,8 +51,10 @@ class GroundTruth:
     def target(self, goal: str, floor_z_m: float = 0.0) -> Target:
         """Where a STOP for a goal succeeds on a storey, and how far that is from everywhere.
 
+        A storey without an instance in a house that has one elsewhere gives no place and no way.
+
         Raises:
-            EpisodeError: there is no such goal category, or the storey has no instance of it.
+            EpisodeError: there is no such goal category, or the house has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
             space, region = self.space(floor_z_m), self._region(goal, floor_z_m, self._at_rest)
@@ -66,10 +68,19 @@ class GroundTruth:
 
     def succeeds_now(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> bool:
         """Whether a STOP at this place succeeds with things where they now are in the world."""
-        region = self.target(goal, floor_z_m).region
+        return self._region_now(goal, floor_z_m).succeeds(x_m, y_m)
+
+    def nearest_now_m(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> float | None:
+        """Metres in plan to the nearest instance on a storey, walls ignored, with things where they now are.
+
+        None where the storey has no instance.
+        """
+        return self._region_now(goal, floor_z_m).nearest_m(x_m, y_m)
+
+    def _region_now(self, goal: str, floor_z_m: float) -> GoalRegion:
         if self._may_have_moved(goal):
-            region = self._region(goal, floor_z_m, self.world.data)
-        return region.succeeds(x_m, y_m)
+            return self._region(goal, floor_z_m, self.world.data)
+        return self.target(goal, floor_z_m).region
 
     def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
         if goal not in GOAL_CATEGORIES:
@@ -81,10 +92,9 @@ class GroundTruth:
             )
         around = self._surroundings[floor_z_m]
         region = GoalRegion(world.model, data, world.labels, goal, floor_z_m=floor_z_m, surroundings=around)
-        if not region.footprints:
-            where = "" if not world.labels.of_category(goal) else f" on the storey at z = {floor_z_m:.2f} m"
+        if not region.exists:
             raise EpisodeError(
-                f"House '{world.house.name}' has no '{goal}'{where}. It has: {', '.join(self.goals()) or 'no goal'}."
+                f"House '{world.house.name}' has no '{goal}'. It has: {', '.join(self.goals()) or 'no goal'}."
             )
         return region
 

@@ -25,14 +25,14 @@ def path_efficiency(shortest_path_m: float, path_length_m: float) -> float:
     return shortest_path_m / longer if longer > 0.0 else 1.0
 
 
-def spl(success: bool, shortest_path_m: float, path_length_m: float) -> float:
-    """Success weighted by path length."""
-    return path_efficiency(shortest_path_m, path_length_m) if success else 0.0
+def spl(success: bool, shortest_path_m: float | None, path_length_m: float) -> float:
+    """Success weighted by path length; 0 where there was no way from the start."""
+    return path_efficiency(shortest_path_m, path_length_m) if success and shortest_path_m is not None else 0.0
 
 
-def soft_spl(start_distance_m: float, end_distance_m: float | None, path_length_m: float) -> float:
-    """The share of the way to the goal that was covered, weighted by path length; 0 where there is no way any more."""
-    if end_distance_m is None:
+def soft_spl(start_distance_m: float | None, end_distance_m: float | None, path_length_m: float) -> float:
+    """The share of the way to the goal that was covered, weighted by path length; 0 where there is or was no way."""
+    if start_distance_m is None or end_distance_m is None:
         return 0.0
     if start_distance_m <= 0.0:
         progress = 1.0 if end_distance_m <= 0.0 else 0.0
@@ -41,9 +41,14 @@ def soft_spl(start_distance_m: float, end_distance_m: float | None, path_length_
     return progress * path_efficiency(start_distance_m, path_length_m)
 
 
+def goal_share(semantic: NDArray[np.uint8], goal: str) -> float:
+    """Share of one ground-truth frame (h, w) that the goal's class covers, in [0, 1]."""
+    return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) / semantic.size
+
+
 def sees_goal(semantic: NDArray[np.uint8], goal: str) -> bool:
     """Whether the goal's class covers enough of one ground-truth frame (h, w)."""
-    return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) >= EXPLORED_SHARE * semantic.size
+    return goal_share(semantic, goal) >= EXPLORED_SHARE
 
 
 def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:

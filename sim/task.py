@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from sim import metrics
 from sim.errors import EpisodeError
+from sim.failures import Cause, cause_of_failure
 from sim.freespace import SAME_STOREY_M
 from sim.ground_truth import GroundTruth
 from sim.interface import MAX_STEPS, Action, ConfigError
 from sim.pose import Pose
 from sim.robot.drive import Motion
+from sim.trajectory import Recorder, Trajectory
 from sim.world import World
 
 EndReason = Literal["stop", "max_steps"]
@@ -29,9 +31,13 @@ class _Record:
 
     goal: str
     start: Pose
-    shortest_path_m: float
+    shortest_path_m: float | None
+    """None: no way to the goal, which is on another storey."""
     positions_m: list[tuple[float, float]]
     """Of the robot's centre, the start first."""
+    recorder: Recorder
+    distance_m: float | None
+    """From where the robot stands to the nearest place that satisfies success; None: no way."""
     path_length_m: float = 0.0
     collisions: int = 0
     touches: int = 0
@@ -39,6 +45,9 @@ class _Record:
     trapped: bool = False
     success: bool = False
     end_reason: EndReason | None = None
+    nearest_instance_m: float | None = None
+    """At the end; see `sim.trajectory`."""
+    failure: Cause | None = None
 
 
 class Task:
@@ -58,19 +67,28 @@ class Task:
     def begin(self, goal: str, start: Pose) -> None:
         """Start an episode.
 
+        A goal whose only instances are on another storey can be asked for, as Habitat's splits do, but not be reached:
+        its distances are None, its SPL 0. A goal that is on this storey and walled in is an episode gone wrong.
+
         Raises:
-            EpisodeError: the goal is no goal category, is not in the house, or has no way to it from the start.
+            EpisodeError: the goal is no goal category, is not in the house, or is on the storey of the start without
+                a way to it.
         """
         self._record = None
         shortest_path_m = self.distance_from(goal, start)
-        if shortest_path_m is None:
+        on_storey = bool(self.truth.target(goal, start.floor_z_m).region.footprints)
+        if shortest_path_m is None and on_storey:
             raise self.no_way(goal, start)
-        self._record = _Record(goal, start, shortest_path_m, [(start.x_m, start.y_m)])
+        recorder = Recorder(start, distance_m=shortest_path_m, goal_on_storey=on_storey)
+        self._record = _Record(
+            goal, start, shortest_path_m, [(start.x_m, start.y_m)], recorder, distance_m=shortest_path_m
+        )
 
     def look(self, semantic: NDArray[np.uint8]) -> None:
         """Note what one frame of ground-truth segmentation (h, w) shows."""
-        record = self._running
-        record.explored = record.explored or metrics.sees_goal(semantic, record.goal)
+        record, share = self._running, metrics.goal_share(semantic, self.goal)
+        record.recorder.look(share)
+        record.explored = record.explored or share >= metrics.EXPLORED_SHARE
 
     def observe(self, action: Action, motion: Motion, semantic: NDArray[np.uint8] | None = None) -> None:
         """Count one action, carried out by the world, and the frame seen after it.
@@ -87,13 +105,16 @@ class Task:
         record.collisions += motion.collided
         record.touches += bool(motion.contacts) and not motion.collided
         record.trapped = record.trapped or metrics.stayed_near(record.positions_m)
+        if action == Action.STOP:
+            record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
+        record.distance_m = self._distance_now()
+        record.recorder.move(motion, pose, record.distance_m)
         if semantic is not None:
             self.look(semantic)
         if action == Action.STOP:
-            record.end_reason = "stop"
-            record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
+            self._end("stop")
         elif self.num_steps >= self.max_steps:
-            record.end_reason = "max_steps"
+            self._end("max_steps")
 
     @property
     def goal(self) -> str:
@@ -146,8 +167,9 @@ class Task:
         )
 
     def metrics(self) -> dict[str, Any]:
-        """The contract's metrics as they stand now; `failure` is None until its rules exist."""
-        record, distance_m = self._running, self._distance_now()
+        """The contract's metrics as they stand now; `failure` is None until the episode has failed."""
+        record = self._running
+        distance_m = record.distance_m
         return {
             "success": float(record.success),
             "spl": metrics.spl(record.success, record.shortest_path_m, record.path_length_m),
@@ -160,9 +182,23 @@ class Task:
             "touches": record.touches,
             "gt_explored": record.explored,
             "trapped": record.trapped,
-            "failure": None,
+            "failure": record.failure,
             "end_reason": record.end_reason,
         }
+
+    def trajectory(self) -> Trajectory:
+        """What the episode was so far, step by step."""
+        record = self._running
+        return record.recorder.trajectory(
+            success=record.success, end_reason=record.end_reason, nearest_instance_m=record.nearest_instance_m
+        )
+
+    def _end(self, reason: EndReason) -> None:
+        """The episode is over: say why it failed, if it did."""
+        record, pose = self._running, self.world.pose
+        record.end_reason = reason
+        record.nearest_instance_m = self.truth.nearest_now_m(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
+        record.failure = cause_of_failure(self.trajectory())
 
     @property
     def _running(self) -> _Record:

@@ -48,6 +48,20 @@ def room(width_m: float = 4.0, depth_m: float = 4.0, *, height_m: float = 2.5, b
     return House("room", spec)
 
 
+def two_storeys() -> House:
+    """Two rooms of 6 x 4 m, one above the other, floors at 0 and 3 m, and no stairs: a bed below, a sofa above."""
+    house = with_box(room(6, 4), "bed_00", centre_m=(2.4, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    house = with_box(house, "floor_01", centre_m=(0, 0, 2.95), half_m=(3.1, 2.1, 0.05))
+    for number, (x, y) in enumerate(((3.05, 0.0), (-3.05, 0.0), (0.0, 2.05), (0.0, -2.05)), start=10):
+        half = (0.05, 2.1, 1.25) if x else (3.0, 0.05, 1.25)
+        house = with_box(house, f"wall_{number}", centre_m=(x, y, 4.25), half_m=half)
+    house = with_box(house, "sofa_00", centre_m=(2.4, 0, 3.3), half_m=(0.4, 0.8, 0.3))
+    house.spec.worldbody.add_site(
+        name="room_bedroom_00", type=mujoco.mjtGeom.mjGEOM_BOX, pos=(0, 0, 4.25), size=(3, 2, 1.25)
+    )
+    return House("two_storeys", house.spec)
+
+
 def with_box(
     house: House,
     name: str,

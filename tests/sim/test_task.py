@@ -11,9 +11,10 @@ from sim.errors import EpisodeError
 from sim.gl import mujoco
 from sim.interface import MPCAT40_ID, Action, ConfigError
 from sim.pose import Pose
+from sim.sampling import draw_start
 from sim.task import Task
 from sim.world import World
-from tests.helpers.worlds import room, with_box, with_movable
+from tests.helpers.worlds import room, two_storeys, with_box, with_movable
 
 FORWARD, LEFT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP
 
@@ -168,6 +169,64 @@ def test_a_goal_without_a_way_to_it_is_refused():
     house = with_box(house, "wall_10", centre_m=(0, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     with pytest.raises(EpisodeError, match="no way from"):
         begin(World(house), "bed", Pose(-1.0, 0.0, 0.0))
+
+
+UPSTAIRS = Pose(0.5, 0.0, 0.0, floor_z_m=3.0)
+
+
+def test_a_goal_on_another_storey_can_be_asked_for_and_fails_by_stairs():
+    world = World(two_storeys())
+    task = begin(world, "sofa", Pose(1.5, 1.4, 0.0), max_steps=3)
+    assert task.metrics()["shortest_path"] is None
+    result = act(world, task, FORWARD, LEFT, LEFT)
+    assert (result["failure"], result["end_reason"]) == ("stairs", "max_steps")
+    assert result["distance_to_goal"] is None
+    assert (result["success"], result["spl"], result["soft_spl"]) == (0.0, 0.0, 0.0)
+
+
+def test_a_stop_right_under_the_goal_is_no_success():
+    world = World(two_storeys())
+    result = act(world, begin(world, "sofa", Pose(1.5, 1.4, 0.0)), STOP)
+    assert (result["success"], result["failure"]) == (0.0, "false_detection")
+
+
+def test_the_goal_of_the_storey_one_stands_on_is_found_there():
+    world = World(two_storeys())
+    for goal, start in (("sofa", UPSTAIRS), ("bed", Pose(0.5, 0.0, 0.0))):
+        result = act(world, begin(world, goal, start), FORWARD, FORWARD, STOP)
+        assert result["success"] == 1.0, goal
+        assert result["failure"] is None
+        assert result["spl"] > 0.7
+
+
+def test_each_storey_looks_for_the_other_ones_goal_in_vain():
+    world = World(two_storeys())
+    result = act(world, begin(world, "bed", UPSTAIRS, max_steps=2), FORWARD, LEFT)
+    assert (result["success"], result["failure"]) == (0.0, "stairs")
+
+
+def test_an_episode_is_never_drawn_with_its_goal_on_another_storey():
+    with_sofa = World(two_storeys())
+    with pytest.raises(EpisodeError, match="no instance can be reached"):
+        draw_start(with_sofa, Task(with_sofa), "sofa", np.random.default_rng(0))
+
+
+def test_the_trajectory_has_a_line_for_each_moment_and_action():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
+    task.look(np.full((4, 4), MPCAT40_ID["bed"], np.uint8))
+    result = act(world, task, FORWARD, LEFT, STOP)
+    walked = task.trajectory()
+    assert walked.actions.tolist() == [FORWARD, LEFT, STOP]
+    assert walked.goal_share.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert walked.collided.tolist() == [True, False, False]
+    assert walked.contacts[0] == pytest.approx([0.0, -4.0, 0.0], abs=0.05)
+    assert walked.poses[0] == pytest.approx([-3.7, 0.0, math.pi, 0.0])
+    assert walked.poses[-1] == pytest.approx([world.pose.x_m, world.pose.y_m, world.pose.yaw_rad, 0.0], abs=1e-5)
+    assert walked.moved_m.sum() == pytest.approx(result["path_length"], abs=1e-5)
+    assert walked.distance_m[-1] == pytest.approx(result["distance_to_goal"], abs=1e-5)
+    assert walked.nearest_instance_m == pytest.approx(2.0 - world.pose.x_m, abs=1e-3)
+    assert (walked.end_reason, walked.success, walked.goal_on_storey) == ("stop", False, True)
 
 
 def test_nothing_counts_before_an_episode_has_begun():
