@@ -1,7 +1,10 @@
 """Episodes of a split: which house, which goal, from where, and in which order.
 
 A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see `sim.habitat`):
-`val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`.
+`val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. In place of house files it may have a list of
+recipes, `train/houses.json` (see `sim.house_list`); such houses are made when they are first needed.
+
+`val/unreachable.json` names the things that no episode asks for since no place of the free space reaches them.
 """
 
 from __future__ import annotations
@@ -9,6 +12,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import json
+import reprlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +20,7 @@ from typing import Any, TypeVar
 
 from sim import habitat
 from sim.errors import EpisodeError, HouseError
+from sim.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.interface import GOAL_CATEGORIES, ConfigError
@@ -24,6 +29,7 @@ from sim.pose import Pose
 from sim.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, sidecar_path
 
 T = TypeVar("T")
+UNREACHABLE_FILE = "unreachable.json"
 
 
 @dataclass(frozen=True)
@@ -47,25 +53,37 @@ class Split:
     version: str
     """Raised when a house or an episode of the split changes, so that results name what they were made on."""
     sha256: str
-    """Over the house files, their sidecars and the episodes."""
+    """Over the house files, their sidecars and the episodes; of listed houses, over their checksums."""
     house_paths: Mapping[str, Path]
+    """Where each house lies; a listed one perhaps not yet (`house_file`)."""
     episodes: tuple[Episode, ...]
     labels_path: Path | None = None
+    house_list: HouseList | None = None
+    """Makes the houses that are shipped as a list."""
 
     @property
     def houses(self) -> tuple[str, ...]:
         """Names of the houses."""
         return tuple(self.house_paths)
 
+    def house_file(self, name: str) -> Path:
+        """The file of the house of that name, made now if it is only listed.
+
+        Raises:
+            HouseError: there is none, or it cannot be made here.
+        """
+        if name not in self.house_paths:
+            there_is = reprlib.repr(list(self.houses)) if len(self.houses) > 40 else ", ".join(self.houses)
+            raise HouseError(f"Split '{self.name}' has no house '{name}'. It has: {there_is}.")
+        return self.house_paths[name] if self.house_list is None else self.house_list.fetch(name)
+
     def load_house(self, name: str) -> House:
         """The house of that name.
 
         Raises:
-            HouseError: there is none, or it breaks the house format.
+            HouseError: there is none, it cannot be made here, or it breaks the house format.
         """
-        if name not in self.house_paths:
-            raise HouseError(f"Split '{self.name}' has no house '{name}'. It has: {', '.join(self.houses)}.")
-        return load_house(self.house_paths[name], labels_path=self.labels_path)
+        return load_house(self.house_file(name), labels_path=self.labels_path)
 
     def sidecar(self, house: str) -> Sidecar:
         """What the file beside a house fixes; nothing where there is none, or where it holds the label rules.
@@ -138,15 +156,21 @@ def write_split(
     goals_by_house: Mapping[str, Mapping[str, list[dict[str, Any]]]],
     *,
     version: str,
+    unreachable: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Write the episodes of the houses in a folder beside them, in Habitat's layout.
+    """Write the episodes of the houses in a folder beside them, in Habitat's layout; replaces those that are there.
 
     Args:
         folder: the split's folder, which holds the house files; its name is the split's.
         episodes: in the order in which they count; it is written down.
         goals_by_house: for each house, for each goal category, Habitat's goals (`sim.habitat`).
         version: of the split.
+        unreachable: for each house, names of the goal instances that cannot be reached; None: nobody looked.
     """
+    for stale in (folder / "content").glob("*.json.gz"):
+        stale.unlink()
+    if unreachable is not None:
+        _write_unreachable(folder / UNREACHABLE_FILE, unreachable)
     index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
     habitat.write_json(_index_of(folder), habitat.category_tables() | index)
     for house, goals in goals_by_house.items():
@@ -155,6 +179,30 @@ def write_split(
             "episodes": [_to_habitat(folder.name, episode) for episode in episodes if episode.house == house],
         }
         habitat.write_json(folder / "content" / f"{house}.json.gz", content)
+
+
+def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
+    """For each house of a split, the goal instances that cannot be reached; empty where nobody looked.
+
+    Raises:
+        ConfigError: the file is not what `write_split` writes.
+    """
+    file = folder / UNREACHABLE_FILE
+    if not file.is_file():
+        return {}
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        return {house: tuple(names) for house, names in content.items()}
+    except (AttributeError, TypeError, ValueError) as error:
+        raise ConfigError(f"'{file}' is no JSON object of lists: {error!r}.") from None
+
+
+def _write_unreachable(file: Path, unreachable: Mapping[str, Sequence[str]]) -> None:
+    """One house a line, those without such things left out."""
+    lines = ",".join(
+        f"\n{json.dumps(house)}: {json.dumps(list(names))}" for house, names in unreachable.items() if names
+    )
+    file.write_text(f"{{{lines}\n}}\n", encoding="utf-8")
 
 
 def _index_of(folder: Path) -> Path:
@@ -169,11 +217,20 @@ def _read_split(folder: Path) -> Split:
     for file in sorted((folder / "content").glob("*.json.gz")):
         episodes |= _parsed(file, _episodes_of)
     ordered = _parsed(index_file, lambda content: tuple(episodes[i] for i in content.get("order", sorted(episodes))))
-    houses = {path.stem: path for path in sorted(folder.glob("*.xml"))}
+    house_list = read_house_list(folder) if has_house_list(folder) else None
+    houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
-        raise ConfigError(f"Split '{folder}' has episodes in '{missing[0]}' but no {missing[0]}.xml.")
-    return Split(folder.name, str(index.get("version", "unknown")), _sha256(houses, ordered), houses, ordered)
+        where = "no such house in its list" if house_list else f"no {missing[0]}.xml"
+        raise ConfigError(f"Split '{folder}' has episodes in '{missing[0]}' but {where}.")
+    version = str(index.get("version", "unknown"))
+    if house_list and house_list.version != version:
+        raise ConfigError(
+            f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
+            "make both anew (tools/generate_houses.py, tools/make_episodes.py)."
+        )
+    sha256 = _sha256(house_list.sha256 if house_list else _file_sums(houses), ordered)
+    return Split(folder.name, version, sha256, houses, ordered, house_list=house_list)
 
 
 def _parsed(file: Path, parse: Callable[[habitat.Json], T]) -> T:
@@ -189,12 +246,16 @@ def _episodes_of(content: habitat.Json) -> dict[str, Episode]:
     return {episode.episode_id: episode for episode in episodes}
 
 
-def _sha256(houses: Mapping[str, Path], episodes: Sequence[Episode]) -> str:
-    digest = hashlib.sha256()
-    for name, path in houses.items():
-        digest.update(name.encode() + path.read_bytes() + _sidecar_bytes(path))
+def _sha256(sums: Mapping[str, str], episodes: Sequence[Episode]) -> str:
+    """Over the names and checksums of the houses and over the episodes."""
+    digest = hashlib.sha256(json.dumps(dict(sums)).encode())
     digest.update(json.dumps([_to_habitat("", episode) for episode in episodes]).encode())
     return digest.hexdigest()
+
+
+def _file_sums(houses: Mapping[str, Path]) -> dict[str, str]:
+    """Checksum of each house file and its sidecar."""
+    return {name: hashlib.sha256(path.read_bytes() + _sidecar_bytes(path)).hexdigest() for name, path in houses.items()}
 
 
 def _sidecar_bytes(house_file: Path) -> bytes:

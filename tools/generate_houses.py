@@ -1,42 +1,52 @@
-"""Write the houses of a split, or of any seeds, as MJCF files; prints houses a second (of one core) and rejected tries.
+"""Write the houses of a split, or of any seeds; prints houses a second (of one core) and rejected tries.
 
-The shipped val houses:
-    python tools/generate_houses.py --split val --out assets/mjcf_houses/val
+The shipped val and test houses as MJCF files, and the list of train houses with their checksums:
+    python tools/generate_houses.py --split val --out assets/mjcf_houses/val --workers 2
+    python tools/generate_houses.py --split train --out assets/mjcf_houses/train --workers 2
 Any other ones:
     python tools/generate_houses.py --first-seed 0 --houses 5 --pool train --out /tmp/houses
+
+The houses of a split find their textures in the folder `textures` beside theirs; it is made if it is missing. The train
+houses themselves are kept in the cache of `sim.house_list`, from where episodes are made.
 """
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import os
 import statistics
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import tyro
-
+from sim import cli
 from sim.errors import HouseError
-from sim.houses.build import ASSETS_DIR
+from sim.house_list import cache_dir, copy_textures, write_atomically, write_house_list
 from sim.houses.furniture.item import Pool
-from sim.houses.generator import GeneratedHouse, HouseConfig, generate_house
+from sim.houses.generator import HouseConfig, generate_house
 from sim.houses.rooms import PlanKind
-from sim.houses.splits import SPLITS
+from sim.houses.splits import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
+from sim.parallel import ordered_map
+from sim.paths import assets_dir
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """What to write and where."""
+    """Write houses: those of a split, or of any seeds."""
 
     out: Path
-    """Folder for the XML files; made if missing."""
+    """Folder for the XML files (of train: for the list); made if missing."""
     split: str | None = None
-    """Name of a shipped split; its table fixes seeds, shapes and sizes."""
+    """Name of a shipped split (val, test, train); its table fixes seeds, shapes and sizes."""
     houses: int | None = None
     """How many: all of the split, or 1 seed, when not given."""
+    workers: int = 1
+    """Processes."""
     first_seed: int = 0
     """Without a split: the first of consecutive seeds."""
     pool: Pool = "train"
@@ -51,61 +61,125 @@ class Args:
     """Without a split: light furniture can be pushed."""
 
 
+@dataclass(frozen=True)
+class Made:
+    """A generated house as text, or why there is none."""
+
+    name: str
+    text: str = ""
+    error: str = ""
+    story: str = ""
+    """Shape, size and number of tries."""
+    rejects: tuple[str, ...] = ()
+    seconds: float = 0.0
+    """Of one core."""
+
+
 def main(args: Args) -> int:
-    """Write the houses; the number of seeds that gave none is the exit status."""
+    """Write the houses; the exit status is 1 when a seed that was asked for gave none."""
+    if args.workers < 1 or (args.houses is not None and args.houses < 1):
+        raise ConfigError("--workers and --houses must be at least 1.")
     args.out.mkdir(parents=True, exist_ok=True)
-    failed, seconds = 0, []
-    for name, make in _jobs(args):
-        began = time.process_time()
-        try:
-            house = make()
-        except HouseError as error:
-            failed += 1
-            print(f"{name}: {error}", file=sys.stderr)
-            continue
-        seconds.append(time.process_time() - began)
-        size_kb = _write(house, args.out / f"{name}.xml")
-        print(_line(name, house, seconds[-1], size_kb))
-        for reason in house.rejects:
-            print(f"    rejected: {reason}")
-    if seconds:
-        print(
-            f"{len(seconds)} houses, median {statistics.median(seconds):.2f} s each, "
-            f"{len(seconds) / sum(seconds):.2f} houses/s, {failed} seeds failed"
-        )
-    return failed
+    began_s = time.perf_counter()
+    if args.split == "train":
+        made = list(_write_train(args))
+    elif args.split is not None:
+        made = list(_write_split(args, args.split))
+    else:
+        made = list(_write_seeds(args))
+    _report(made, time.perf_counter() - began_s)
+    return int(args.split != "train" and any(house.error for house in made))
 
 
-def _jobs(args: Args):
-    if args.split is not None:
-        if args.split not in SPLITS:
-            raise ConfigError(f"No split '{args.split}'. There is: {', '.join(SPLITS)}.")
-        return [(recipe.name, recipe.make) for recipe in SPLITS[args.split][: args.houses]]
+def _write_split(args: Args, split: str) -> Iterator[Made]:
+    """The houses of val or test as files."""
+    if split not in SPLITS:
+        raise ConfigError(f"No split '{split}'. There is: {', '.join(SPLITS)}, train.")
+    textures = args.out.resolve().parent / "textures"
+    if not textures.is_dir():
+        copy_textures(textures)
+    for made in ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers):
+        _tell(made)
+        if made.text:
+            write_atomically(args.out / f"{made.name}.xml", made.text.encode("utf-8"))
+        yield made
+
+
+def _write_train(args: Args) -> Iterator[Made]:
+    """The list of train houses; those made on the way are kept in the cache."""
+    wanted, listed = args.houses or TRAIN_HOUSES, []
+    folder = cache_dir() / SPLIT_VERSION / "train"
+    copy_textures(folder.parent / "textures")
+    recipes = {recipe.name: recipe for recipe in map(train_recipe, range(MAX_TRAIN_SEEDS))}
+    waiting = iter(recipes.values())
+    while len(listed) < wanted:
+        batch = [recipe for recipe, _ in zip(waiting, range(wanted - len(listed)), strict=False)]
+        if not batch:
+            raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
+        for made in ordered_map(_make, batch, workers=args.workers):
+            _tell(made)
+            if made.text:
+                content = made.text.encode("utf-8")
+                write_atomically(folder / f"{made.name}.xml", content)
+                listed.append((recipes[made.name], hashlib.sha256(content).hexdigest()))
+            yield made
+    write_house_list(args.out, listed, version=SPLIT_VERSION)
+
+
+def _write_seeds(args: Args) -> Iterator[Made]:
+    """Houses of any seeds, that find the shipped textures from where they lie."""
     config = HouseConfig(
         pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
     )
+    textures = os.path.relpath(assets_dir() / "textures", args.out.resolve())
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
-    return [(f"house_{seed:05d}", lambda seed=seed: generate_house(seed, config)) for seed in seeds]
+    for made in ordered_map(functools.partial(_make_seed, config, textures), seeds, workers=args.workers):
+        _tell(made)
+        if made.text:
+            (args.out / f"{made.name}.xml").write_text(made.text, encoding="utf-8")
+        yield made
 
 
-def _write(house: GeneratedHouse, path: Path) -> float:
-    """Write a house whose textures are found from where it lies; returns kilobytes."""
-    textures = os.path.relpath(ASSETS_DIR / "textures", path.parent.resolve())
-    xml = house_text(house.spec, textures)
-    path.write_text(xml, encoding="utf-8")
-    return len(xml) / 1000.0
+def _make(recipe: Recipe) -> Made:
+    return _made(recipe.name, recipe.seed, recipe.config(), None)
 
 
-def _line(name: str, house: GeneratedHouse, seconds: float, size_kb: float) -> str:
+def _make_seed(config: HouseConfig, textures: str, seed: int) -> Made:
+    return _made(f"house_{seed:05d}", seed, config, textures)
+
+
+def _made(name: str, seed: int, config: HouseConfig, textures: str | None) -> Made:
+    began_s = time.process_time()
+    try:
+        house = generate_house(seed, config)
+    except HouseError as error:
+        return Made(name, error=str(error), seconds=time.process_time() - began_s)
+    seconds = time.process_time() - began_s
     plan = house.plan
-    return (
-        f"{name}: {plan.kind}, {plan.area_m2:.0f} m2, {len(plan.rooms)} rooms, {house.geoms} geoms, {size_kb:.0f} KB, "
-        f"{house.tries} tries, {seconds:.2f} s"
-    )
+    story = f"{plan.kind}, {plan.area_m2:.0f} m2, {len(plan.rooms)} rooms, {house.geoms} geoms, {house.tries} tries"
+    return Made(name, house_text(house.spec, textures), "", story, house.rejects, seconds)
+
+
+def _tell(made: Made) -> None:
+    """One house's line, as soon as it is made."""
+    if made.error:
+        print(f"{made.name}: {made.error}", file=sys.stderr)
+        return
+    print(f"{made.name}: {made.story}, {len(made.text) / 1000:.0f} KB, {made.seconds:.2f} s", flush=True)
+    for reason in made.rejects:
+        print(f"    rejected: {reason}")
+
+
+def _report(made: list[Made], took_s: float) -> None:
+    good = [house for house in made if house.text]
+    if good:
+        seconds = [house.seconds for house in good]
+        print(
+            f"{len(good)} houses, median {statistics.median(seconds):.2f} s each on one core, "
+            f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in all; "
+            f"{sum(len(house.rejects) for house in good)} tries rejected, {len(made) - len(good)} seeds without a house"
+        )
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main(tyro.cli(Args)))
-    except ConfigError as error:
-        sys.exit(f"generate_houses: {error}")
+    sys.exit(cli.run(Args, main))

@@ -1,6 +1,6 @@
 """Write the trap scenes: an MJCF file and a sidecar each, and their episodes, laid out like any split.
 
-    python -m tools.make_traps --out assets/mjcf_houses/traps
+    python tools/make_traps.py --out assets/mjcf_houses/traps
 
 Three episodes a trap: from its sidecar's start, with three headings. The same code gives the same bytes.
 """
@@ -18,13 +18,14 @@ from sim.episodes import Episode, write_split
 from sim.errors import HouseError
 from sim.houses.build import ASSETS_DIR, TEXTURE_DIR
 from sim.houses.load import load_house
+from sim.houses.splits import SPLIT_VERSION
 from sim.houses.traps.catalogue import TRAPS
 from sim.houses.traps.trap import START_TURNS_RAD, Trap
 from sim.interface import wrap_angle
 from sim.sidecar import write_sidecar
+from sim.survey import survey
 from sim.task import Task
 from sim.world import World
-from tools.make_episodes import survey
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +34,8 @@ class Args:
 
     out: Path = ASSETS_DIR / "traps"
     """Folder for the scenes; its name is the split's."""
-    version: str = "1.0.0"
-    """Version of the split: raise it whenever a scene or an episode changes."""
+    version: str = SPLIT_VERSION
+    """Version of the split."""
 
 
 def main(args: Args) -> int:

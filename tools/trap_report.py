@@ -29,6 +29,9 @@ from sim.oracle import Oracle
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # run as a file, it does not find its sister files
+
 from tools.trap_picture import draw_trial
 from tools.trap_trial import Trial, run_trial
 

@@ -15,6 +15,7 @@ from sim.houses.geometry import Rect
 from sim.houses.joining import BYTES_PER_GEOM, Assembly, assemble
 from sim.houses.materials import texture_file, texture_mapping
 from sim.houses.movables import ROLLING_M, Movable, loosen
+from sim.paths import assets_dir
 
 ASSETS_DIR = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses"
 TEXTURE_DIR = "../textures"
@@ -73,7 +74,7 @@ class HouseBuilder:
         self._spec.modelname = name
         self._spec.texturedir = TEXTURE_DIR
         # Only for compiling in memory: the directory a shipped house lies in. It is not written to the file.
-        self._spec.modelfiledir = str(ASSETS_DIR / "val")
+        self._spec.modelfiledir = str(assets_dir() / "val")
         light = self._spec.visual.headlight
         light.ambient, light.diffuse, light.specular = [AMBIENT] * 3, [HEADLIGHT] * 3, [0.0] * 3
         self._spec.default.geom.type = mujoco.mjtGeom.mjGEOM_BOX  # most are: shorter XML

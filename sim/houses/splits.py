@@ -1,17 +1,34 @@
-"""The recipes of the shipped houses: which seed, pool, shape and size each one has.
+"""The recipes of the shipped houses: which seed, pool, shape and size each one has; and the version of them all.
 
-Val and test houses draw from the held-out pool. Seeds of the splits lie apart, so that no two houses share one.
+Val and test houses draw from the held-out pool and are shipped as files; train houses draw from the train pool and are
+shipped as a list (`sim.house_list`). Seeds of the splits lie apart, so that no two houses share one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
-from sim.houses.furniture.item import Pool
-from sim.houses.generator import GeneratedHouse, HouseConfig, generate_house
-from sim.houses.rooms import PlanKind
+from sim.houses.rooms import PLAN_AREA_M2, PlanKind
+
+if TYPE_CHECKING:  # whoever only loads a house needs no furniture
+    from sim.houses.furniture.item import Pool
+    from sim.houses.generator import GeneratedHouse, HouseConfig
+
+SPLIT_VERSION = "1.0.0"
+"""Of all shipped splits; results name it beside a hash over houses and episodes. What raises it:
+
+- the last number: a house or an episode changed, and what an agent can do stays the same (a colour, a file's layout);
+- the middle one: houses or episodes changed so that results can no longer be compared;
+- the first: the format changed, so that older code cannot read the files.
+
+Whoever changes the generator regenerates the splits and raises this number in one commit; the hash tells apart what
+was forgotten."""
+TRAIN_HOUSES = 200
+MAX_TRAIN_SEEDS = 1_000
+"""Seeds below this are train's; a seed that gives no house is left out, the next one comes in."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +50,42 @@ class Recipe:
         Raises:
             HouseError: no try within the bound gave a house without a fault.
         """
-        config = HouseConfig(
+        from sim.houses.generator import generate_house
+
+        return generate_house(self.seed, self.config())
+
+    def config(self) -> HouseConfig:
+        """What is asked of the generator."""
+        from sim.houses.generator import HouseConfig
+
+        return HouseConfig(
             pool=self.pool, kind=self.kind, area_m2=self.area_m2, rooms=self.rooms, name=self.name, movable=self.movable
         )
-        return generate_house(self.seed, config)
+
+    def to_json(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self) | {"rooms": list(self.rooms)}
+
+    @classmethod
+    def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
+        """The recipe that `to_json` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: it did not.
+        """
+        return cls(
+            name=str(entry["name"]),
+            seed=int(entry["seed"]),
+            pool=entry["pool"],
+            kind=entry["kind"],
+            area_m2=float(entry["area_m2"]),
+            rooms=tuple(entry["rooms"]),
+            movable=bool(entry["movable"]),
+        )
 
 
 def _is_movable(number: int) -> bool:
-    """Every third house of val and test has furniture that can be pushed."""
+    """Every third house of a split has furniture that can be pushed."""
     return number % 3 == 1
 
 
@@ -102,7 +147,38 @@ def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[R
     )
 
 
+_TRAIN_SMALL: tuple[PlanKind, ...] = ("flat", "lshape", "openplan", "corridor", "flat", "studio", "corridor")
+_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "large", "large", "large")
+_TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
+    ("gym",),
+    ("office",),
+    (),
+    ("gym", "laundry"),
+    ("office", "gym"),
+    ("laundry",),
+    ("gym", "closet"),
+    ("office", "laundry"),
+    ("gym",),
+)
+_SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
+"""Areas of small and of large train houses, as far as their shape allows."""
+_GOLDEN = 0.6180339887
+"""Multiples of it, without their whole part, fill an interval evenly however many there are (Kronecker)."""
+
+
+def train_recipe(seed: int) -> Recipe:
+    """The train house of a seed; every fourth is above 250 m2."""
+    large = seed % 4 == 2
+    kinds, (smallest, largest) = (_TRAIN_LARGE, _LARGE_M2) if large else (_TRAIN_SMALL, _SMALL_M2)
+    kind = kinds[(seed // 4 if large else seed) % len(kinds)]
+    low, high = max(smallest, PLAN_AREA_M2[kind][0]), min(largest, PLAN_AREA_M2[kind][1])
+    area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0), 0)
+    rooms = () if kind == "studio" else _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)]
+    return Recipe(f"train_{seed:03d}", seed, "train", kind, area_m2, rooms, movable=_is_movable(seed))
+
+
 SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
     {"val": _heldout("val", 10_000, _VAL), "test": _heldout("test", 20_000, _TEST)}
 )
-"""Recipes by split, in the order in which episodes go round the houses; a quarter of each is above 250 m2."""
+"""Recipes of the houses shipped as files, by split, in the order in which episodes go round the houses; a quarter of
+each is above 250 m2."""

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from sim import habitat
-from sim.episodes import load_split
+from sim.episodes import load_split, read_unreachable
 from sim.errors import EpisodeError
+from sim.interface import ConfigError
 from sim.task import Task
 from sim.world import World
 from tests.helpers.worlds import room, with_box
@@ -49,6 +50,7 @@ def test_a_house_without_goals_is_refused():
 def test_the_episodes_can_be_played_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
     assert main(Args(split=folder, episodes=6)) == 0
     assert "second: cannot be reached, and so is no goal: sink_00" in capsys.readouterr().out
+    assert read_unreachable(folder) == {"second": ("sink_00",)}
     split = load_split(folder)
     assert [episode.house for episode in split.episodes] == ["first", "second"] * 3
     assert {episode.goal for episode in split.episodes} == {"bed", "picture"}
@@ -84,6 +86,22 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_other_starts(folder
     assert made(0) != made(1)
 
 
-def test_a_folder_without_houses_is_refused(tmp_path, capsys):
-    assert main(Args(split=tmp_path)) == 2
-    assert "0 houses" in capsys.readouterr().err
+def test_processes_make_the_same_bytes_as_one(folder):
+    def made(workers: int) -> list[bytes]:
+        main(Args(split=folder, episodes=4, workers=workers))
+        return [file.read_bytes() for file in sorted(folder.rglob("*.gz"))]
+
+    assert made(2) == made(1)
+
+
+def test_episodes_of_houses_that_are_gone_are_gone_too(folder):
+    main(Args(split=folder, episodes=4))
+    (folder / "second.xml").unlink()
+    main(Args(split=folder, episodes=4))
+    assert {episode.house for episode in load_split(folder).episodes} == {"first"}
+    assert [file.name for file in (folder / "content").iterdir()] == ["first.json.gz"]
+
+
+def test_a_folder_without_houses_is_refused(tmp_path):
+    with pytest.raises(ConfigError, match="0 houses"):
+        main(Args(split=tmp_path))
