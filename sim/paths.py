@@ -1,7 +1,9 @@
-"""Where the shipped houses lie: in the repository, or in the installed wheel."""
+"""Where the shipped houses lie, in the repository or in the installed wheel; and which code this is."""
 
 from __future__ import annotations
 
+import functools
+import hashlib
 from pathlib import Path
 
 from sim.errors import HouseError
@@ -20,3 +22,13 @@ def assets_dir() -> Path:
         if place.is_dir():
             return place
     raise HouseError(f"The shipped houses are missing: neither {places[0]} nor {places[1]} is there.")
+
+
+@functools.cache
+def code_hash() -> str:
+    """12 hex digits over the modules and parameters of `sim` and `stubborn`: the same code, the same digits."""
+    digest = hashlib.sha256()
+    for package in (_PACKAGE, _PACKAGE.parent / "stubborn"):
+        for file in sorted(file for suffix in ("py", "json") for file in package.rglob(f"*.{suffix}")):
+            digest.update(f"{package.name}/{file.relative_to(package)}".encode() + file.read_bytes())
+    return digest.hexdigest()[:12]

@@ -21,8 +21,8 @@ from sim.interface import ConfigError
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""
 BOOTSTRAP_RESAMPLES = 10_000
-NOT_COMPARED = frozenset({"workers", "out", "versions"})
-"""Entries of the config in which a resumed run may differ."""
+NOT_COMPARED = frozenset({"workers", "out", "versions", "episodes", "record"})
+"""Entries of the config in which a resumed run may differ; with more episodes it goes on to them."""
 
 
 @dataclass
@@ -84,6 +84,8 @@ class RunDirectory:
                     f"--out '{self.path}' holds a run with {key} = {json.dumps(there.get(key))}, this one has "
                     f"{json.dumps(wanted.get(key))}; take another folder, or the same options to go on."
                 )
+        if (wanted.get("episodes") or 0) > (there.get("episodes") or 0):
+            _write_json(file, there | {"episodes": wanted["episodes"]})
 
 
 def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

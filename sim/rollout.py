@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,10 @@ from sim.env import ObjectNavEnv
 from sim.episodes import Episode
 from sim.errors import PhysicsError
 from sim.interface import Action, Agent
+from sim.trajectory import trajectory_file, write_trajectory
 
+TIMES = ("wall_time_s", "steps_per_s")
+"""What differs between two runs of the same episode."""
 OnStep = Callable[[int, Agent, dict[str, Any]], None]
 """Called with the number of the step, the agent and the environment's info after each step; pictures hang on it."""
 
@@ -53,9 +58,30 @@ def play_episode(
     return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(steps / wall_time_s, 2) if steps else 0.0}
 
 
+def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about: Mapping[str, Any]) -> None:
+    """Write the trajectory of the episode that has just been played.
+
+    Args:
+        env: in which it was played.
+        run: folder of the run; the file goes to `trajectories/` in it.
+        line: the episode's result line, `episode_id` included.
+        about: what else names the episode; JSON's types.
+
+    Raises:
+        ConfigError: nothing can be written there.
+    """
+    start = env.episode.start
+    pose = {"x_m": start.x_m, "y_m": start.y_m, "yaw_rad": start.yaw_rad, "floor_z_m": start.floor_z_m}
+    scores = {key: value for key, value in line.items() if key not in TIMES}
+    trajectory = env.scene.task.trajectory()
+    trajectory = replace(trajectory, success=bool(line["success"]), end_reason=line["end_reason"])
+    write_trajectory(trajectory_file(run, line["episode_id"]), trajectory, {**about, "start": pose, "scores": scores})
+
+
 def broken_metrics(error: str) -> dict[str, Any]:
     """What a result line says of an episode that broke."""
-    return {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "end_reason": "error", "error": error}
+    nothing = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc"}
+    return nothing | {"end_reason": "error", "error": error}
 
 
 def _plain(value: Any) -> Any:

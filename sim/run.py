@@ -10,12 +10,13 @@ import math
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from sim import cli, tables
 from sim.env import ObjectNavEnv
@@ -23,17 +24,22 @@ from sim.episodes import Episode
 from sim.errors import EpisodeError
 from sim.interface import Agent, ConfigError, Segmenter
 from sim.oracle import Oracle
+from sim.paths import code_hash
 from sim.pose import Pose
 from sim.results import RunDirectory
-from sim.rollout import broken_metrics, episode_seed, play_episode
+from sim.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.runner import PlayerSpec, run_items
+from sim.semantics import NoisyConfig, NoisySegmenter
 from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
 from stubborn import agents
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.verification import verifier_for
 
 ALL_SENSORS = ("rgb", "depth", "semantic")
+SEMANTICS = {"gt": GroundTruthSegmenter.sensors, "noisy": NoisySegmenter.sensors}
+"""Where segmentation can come from, and the image sensors that it reads beside depth."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +49,7 @@ class Args:
     agent: str = "stubborn"
     """Who plays: a name of --list-agents, or your own as package.module:factory."""
     semantics: str = "gt"
-    """Where segmentation comes from: gt."""
+    """Where segmentation comes from: gt (ground truth) or noisy (ground truth with a network's mistakes)."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     house: Path | None = None
@@ -66,6 +72,8 @@ class Args:
     """Noise of sensors and drive: none, realsense or harsh."""
     out: Path | None = None
     """Where everything goes (runs/<time>); a run that is there goes on."""
+    record: bool = False
+    """Leave a compact trajectory file of each episode, for `sim.trajectory.read_trajectory`."""
     list_agents: bool = False
     """Print the agents and end."""
 
@@ -79,15 +87,35 @@ def main(args: Args) -> int:
         return 0
     _check(args)
     episodes, split = plan_episodes(args)
-    out = args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
+    args = replace(args, out=args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
+    lines, summary = play_missing(args, episodes, split, console)
+    tables.print_results(console, lines, summary)
+    return 1 if summary["errors"] else 0
+
+
+def play_missing(
+    args: Args, episodes: Sequence[Episode], split: dict[str, Any], console: Console
+) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Play what is not in the folder `args.out` yet; returns all lines of the folder, and their summary.
+
+    Args:
+        args: checked options; the folder may hold a run with the same ones, but for the number of episodes.
+        episodes: of `plan_episodes`, or some of them.
+        split: what identifies where they come from.
+        console: for progress.
+
+    Raises:
+        ConfigError: nothing can be written there, or a run with other options is there.
+    """
+    assert args.out is not None
     config = _config(args, split)
-    run = RunDirectory(out, config)
+    run = RunDirectory(args.out, config)
     try:
         done = {line["episode_id"] for line in run.lines}
         todo = [episode for episode in episodes if episode.episode_id not in done]
         console.print(
             f"{args.agent} with {args.semantics} semantics, {len(episodes)} episodes of {split['name']} "
-            f"(version {split['version']}), drawn by {config['versions']['gl_renderer']}; results in {out}"
+            f"(version {split['version']}), drawn by {config['versions']['gl_renderer']}; results in {args.out}"
         )
         if done:
             console.print(f"{len(episodes) - len(todo)} of them were there already, {len(todo)} to go.")
@@ -95,11 +123,9 @@ def main(args: Args) -> int:
         lines = run_items(spec, todo, workers=args.workers, on_death=lambda episode: _death_line(args, episode))
         for line in tables.with_progress(console, lines, total=len(todo)):
             run.append(line)
-        summary = run.write_summary({"split": split})
+        return run.lines, run.write_summary({"split": split})
     finally:
         run.close()
-    tables.print_results(console, run.lines, summary)
-    return 1 if summary["errors"] else 0
 
 
 def agent_names() -> list[str]:
@@ -146,21 +172,16 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     if args.agent == "oracle":
         return Oracle(env)
     robot = env.robot_model
-    segmenter = make_segmenter(args.semantics)
+    segmenter = make_segmenter(args.semantics, env)
     if args.agent in agents.NAMES:
-        return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter)
+        verifier = verifier_for(args.semantics)
+        return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)
     return _load_factory(args.agent)(camera=env.camera_model, robot=robot, segmenter=segmenter)
 
 
-def make_segmenter(semantics: str) -> Segmenter:
-    """The source of segmentation of that name.
-
-    Raises:
-        ConfigError: there is none.
-    """
-    if semantics != "gt":
-        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: gt.")
-    return GroundTruthSegmenter()
+def make_segmenter(semantics: str, env: ObjectNavEnv) -> Segmenter:
+    """The source of segmentation of that name, one of `SEMANTICS`, for this environment."""
+    return NoisySegmenter(env) if semantics == "noisy" else GroundTruthSegmenter()
 
 
 class EpisodePlayer:
@@ -173,10 +194,17 @@ class EpisodePlayer:
             house=args.house,
             labels=args.labels,
             sensors=_sensors(args),
+            truth=("geom",) if args.semantics == "noisy" else (),
             profile=args.profile,
             noise=args.noise,
         )
         self._agent = make_agent(args, self._env)
+        self._about = {
+            "profile": args.profile,
+            "noise": args.noise,
+            "split": {"name": self._env.split.name, "version": self._env.split.version},
+            "versions": _versions(),
+        }
 
     def play(self, episode: Episode) -> dict[str, Any]:
         """One episode, to one result line."""
@@ -185,7 +213,10 @@ class EpisodePlayer:
             metrics = play_episode(self._env, self._agent, episode, seed=seed)
         except EpisodeError as error:
             return _error_line(self._args, episode, str(error))
-        return _identity(self._args, episode) | metrics
+        line = _identity(self._args, episode) | metrics
+        if self._args.record and self._args.out is not None:
+            record_episode(self._env, self._args.out, line, self._about)
+        return line
 
     def close(self) -> None:
         """Free the renderers."""
@@ -197,7 +228,7 @@ def _sensors(args: Args) -> tuple[str, ...]:
     if args.agent == "oracle":
         return ()
     if args.agent in agents.NAMES:
-        return tuple(sorted({"depth", *make_segmenter(args.semantics).sensors}))
+        return ("depth", *SEMANTICS[args.semantics])
     return ALL_SENSORS
 
 
@@ -252,7 +283,9 @@ def _check(args: Args) -> None:
         raise ConfigError("--labels and --start-deg go with --house.")
     get_profile(args.profile)
     get_noise(args.noise)
-    make_segmenter(args.semantics)
+    if args.semantics not in SEMANTICS:
+        raise ConfigError(f"Unknown --semantics '{args.semantics}'. There is: {', '.join(SEMANTICS)}.")
+    verifier_for(args.semantics)
     if args.agent not in agent_names():
         _load_factory(args.agent)
 
@@ -273,10 +306,16 @@ def _config(args: Args, split: dict[str, Any]) -> dict[str, Any]:
     """What `config.json` says: every option, the split and the versions that made the results."""
     options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(args).items()}
     del options["list_agents"]
+    noise: dict[str, Any] = {"noise_config": asdict(get_noise(args.noise))}
+    if args.semantics == "noisy":
+        noise["semantics_config"] = asdict(NoisyConfig())
+    return options | noise | {"split_identity": split, "versions": _versions()}
+
+
+def _versions() -> dict[str, str]:
+    """What made the results: packages, the renderer, and a hash of our own code."""
     packages = ("stubborn-objectnav", "mujoco", "numpy")
-    versions = {name: version(name) for name in packages} | {"gl_renderer": describe_gl()}
-    noise = {"noise_config": asdict(get_noise(args.noise))}
-    return options | noise | {"split_identity": split, "versions": versions}
+    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_hash()}
 
 
 def entry(argv: Sequence[str] | None = None) -> int:

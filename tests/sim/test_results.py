@@ -44,6 +44,17 @@ def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> 
     RunDirectory(tmp_path, CONFIG | {"workers": 2}).close()
 
 
+def test_a_run_goes_on_to_more_episodes_and_says_so(tmp_path: Path) -> None:
+    for episodes in (5, 8, 6):
+        RunDirectory(tmp_path, CONFIG | {"episodes": episodes}).close()
+    assert json.loads((tmp_path / "config.json").read_text())["episodes"] == 8
+
+
+def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG).close()
+    RunDirectory(tmp_path, CONFIG | {"record": True}).close()
+
+
 def test_two_writers_in_one_folder_are_refused(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG)
     with pytest.raises(ConfigError, match="Another process"):

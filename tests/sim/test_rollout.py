@@ -56,6 +56,7 @@ def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_hous
     line = play_episode(env, Script([Action.MOVE_FORWARD] * 5), EPISODE, seed=0, on_step=break_it)
     assert line["end_reason"] == "error"
     assert line["success"] == 0.0
+    assert line["failure"] == "misc"
     assert "sofa_room" in line["error"]
     assert "Step 3" in line["error"]
 

@@ -12,7 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers.worlds import room, with_box
+from sim.episodes import Episode, write_split
+from sim.failures import cause_of_failure
+from sim.metrics import EXPLORED_SHARE
+from sim.pose import Pose
+from sim.trajectory import read_trajectory, trajectory_file
+from tests.helpers.worlds import room, two_storeys, with_box
 
 TIMES = ("wall_time_s", "steps_per_s")
 
@@ -91,6 +96,43 @@ def test_a_killed_run_goes_on_and_no_line_is_lost_or_doubled(house: Path, tmp_pa
     assert run(*options, "--out", tmp_path / "killed").returncode == 0
     assert run(*options, "--out", tmp_path / "whole").returncode == 0
     assert lines_of(tmp_path / "killed") == lines_of(tmp_path / "whole")
+
+
+def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
+    options = ("--agent", "random", "--house", house)
+    run(*options, "--episodes", 2, "--out", tmp_path / "plain")
+    assert not (tmp_path / "plain" / "trajectories").exists()
+    run(*options, "--episodes", 1, "--out", tmp_path / "recorded", "--record")
+    done = run(*options, "--episodes", 2, "--workers", 2, "--out", tmp_path / "recorded", "--record")
+    assert done.returncode == 0, done.stderr
+    assert lines_of(tmp_path / "plain") == lines_of(tmp_path / "recorded")
+    for line in lines_of(tmp_path / "plain"):
+        trajectory = read_trajectory(trajectory_file(tmp_path / "recorded", line["episode_id"]))
+        assert trajectory.about["scores"] == line
+        assert trajectory.num_steps == line["num_steps"]
+        assert trajectory.moved_m.sum() == pytest.approx(line["path_length"], abs=1e-4)
+        assert int(trajectory.collided.sum()) == line["collisions"]
+        assert bool((trajectory.goal_share >= EXPLORED_SHARE).any()) == line["gt_explored"]
+        assert cause_of_failure(trajectory) == line["failure"]
+        assert (line["failure"] is None) == (line["success"] == 1.0)
+        assert {"split", "noise", "profile", "versions", "start"} <= set(trajectory.about)
+
+
+def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_path: Path) -> None:
+    folder = tmp_path / "tiny"
+    folder.mkdir()
+    (folder / "duplex.xml").write_text(two_storeys().spec.to_xml())
+    below, above = Pose(-2.0, 0.5, 1.0), Pose(-2.0, 0.5, 1.0, floor_z_m=3.0)
+    asked = [("bed", below), ("sofa", below), ("bed", above), ("sofa", above)]
+    episodes = [Episode(f"e{i}", "duplex", goal, start) for i, (goal, start) in enumerate(asked)]
+    write_split(folder, episodes, {"duplex": {}}, version="1")
+    done = run("--agent", "oracle", "--split", folder, "--episodes", 4, "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    lines = lines_of(tmp_path / "out")
+    assert [line["failure"] for line in lines] == [None, "stairs", "stairs", None]
+    assert [line["success"] for line in lines] == [1.0, 0.0, 0.0, 1.0]
+    assert [line["shortest_path"] is None for line in lines] == [False, True, True, False]
+    assert [line["gt_explored"] for line in lines] == [True, False, False, True]
 
 
 def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:
