@@ -62,6 +62,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         goal: only episodes with this goal category.
         start: with `house`, the start pose of every episode.
         sensors: image sensors in the observation.
+        truth: images that are rendered besides and kept in `truth_images`, for whoever may know the truth.
         profile: rendering profile, `fast` or `good`.
         noise: of sensors and drive, a preset of `sim.sensors.noise` or a config; what counts is never noisy.
             A house whose sidecar (`sim.sidecar`) fixes noise keeps that.
@@ -86,6 +87,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         goal: str | None = None,
         start: Pose | None = None,
         sensors: Sequence[str] = SENSORS,
+        truth: Sequence[str] = (),
         profile: str = "fast",
         noise: str | NoiseConfig = "none",
         render_mode: str | None = None,
@@ -97,6 +99,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         self.split: Split = load_split(split) if house is None else one_house(house, labels=labels)
         self.goal, self.start = goal, start
         self.sensors = tuple(sensors)
+        self.truth_images: dict[str, NDArray] = {}
+        """What was rendered last, without noise; holds `truth` and may hold more."""
+        self._truth = tuple(truth)
         self.render_mode = render_mode
         self.camera_model = camera or CameraModel()
         self.robot_model = (robot or RobotConfig()).model
@@ -206,8 +211,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
     def _look(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
         """The observation, and the true segmentation that the task's metrics need even where no agent sees it."""
         world, start = self.scene.world, self.episode.start
-        wanted = sorted({*self.sensors, "semantic", *self._noise.needs(self.sensors)})
-        images = self.scene.camera.render(world.data, world.pose, wanted)
+        wanted = sorted({*self.sensors, *self._truth, "semantic", *self._noise.needs(self.sensors)})
+        images = self.truth_images = self.scene.camera.render(world.data, world.pose, wanted)
         pose = world.pose.relative_to(start)
         observation = {name: images[name] for name in self.sensors}
         observation["gps"] = np.array([pose.x_m, pose.y_m], np.float32)
