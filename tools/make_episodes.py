@@ -29,11 +29,14 @@ from sim.houses.load import load_house
 from sim.houses.splits import SPLIT_VERSION
 from sim.interface import ConfigError
 from sim.parallel import ordered_map
-from sim.sampling import draw_start
+from sim.pose import Pose
+from sim.sampling import MAX_DISTANCE_M, MIN_DISTANCE_M, draw_start
 from sim.survey import MAX_VIEW_POINTS, HouseGoals, survey
 from sim.task import Task
 from sim.world import World
 
+MAX_REDRAWS = 20
+"""In a house too small for the distances no number of draws would do."""
 Turn = tuple[int, str]
 """Number of an episode in its split, and its goal."""
 
@@ -144,10 +147,20 @@ def _draw(folder: Path, seed: int, digits: int, work: tuple[str, list[Turn]]) ->
     task = _task(folder, house)
     episodes = []
     for i, goal in turns:
-        start = draw_start(task.world, task, goal, np.random.default_rng([seed, i]))
-        distance_m = task.distance_from(goal, start)
+        start, distance_m = _draw_start(task, goal, np.random.default_rng([seed, i]))
         episodes.append((i, Episode(f"{folder.resolve().name}_{i:0{digits}d}", house, goal, start, distance_m)))
     return episodes
+
+
+def _draw_start(task: Task, goal: str, rng: np.random.Generator) -> tuple[Pose, float | None]:
+    """A start and its distance to the goal; drawn again where the way from within the cell is too short or too long."""
+    start = draw_start(task.world, task, goal, rng)
+    for _ in range(MAX_REDRAWS):
+        distance_m = task.distance_from(goal, start)
+        if distance_m is not None and MIN_DISTANCE_M <= distance_m <= MAX_DISTANCE_M:
+            break
+        start = draw_start(task.world, task, goal, rng)
+    return start, task.distance_from(goal, start)
 
 
 def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseGoals], took_s: float) -> None:
