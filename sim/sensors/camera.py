@@ -2,7 +2,7 @@
 
 One pass gives colour. The other draws every geom in the colour of its number; a single read of that frame buffer
 gives numbers and depth, so the edges of `depth` and `semantic` agree to the pixel. Only what is asked for is drawn,
-and geoms outside the view frustum are left out of the scene, which changes no pixel.
+and geoms that cannot be seen (`sim.sensors.occlusion`) are left out of the scene, which changes no pixel.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 import weakref
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,13 +20,16 @@ from sim.gl import INSTALL_HINT, mujoco
 from sim.houses.labels import RENDERED_GROUPS, Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.pose import Pose
+from sim.sensors.occlusion import Visibility
 from sim.sensors.profiles import RenderProfile, get_profile
 
 Z_NEAR_M = 0.05
 """Near plane: its farthest corner is 0.07 m away, well inside the robot's radius of 0.18 m."""
 Z_FAR_M = 80.0
 """Far plane: beyond the diagonal of the largest house."""
-_OUT_OF_VIEW_GROUP = 5
+_LEFT_OUT_GROUP = 5
+_BLOCK_ROWS = 32
+"""Rows of a depth image that are converted together: they stay in the processor's cache."""
 
 
 class Camera:
@@ -38,6 +42,7 @@ class Camera:
         labels: category and instance of each geom of `model`.
         camera: intrinsics, mount height and depth range.
         profile: name of a rendering profile.
+        cull: leave out what cannot be seen; off only to show that it changes nothing.
 
     Raises:
         RenderError: no OpenGL context, or an image larger than the frame buffer can be.
@@ -57,7 +62,8 @@ class Camera:
         self.cull = cull
         self._model = model
         self._groups = model.geom_group.copy()
-        self._drawable = rendered_geoms(model)
+        drawable = rendered_geoms(model)
+        self._drawable = np.flatnonzero(drawable)
         self._geom_category = labels.geom_category
         self._rect = mujoco.MjrRect(0, 0, self.camera.width_px, self.camera.height_px)
         shape = (self.camera.height_px, self.camera.width_px)
@@ -75,7 +81,7 @@ class Camera:
         self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
         self._view = mujoco.MjvCamera()
-        self._plane_normals = _frustum_normals(self.camera)  # (5, 3) in camera axes: forward, left, up
+        self._visibility = Visibility(model, drawable, self.camera, Z_NEAR_M)
 
     def render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Images of the sensors asked for, each in memory of its own; see `sim.interface.Observation`.
@@ -95,10 +101,14 @@ class Camera:
         if not sensors:
             return images
         self._gl.make_current()
-        drawn_ids = self._update_scene(data, pose)
+        eye_m, axes = _camera_frame(pose, self.camera)
+        seen = self._visibility.visible(data, eye_m, pose.yaw_rad) if self.cull else self._drawable
+        self._fill_scene(data, seen, eye_m, axes)
         if {"depth", "semantic", "geom"} & set(sensors):
-            images |= self._numbers_and_depth(drawn_ids, sensors)
+            images |= self._numbers_and_depth(seen, sensors)
         if "rgb" in sensors:
+            if self.profile.shadows or self.profile.reflections:  # what is not seen may be reflected, or throw a shadow
+                self._fill_scene(data, self._drawable, eye_m, axes)
             images["rgb"] = self._color()
         return images
 
@@ -106,26 +116,18 @@ class Camera:
         """Free the renderer; safe to call twice, and called for you when the camera is dropped."""
         self._finalizer()
 
-    def _update_scene(self, data: mujoco.MjData, pose: Pose) -> NDArray[np.intp]:
-        """Fill the scene with what may be seen; returns the geom id of each scene geom, in the scene's order."""
-        eye_m, axes = _camera_frame(pose, self.camera)
-        shown = self._drawable & self._in_view(data, eye_m, axes) if self.cull else self._drawable
-        self._model.geom_group[:] = np.where(shown, self._groups, _OUT_OF_VIEW_GROUP)
+    def _fill_scene(self, data: mujoco.MjData, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray) -> None:
+        """Put these geoms, given in ascending order, and the lights before the eye."""
+        group = np.full_like(self._groups, _LEFT_OUT_GROUP)
+        group[geoms] = self._groups[geoms]
+        self._model.geom_group[:] = group
         mujoco.mjv_updateScene(
             self._model, data, self._option, None, self._view, mujoco.mjtCatBit.mjCAT_ALL.value, self._scene
         )
         self._model.geom_group[:] = self._groups
+        if self._scene.ngeom != len(geoms):
+            raise RenderError(f"The scene holds {self._scene.ngeom} geoms where {len(geoms)} were expected.")
         _aim(self._scene, eye_m, axes, self.camera)
-        drawn_ids = np.flatnonzero(shown)
-        if self._scene.ngeom != len(drawn_ids):
-            raise RenderError(f"The scene holds {self._scene.ngeom} geoms where {len(drawn_ids)} were expected.")
-        return drawn_ids
-
-    def _in_view(self, data: mujoco.MjData, eye_m: NDArray, axes: NDArray) -> NDArray[np.bool_]:
-        """True where a geom's bounding sphere reaches into the view frustum; planes always do."""
-        in_camera = (data.geom_xpos - eye_m) @ axes.T  # (ngeom, 3) forward, left, up
-        outside = (in_camera @ self._plane_normals.T) < -self._model.geom_rbound[:, None]
-        return ~outside.any(axis=1) | (self._model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)
 
     def _numbers_and_depth(self, drawn_ids: NDArray[np.intp], sensors: Sequence[str]) -> dict[str, NDArray]:
         flags = self._scene.flags
@@ -136,16 +138,13 @@ class Camera:
         mujoco.mjr_render(self._rect, self._scene, self._number_context)
         depth = self._depth_buffer if "depth" in sensors else None
         mujoco.mjr_readPixels(self._color_buffer, depth, self._rect, self._number_context)
-        numbers = self._color_buffer[::-1, :, 0].astype(np.uint16)  # OpenGL's row 0 is the lowest
-        if len(drawn_ids) >= 255:
-            numbers |= self._color_buffer[::-1, :, 1].astype(np.uint16) << 8
         images: dict[str, NDArray] = {}
         if "semantic" in sensors:
-            images["semantic"] = np.append(np.uint8(0), self._geom_category[drawn_ids])[numbers]
+            images["semantic"] = _look_up(self._color_buffer, np.append(np.uint8(0), self._geom_category[drawn_ids]))
         if "geom" in sensors:
-            images["geom"] = np.append(np.int32(-1), drawn_ids.astype(np.int32))[numbers]
+            images["geom"] = _look_up(self._color_buffer, np.append(np.int32(-1), drawn_ids.astype(np.int32)))
         if "depth" in sensors:
-            images["depth"] = _metric_depth(self._depth_buffer[::-1], self.camera)
+            images["depth"] = _metric_depth(self._depth_buffer, self.camera)
         return images
 
     def _color(self) -> NDArray[np.uint8]:
@@ -222,20 +221,6 @@ def _camera_frame(pose: Pose, camera: CameraModel) -> tuple[NDArray[np.float64],
     return np.array([pose.x_m, pose.y_m, pose.floor_z_m + camera.height_m]), axes
 
 
-def _frustum_normals(camera: CameraModel) -> NDArray[np.float64]:
-    """Inward unit normals (5, 3) of the frustum's sides and of the plane through the eye, in camera axes."""
-    h, v = 0.5 * camera.hfov_rad, 0.5 * camera.vfov_rad
-    return np.array(
-        [
-            [math.sin(h), math.cos(h), 0.0],
-            [math.sin(h), -math.cos(h), 0.0],
-            [math.sin(v), 0.0, math.cos(v)],
-            [math.sin(v), 0.0, -math.cos(v)],
-            [1.0, 0.0, 0.0],
-        ]
-    )
-
-
 def _aim(scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, camera: CameraModel) -> None:
     top = Z_NEAR_M * math.tan(0.5 * camera.vfov_rad)
     for gl_camera in scene.camera:  # left and right eye; without stereo MuJoCo draws their average
@@ -249,12 +234,36 @@ def _aim(scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, camera: CameraMo
         gl_camera.frustum_width = top * camera.width_px / camera.height_px
 
 
+def _look_up(color_buffer: NDArray[np.uint8], table: NDArray) -> NDArray:
+    """What a table says for the number that each pixel's red (and green) holds; the uppermost row first.
+
+    Args:
+        color_buffer: (h, w, 3) the lowest row first, as OpenGL has it.
+        table: by number.
+    """
+    if len(table) <= 256 and table.dtype == np.uint8:
+        red = cv2.flip(cv2.extractChannel(color_buffer, 0), 0)
+        return np.asarray(cv2.LUT(red, np.pad(table, (0, 256 - len(table)))), np.uint8)
+    numbers = color_buffer[::-1, :, 0].astype(np.uint16)
+    if len(table) > 256:
+        numbers |= color_buffer[::-1, :, 1].astype(np.uint16) << 8
+    return table[numbers]
+
+
 def _metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np.float32]:
-    """Metres along the optical axis from a reversed depth buffer (1 near, 0 far), in the sensor's conventions."""
-    depth_m = buffer * np.float32((Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M))
-    depth_m += np.float32(1.0 / Z_FAR_M)
-    np.reciprocal(depth_m, out=depth_m)
-    np.minimum(depth_m, np.float32(camera.max_depth_m), out=depth_m)
-    depth_m *= depth_m >= camera.min_depth_m
-    depth_m *= buffer > 0.0  # nothing was drawn there: no return
+    """Metres along the optical axis, the uppermost row first, in the sensor's conventions.
+
+    Args:
+        buffer: (h, w) reversed depth buffer (1 near, 0 far), the lowest row first.
+        camera: for its depth range.
+    """
+    depth_m = np.empty_like(buffer)
+    for row in range(0, len(buffer), _BLOCK_ROWS):
+        block, raw = depth_m[row : row + _BLOCK_ROWS], buffer[::-1][row : row + _BLOCK_ROWS]
+        np.multiply(raw, np.float32((Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M)), out=block)
+        block += np.float32(1.0 / Z_FAR_M)
+        np.reciprocal(block, out=block)
+        np.minimum(block, np.float32(camera.max_depth_m), out=block)
+        block *= block >= camera.min_depth_m
+        block *= raw > 0.0  # nothing was drawn there: no return
     return depth_m
