@@ -8,7 +8,7 @@ its column only.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from sim.interface import CameraModel, ConfigError, RobotModel, Scores
 from stubborn.grid import PlanarPose, Window
 from stubborn.navmap import NavMap
 from stubborn.objects import AllFrames, FrameScores, ObjectLayers
+from stubborn.occupancy import Occupancy, OccupancyConfig, SightLines, agrees, on_surface
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +38,8 @@ class MappingConfig:
     """Every so many pixels, each way, go into the object layers."""
     candidate_score: float = 0.5
     """A cell with a higher target score is a candidate."""
+    occupancy: OccupancyConfig = field(default_factory=OccupancyConfig)
+    """When points of a noisy depth image count."""
 
     def __post_init__(self) -> None:
         if min(self.obstacle_stride_px, self.score_stride_px) < 1:
@@ -74,13 +77,18 @@ class Rays:
         self.up = up[skipped:]
         self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
 
-    def project(self, depth: NDArray[np.float32], camera_pose: PlanarPose, window: Window) -> GroundPoints:
-        """Cells of `window` and heights of the points of a full-size depth image, (height_px, width_px) metres.
+    def sample(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The pixels of a full-size depth image, (height_px, width_px) metres, that are looked at; a new array."""
+        return np.ascontiguousarray(depth[self.pick])
+
+    def project(
+        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: PlanarPose, window: Window
+    ) -> GroundPoints:
+        """Cells of `window` and heights of the confirmed points of a sampled depth image.
 
         The window must hold everything within sight: see `sight_window_cells`.
         """
-        d = depth[self.pick]
-        valid = (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
+        valid = confirmed & (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
         cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
         frame = window.frame
         x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
@@ -135,17 +143,22 @@ class Mapper:
         used_top_m = max(top_m, camera.height_m + config.eye_level_halfwidth_m)
         self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
         self._score_rays: dict[int, Rays] = {}
+        self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m, stride_px)
 
     def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> None:
         """Enter one depth image, (height_px, width_px) metres, into the obstacle layers."""
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
-        points = self._obstacle_rays.project(depth, camera_pose, window)
-        c = self.config
+        rays, c = self._obstacle_rays, self.config
+        d = rays.sample(depth)
+        points = rays.project(d, on_surface(d, c.occupancy.jump_1_m, c.occupancy.neighbours), camera_pose, window)
+        view = navmap.view(window)
         solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
-        navmap.seen_obstacle[window.index][points.rows[solid], points.cols[solid]] = True
         tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
-        navmap.seen_at_eye_level[window.index][points.rows[tall], points.cols[tall]] = True
+        sight = SightLines.of_frame(
+            d, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+        )
+        self._occupancy.add(view, _cells(points, solid, window), _cells(points, tall, window), sight)
 
     def add_scores(
         self, navmap: NavMap, depth: NDArray[np.float32], scores: Scores, pose: PlanarPose, step: int
@@ -154,13 +167,14 @@ class Mapper:
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
-        points = rays.project(depth, camera_pose, window)
+        d = rays.sample(depth)
+        points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
         if points.rows.size == 0:
             return NOTHING_SIGHTED
         navmap.grow_known(_span(points.rows, window.rows.start), _span(points.cols, window.cols.start))
         low = points.height_m <= self.config.score_max_height_m
-        flat = points.rows[low] * np.int32(window.frame.shape[1]) + points.cols[low]
-        target = scores.target[score_pick][points.valid][low]
+        flat = _cells(points, low, window)
+        target = self._confirmed(scores.target[score_pick], d)[points.valid][low]
         other = scores.best_other[score_pick][points.valid][low]
         self.layers.add(navmap.view(window), FrameScores(window.frame.shape, flat, target, other), step)
         found = target > self.config.candidate_score
@@ -174,6 +188,20 @@ class Mapper:
         navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
         navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
         return Sighting(rows, cols, distance_m)
+
+    def _confirmed(self, target: NDArray[np.float32], d: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Target scores without those of pixels that lie elsewhere than most target pixels around them.
+
+        At the rim of an object a noisy depth image shows what is behind or before it.
+        """
+        found = target > self.config.candidate_score
+        rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
+        if rows.size == 0 or self.config.occupancy.neighbours == 0:
+            return target
+        box = slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
+        confirmed = target.copy()
+        confirmed[box][found[box] & ~agrees(np.where(found[box], d[box], 0.0), self.config.occupancy)] = 0.0
+        return confirmed
 
     def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
         x_m, y_m = pose.ahead(self.camera_forward_m)
@@ -204,6 +232,11 @@ def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
     """Cells of a square around the camera that holds every point nearer than the camera's range."""
     farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
     return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
+
+
+def _cells(points: GroundPoints, which: NDArray[np.bool_], window: Window) -> NDArray[np.int32]:
+    """Row-major cells of some of the points."""
+    return points.rows[which] * np.int32(window.frame.shape[1]) + points.cols[which]
 
 
 def _span(indices: NDArray[np.int32], offset: int) -> slice:

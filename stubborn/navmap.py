@@ -20,6 +20,8 @@ class NavMap:
     frame: GridFrame
     seen_obstacle: NDArray[np.bool_]
     """True: depth saw a surface between step height and robot height [1]."""
+    obstacle_evidence: NDArray[np.int8]
+    """For and against an obstacle, from depth; `seen_obstacle` is where it is enough."""
     seen_at_eye_level: NDArray[np.bool_]
     """True: depth saw a surface at the camera's height, so a wall or something as tall."""
     bumped_wide: NDArray[np.bool_]
@@ -61,6 +63,7 @@ class NavMap:
         return cls(
             frame=frame,
             seen_obstacle=layer(np.bool_),
+            obstacle_evidence=layer(np.int8),
             seen_at_eye_level=layer(np.bool_),
             bumped_wide=layer(np.bool_),
             bumped_narrow=layer(np.bool_),
