@@ -162,6 +162,8 @@ _TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
 )
 _SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
 """Areas of small and of large train houses, as far as their shape allows."""
+_ROOMY_M2 = 110.0
+"""In a smaller home a gym or an office would take the bedroom's place."""
 _GOLDEN = 0.6180339887
 """Multiples of it, without their whole part, fill an interval evenly however many there are (Kronecker)."""
 
@@ -173,7 +175,7 @@ def train_recipe(seed: int) -> Recipe:
     kind = kinds[(seed // 4 if large else seed) % len(kinds)]
     low, high = max(smallest, PLAN_AREA_M2[kind][0]), min(largest, PLAN_AREA_M2[kind][1])
     area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0), 0)
-    rooms = () if kind == "studio" else _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)]
+    rooms = _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)] if area_m2 >= _ROOMY_M2 else ()
     return Recipe(f"train_{seed:03d}", seed, "train", kind, area_m2, rooms, movable=_is_movable(seed))
 
 
