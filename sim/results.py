@@ -43,7 +43,7 @@ class RunDirectory:
         except OSError:
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
         self._write_or_compare_config()
-        self.lines: list[dict[str, Any]] = _read_whole_lines(self.path / "results.jsonl")
+        self.lines: list[dict[str, Any]] = read_whole_lines(self.path / "results.jsonl", mend=True)
         self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
 
     def append(self, line: Mapping[str, Any]) -> None:
@@ -124,13 +124,21 @@ def _write_json(file: Path, content: Mapping[str, Any]) -> None:
     part.replace(file)
 
 
-def _read_whole_lines(file: Path) -> list[dict[str, Any]]:
-    """The lines that were written whole; a broken last one is cut off the file."""
+def read_whole_lines(file: Path, *, mend: bool = False) -> list[dict[str, Any]]:
+    """The lines of a results.jsonl that were written whole; a broken last one is left out.
+
+    Args:
+        file: need not be there.
+        mend: cut the broken one off the file as well.
+
+    Raises:
+        ValueError: a line before the last is not JSON.
+    """
     if not file.exists():
         return []
     content = file.read_bytes()
     whole = content[: content.rfind(b"\n") + 1]
-    if len(whole) < len(content):
+    if mend and len(whole) < len(content):
         with file.open("r+b") as stream:
             stream.truncate(len(whole))
     return [json.loads(line) for line in whole.splitlines()]

@@ -85,7 +85,7 @@ def main(args: Args) -> int:
         for name in agent_names():
             console.print(name)
         return 0
-    _check(args)
+    check(args)
     episodes, split = plan_episodes(args)
     args = replace(args, out=args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
     lines, summary = play_missing(args, episodes, split, console)
@@ -117,11 +117,11 @@ def play_missing(
             f"{args.agent} with {args.semantics} semantics, {len(episodes)} episodes of {split['name']} "
             f"(version {split['version']}), drawn by {config['versions']['gl_renderer']}; results in {args.out}"
         )
-        if done:
+        if len(todo) < len(episodes):
             console.print(f"{len(episodes) - len(todo)} of them were there already, {len(todo)} to go.")
         spec = PlayerSpec("sim.run:EpisodePlayer", args)
         lines = run_items(spec, todo, workers=args.workers, on_death=lambda episode: _death_line(args, episode))
-        for line in tables.with_progress(console, lines, total=len(todo)):
+        for line in () if not todo else tables.with_progress(console, lines, total=len(todo)):
             run.append(line)
         return run.lines, run.write_summary({"split": split})
     finally:
@@ -272,7 +272,8 @@ def _load_factory(name: str) -> Any:
     return factory
 
 
-def _check(args: Args) -> None:
+def check(args: Args) -> None:
+    """Raise ConfigError where options do not go together or name what there is not."""
     if args.episodes < 1:
         raise ConfigError(f"--episodes must be at least 1, got {args.episodes}.")
     if args.workers < 1:

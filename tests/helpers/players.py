@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim.interface import Action, Observation
+
 
 @dataclass(frozen=True)
 class Errand:
@@ -44,3 +46,18 @@ class ErrandPlayer:
 def make_player(config: None) -> ErrandPlayer:
     """Entry point `tests.helpers.players:make_player`."""
     return ErrandPlayer()
+
+
+class Quitter:
+    """An `Agent` that stops at once."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        """Nothing to forget."""
+
+    def act(self, observation: Observation) -> Action:
+        return Action.STOP
+
+
+def make_quitter(**known: object) -> Quitter:
+    """Entry point `tests.helpers.players:make_quitter`."""
+    return Quitter()

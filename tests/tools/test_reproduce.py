@@ -1,0 +1,137 @@
+"""Tables from one command: runs shared between tables, played in turns, gone on with."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from sim import run
+from sim.comparison import read_run
+from sim.episodes import Episode, write_split
+from sim.interface import ConfigError
+from sim.pose import Pose
+from sim.trajectory import FOLDER
+from tests.helpers.worlds import room, with_box
+from tools import compare_runs, reproduce
+
+AGENTS = ("oracle", "examples.my_agent:make")
+MINE = "examples.my_agent_make_gt_none_tiny"
+ORACLE = "oracle_gt_none_tiny"
+
+
+@pytest.fixture(scope="module")
+def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Four episodes in a room with a sofa and a bed."""
+    folder = tmp_path_factory.mktemp("splits") / "tiny"
+    folder.mkdir()
+    house = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    house = with_box(house, "bed_00", centre_m=(-2.4, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    (folder / "room.xml").write_text(house.spec.to_xml())
+    episodes = [Episode(f"e{i}", "room", ("sofa", "bed")[i % 2], Pose(0.2 * i - 0.3, 1.9, 0.0)) for i in range(4)]
+    write_split(folder, episodes, {"room": {}}, version="1")
+    return folder
+
+
+@pytest.fixture
+def args(split: Path, tmp_path: Path) -> reproduce.Args:
+    return reproduce.Args(
+        table="categories", split=str(split), episodes=2, agents=AGENTS, semantics="gt", out=tmp_path, chunk=1
+    )
+
+
+def test_a_table_of_two_agents_is_played_written_and_not_played_again(
+    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert reproduce.main(args) == 0
+    told = capsys.readouterr().out
+    # The agents take turns.
+    assert [part.split(" ")[0] for part in told.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
+    page = (args.out / "tables" / "categories_gt.md").read_text()
+    assert "| goal (episodes) | oracle | examples.my_agent:make | oracle - examples.my_agent:make |" in page
+    assert "| all (2) | 100.0" in page
+    assert "2 episodes of tiny 1" in page
+    assert (args.out / "tables" / "categories_gt.csv").is_file()
+    assert len(list((args.out / ORACLE / FOLDER).glob("*.npz"))) == 2
+    before = (args.out / MINE / "results.jsonl").read_bytes()
+    assert reproduce.main(args) == 0
+    assert (args.out / MINE / "results.jsonl").read_bytes() == before
+    assert "] e" not in capsys.readouterr().out
+
+
+def test_another_table_takes_the_episodes_that_are_there_and_plays_the_rest(
+    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reproduce.main(args)
+    capsys.readouterr()
+    assert reproduce.main(replace(args, table="overall", episodes=3)) == 0
+    assert capsys.readouterr().out.count("] e2:") == 2
+    assert list(read_run(args.out / ORACLE).lines) == ["e0", "e1", "e2"]
+    assert json.loads((args.out / ORACLE / "config.json").read_text())["episodes"] == 3
+
+
+def test_a_run_of_the_runner_and_a_run_for_a_table_have_the_same_lines(args: reproduce.Args, split: Path) -> None:
+    reproduce.main(args)
+    alone = args.out / "alone"
+    options = ["--agent", AGENTS[1], "--split", str(split), "--episodes", "2", "--out", str(alone)]
+    assert run.entry(options) == 0
+    times = ("wall_time_s", "steps_per_s")
+    first, second = (
+        [{key: value for key, value in line.items() if key not in times} for line in read_run(folder).lines.values()]
+        for folder in (args.out / MINE, alone)
+    )
+    assert first == second
+
+
+def test_minutes_that_are_used_up_leave_a_table_of_what_all_have_played(
+    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert reproduce.main(replace(args, minutes=0.0)) == 1
+    assert "no episode that oracle, examples.my_agent:make (gt) have all played" in capsys.readouterr().out
+    assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always played
+    assert list(read_run(args.out / MINE).lines) == ["e0"]
+    run.main(reproduce._run_args(args, reproduce.Player("oracle", "gt")))  # the oracle is one ahead
+    capsys.readouterr()
+    assert reproduce.main(replace(args, minutes=0.0)) == 0
+    assert "all (1)" in capsys.readouterr().out
+
+
+def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduce.Args) -> None:
+    failing = replace(args, table="failures", agents=("tests.helpers.players:make_quitter", "oracle"), episodes=1)
+    reproduce.main(failing)
+    results = next(args.out.glob("tests.helpers*")) / "results.jsonl"
+    line = json.loads(results.read_text())
+    assert line["failure"] == "false_detection"
+    results.write_text(json.dumps(line | {"failure": None}) + "\n")
+    reproduce.main(replace(failing, minutes=0.0))
+    assert "| false_detection | 100.0 [100.0, 100.0] |" in (args.out / "tables" / "failures_gt.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"table": "everything"}, "There is no table 'everything'"),
+        ({"agents": ("stuborn",)}, "stuborn"),
+        ({"semantics": "psychic", "agents": ("stubborn",)}, "psychic"),
+        ({"chunk": 0}, "--chunk"),
+        ({"minutes": -1.0}, "--minutes"),
+        ({"episodes": 5}, "has 4 episodes"),
+    ],
+)
+def test_what_cannot_be_played_is_told_before_anything_is(args: reproduce.Args, change: dict, told: str) -> None:
+    with pytest.raises(ConfigError, match=told):
+        reproduce.main(replace(args, **change))
+    assert not list(args.out.iterdir())
+
+
+def test_two_folders_of_runs_are_compared_pair_by_pair(
+    args: reproduce.Args, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reproduce.main(args)
+    capsys.readouterr()
+    folders = compare_runs.Args(first=args.out / MINE, second=args.out / ORACLE, out=args.out / "compared")
+    assert compare_runs.main(folders) == 0
+    assert "B - A, paired over 2 episodes" in capsys.readouterr().out
+    assert "| success % |" in (args.out / "compared" / "comparison.md").read_text()

@@ -1,0 +1,222 @@
+"""The paper's tables, each from one command: play what is missing, then write the table.
+
+    python tools/reproduce.py ablation --episodes 200 --workers 2
+    python tools/reproduce.py all --episodes 200 --workers 2 --minutes 110
+    python tools/reproduce.py failures --minutes 0            # only the table, of what is there
+
+Tables: failures, ablation, exploration, categories, overall, or all. Runs lie in `<out>/<agent>_<semantics>_...`, a
+folder each as `sim.run --record` leaves it, and serve every table that needs them. The agents take turns, a chunk of
+episodes each, so that whenever it is stopped they have the same first episodes; the same command goes on where it was.
+Tables go to the terminal and to `<out>/tables/<table>.md` and `.csv`; with --semantics, to `<table>_<semantics>`. What
+was played by older code stays: take another --out when an agent has changed. See docs/reproduce.md.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tyro
+from rich.console import Console
+
+from sim import cli, run, tables
+from sim.comparison import MIN_PAIRS, Line, Run, code_of, read_run
+from sim.episodes import Episode
+from sim.failures import cause_of_failure
+from sim.interface import ConfigError
+from sim.paper_tables import TABLES, PaperTable, Player, table_named
+from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
+from sim.trajectory import read_trajectory, trajectory_file
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Play what a table needs and is not there yet, and write the table."""
+
+    table: tyro.conf.Positional[str]
+    """failures, ablation, exploration, categories, overall, or all."""
+    episodes: int = 200
+    """The first N episodes of the split."""
+    workers: int = 1
+    """Processes."""
+    split: str = "val"
+    """A shipped split, or a folder laid out like one."""
+    out: Path = Path("runs/paper")
+    """Folder for the runs and tables."""
+    semantics: str | None = None
+    """Where segmentation comes from, in place of what the table says."""
+    agents: tuple[str, ...] = ()
+    """Who plays, in place of what the table says; the others are compared with the first."""
+    noise: str = "none"
+    """Noise of sensors and drive."""
+    seed: int = 0
+    """Of the runs."""
+    chunk: int = 20
+    """Episodes that an agent plays before it is the next one's turn."""
+    minutes: float | None = None
+    """Start no chunk that would not be done by then; 0 plays nothing."""
+
+
+def main(args: Args) -> int:
+    """Play and tell; returns the exit status."""
+    _check(args)
+    console = tables.make_console()
+    names = list(TABLES) if args.table == "all" else [args.table]
+    wanted = {name: table_named(name).players(args.agents, args.semantics) for name in names}
+    players = list(dict.fromkeys(player for needed in wanted.values() for player in needed))
+    episodes, split = run.plan_episodes(_run_args(args, players[0]))
+    play(args, players, episodes, split, console)
+    runs = {player: read_run(_folder(args, player)) for player in players if _has_run(args, player)}
+    status = 0
+    for name, needed in wanted.items():
+        common = common_episodes(runs, needed, episodes)
+        if not common:
+            console.print(f"{name}: no episode that {', '.join(p.label for p in needed)} have all played.")
+            status = 1
+            continue
+        tell(args, name, table_named(name), {player: runs[player] for player in needed}, common, console)
+    return status
+
+
+def play(
+    args: Args, players: Sequence[Player], episodes: Sequence[Episode], split: dict[str, Any], console: Console
+) -> None:
+    """Let the players take turns, a chunk of episodes each, until all is played or the minutes are used up.
+
+    Raises:
+        ConfigError: a folder holds a run with other options.
+    """
+    began_s, longest_s = time.monotonic(), 0.0
+    for first in range(0, len(episodes), args.chunk):
+        chunk = episodes[first : first + args.chunk]
+        chunk_began_s = time.monotonic()
+        if args.minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * args.minutes:
+            console.print(f"The {args.minutes:g} minutes are used up before episode {first + 1}.")
+            return
+        for player in players:
+            done = read_run(_folder(args, player)).lines if _has_run(args, player) else {}
+            if first and all(episode.episode_id in done for episode in chunk):
+                continue
+            run.play_missing(_run_args(args, player), chunk, split, console)
+        longest_s = max(longest_s, time.monotonic() - chunk_began_s)
+
+
+def common_episodes(runs: dict[Player, Run], players: Sequence[Player], episodes: Sequence[Episode]) -> list[str]:
+    """Ids of the episodes that all of them have played, in the split's order."""
+    if any(player not in runs for player in players):
+        return []
+    ids = [episode.episode_id for episode in episodes]
+    return [i for i in ids if all(i in runs[player].lines for player in players)]
+
+
+def tell(
+    args: Args, name: str, table: PaperTable, runs: dict[Player, Run], common: Sequence[str], console: Console
+) -> None:
+    """Build one table, show it, and write it as Markdown and CSV."""
+    lines = {player: [with_cause(of, of.lines[i]) for i in common] for player, of in runs.items()}
+    parts = table.build(lines, list(runs))
+    notes = notes_of(args, name, runs, common)
+    folder, stem = args.out / "tables", name if args.semantics is None else f"{name}_{args.semantics}"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{stem}.md").write_text(to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n", encoding="utf-8")
+    write_csv(folder / f"{stem}.csv", parts)
+    _show(console, parts, notes)
+    console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
+
+
+def with_cause(of: Run, line: Line) -> Line:
+    """The line with the cause of failure that today's rules find in the trajectory, where there is one."""
+    file = trajectory_file(of.path, line["episode_id"])
+    return {**line, "failure": cause_of_failure(read_trajectory(file))} if file.is_file() else line
+
+
+def notes_of(args: Args, name: str, runs: dict[Player, Run], common: Sequence[str]) -> list[str]:
+    """What must be known beside the numbers: episodes, split, errors, code, the command."""
+    some = next(iter(runs.values()))
+    split, versions = some.config["split_identity"], some.config["versions"]
+    errors = sum(of.lines[i]["end_reason"] == "error" for of in runs.values() for i in common)
+    codes = Counter(code_of(of, i) for of in runs.values() for i in common)
+    notes = [
+        f"{len(common)} episodes of {split['name']} {split['version']} ({split['sha256'][:8]}), sensor noise "
+        f"{args.noise}, seed {args.seed}, mujoco {versions['mujoco']}; mean [95 % bootstrap interval over episodes]. "
+        f"A difference is paired by episode; unresolved: its interval holds 0, or it has fewer than {MIN_PAIRS} pairs.",
+        "`" + " ".join(["python tools/reproduce.py", name, *_named_options(args)]) + "`",
+    ]
+    if errors:
+        notes.append(f"{errors} episodes broke and count as failures.")
+    if len(codes) > 1:
+        told = ", ".join(f"{code} ({count})" for code, count in codes.most_common())
+        notes.append(f"Not all episodes were played by the same code: {told}.")
+    return notes
+
+
+def _named_options(args: Args) -> list[str]:
+    """What has to be said to get the same table; agents and segmentation only where they were asked for."""
+    said = [f"--episodes {args.episodes}", f"--split {args.split}"]
+    said += [f"--semantics {args.semantics}"] if args.semantics else []
+    said += [f"--agents {' '.join(args.agents)}"] if args.agents else []
+    said += [f"--noise {args.noise}"] if args.noise != "none" else []
+    return said + ([f"--seed {args.seed}"] if args.seed else [])
+
+
+def _show(console: Console, parts: Sequence[ResultTable], notes: Sequence[str]) -> None:
+    for part in parts:
+        console.print(to_rich(part))
+    for note in notes:
+        console.print(note, markup=False, highlight=False, soft_wrap=True)
+
+
+def _run_args(args: Args, player: Player) -> run.Args:
+    """The options of `sim.run` for one player."""
+    return run.Args(
+        agent=player.agent,
+        semantics=player.semantics,
+        split=args.split,
+        episodes=args.episodes,
+        seed=args.seed,
+        workers=args.workers,
+        noise=args.noise,
+        out=_folder(args, player),
+        record=True,
+    )
+
+
+def _folder(args: Args, player: Player) -> Path:
+    split = Path(args.split).resolve().name if Path(args.split).is_dir() else args.split
+    agent = player.agent.replace(":", "_").replace("/", "_")
+    return args.out / f"{agent}_{player.semantics}_{args.noise}_{split}"
+
+
+def _has_run(args: Args, player: Player) -> bool:
+    return (_folder(args, player) / "results.jsonl").is_file()
+
+
+def _check(args: Args) -> None:
+    if args.table != "all":
+        table_named(args.table)
+    for name, value, least in (("episodes", args.episodes, 1), ("workers", args.workers, 1), ("chunk", args.chunk, 1)):
+        if value < least:
+            raise ConfigError(f"--{name} must be at least {least}, got {value}.")
+    if args.minutes is not None and not args.minutes >= 0.0:
+        raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
+    names = [args.table] if args.table != "all" else list(TABLES)
+    for player in {player for name in names for player in table_named(name).players(args.agents, args.semantics)}:
+        run.check(_run_args(args, player))
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """The command line."""
+    try:
+        return cli.run(Args, main, argv)
+    except KeyboardInterrupt:
+        print("\nStopped. The same command goes on where it was; with --minutes 0 it only writes the table.")
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(entry())
