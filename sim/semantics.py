@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -37,13 +38,13 @@ class NoisyConfig:
     """Directions from which a thing is seen make so many views."""
     distances_m: tuple[float, ...] = (1.3, 2.6)
     """Between these distances to a thing's middle lies a change of view."""
-    lookalike_share: float = 0.15
+    lookalike_share: float = 0.25
     """Of all things: those that resemble another category, one of their row in `sim.confusions`."""
     lookalike_rate: float = 0.6
     """Of the views of such a thing: those in which it is taken for that category."""
-    mistake_rate: float = 0.03
+    mistake_rate: float = 0.05
     """Of the views of any other thing: those in which it is taken for one of its row."""
-    flicker_rate: float = 0.02
+    flicker_rate: float = 0.03
     """Of the frames of any thing: those in which it is taken for one of its row, whatever the view says."""
     miss_rate: float = 0.03
     """Of the views of a thing, however large it appears: those in which it is missed."""
@@ -218,20 +219,32 @@ class Things:
     @classmethod
     def of(cls, world: World) -> Things:
         """Of a compiled world."""
-        instances = world.labels.instances
         at_rest = mujoco.MjData(world.model)
         mujoco.mj_kinematics(world.model, at_rest)
+        instances = world.labels.instances
+        return cls.named(
+            [each.name for each in instances],
+            [each.category for each in instances],
+            np.array([at_rest.geom_xpos[list(each.geom_ids), :2].mean(axis=0) for each in instances]).reshape(-1, 2),
+            world.labels.geom_instance,
+        )
+
+    @classmethod
+    def named(
+        cls, names: Sequence[str], categories: Sequence[str], middle_xy_m: NDArray, of_geom: NDArray[np.integer]
+    ) -> Things:
+        """Of things with these names, categories and places; `of_geom` (geoms,) indexes them."""
         table = np.zeros((len(MPCAT40), len(MPCAT40)))
         for name, row in CONFUSIONS.items():
             for taken_for, share in row.items():
                 table[MPCAT40_ID[name], MPCAT40_ID[taken_for]] = share
-        category = np.array([MPCAT40_ID[each.category] for each in instances], np.intp)
+        category = np.array([MPCAT40_ID[name] for name in categories], np.intp)
         sums = table.sum(axis=1, keepdims=True)
         return cls(
-            of_geom=np.append(world.labels.geom_instance, -1).astype(np.intp),
+            of_geom=np.append(of_geom, -1).astype(np.intp),
             category=category,
-            key=np.array([zlib.crc32(each.name.encode()) for each in instances], np.uint64),
-            middle_xy_m=np.array([at_rest.geom_xpos[list(each.geom_ids), :2].mean(axis=0) for each in instances]),
+            key=np.array([zlib.crc32(name.encode()) for name in names], np.uint64),
+            middle_xy_m=np.asarray(middle_xy_m, np.float64),
             proneness=sums[category, 0],
             rows=np.cumsum(table / np.maximum(sums, 1e-9), axis=1)[category],
         )

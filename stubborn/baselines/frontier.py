@@ -27,8 +27,9 @@ class FrontierConfig:
 
     least_length_m: float = 0.40
     """Shorter frontiers are left for when there is no other: the robot would hardly fit through."""
-    own_known_m: float = 0.60
-    """Ground this near the trail counts as known: it lies below the image."""
+    own_known_m: float = 1.0
+    """Ground this near the trail counts as known: it lies below the image, whose lowest row shows floor from 1.4 m on.
+    Less makes the robot sweep its own surroundings, more declares rooms behind walls known."""
     arrived_m: float = 0.35
     """A frontier is reached within this length of way."""
     spent_m: float = 0.60
@@ -83,7 +84,7 @@ class FrontierExplorer:
         if self._spent is None:
             self._spent = np.zeros(navmap.frame.shape, np.bool_)
         trail_m = distance_to(view.trail) * np.float32(view.frame.cell_m)
-        unknown = self.planner.unseen(view) & (trail_m > self.config.own_known_m)
+        unknown = self._unknown(view) & (trail_m > self.config.own_known_m)
         free = self.planner.free_space(view, pose, self._bumps, unknown)
         frontiers = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
         return (
@@ -91,6 +92,11 @@ class FrontierExplorer:
             or self._to_nearest(free, frontiers, whole, pose)
             or self._to_least_visited(free, trail_m, pose)
         )
+
+    def _unknown(self, view: NavMap) -> NDArray[np.bool_]:
+        """Ground never in view, gaps within what was seen closed: far floor is seen with gaps."""
+        gap_cells = self.planner.config.unseen_gap_m / view.frame.cell_m
+        return distance_to(self.planner.unseen(view)) <= gap_cells
 
     def _go_on(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: PlanarPose) -> Route | None:
         """The way to what is left of the frontier pursued; None when it is done with."""
