@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim import habitat
-from sim.goals import Footprint, GoalRegion
+from sim.freespace import FreeSpace
+from sim.gl import mujoco
+from sim.goals import Footprint, GoalRegion, Surroundings
 from sim.houses.house import Room
+from sim.interface import SUCCESS_DISTANCE_M
 from sim.pose import Pose
-from sim.sampling import far_enough
 from sim.task import Task
 
 VIEW_STEP_CELLS = 10
@@ -36,19 +38,19 @@ def survey(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
     """The goals of a house that a robot in its largest free space can reach, and those it cannot."""
     world, space = task.world, task.truth.space()
     inside = space.largest_part()
+    coarse_m = space.frame.to_metres(_spread(inside))
+    at_rest = mujoco.MjData(world.model)
+    mujoco.mj_kinematics(world.model, at_rest)
+    around = Surroundings.of(world.model, at_rest, world.labels)
     listed: dict[str, list[habitat.Json]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
-        target = task.truth.target(goal)
-        reached = target.reached & inside
-        enough_starts = far_enough(np.where(inside, target.distance_m, np.inf)).any()
-        for footprint in target.region.footprints:
-            places_m = space.frame.to_metres(_spread(reached))
-            views = view_points(target.region, footprint, places_m, at_most=max_view_points)
+        region = GoalRegion(world.model, at_rest, world.labels, goal, surroundings=around)
+        for footprint in region.footprints:
+            views = view_points(region, footprint, coarse_m, at_most=max_view_points)
             if not len(views):
-                places_m = space.frame.to_metres(np.argwhere(reached))
-                views = view_points(target.region, footprint, places_m, at_most=max_view_points)
-            if len(views) and enough_starts:
+                views = view_points(region, footprint, _near(space, inside, footprint), at_most=max_view_points)
+            if len(views):
                 listed.setdefault(goal, []).append(_to_habitat(footprint, views, world.rooms))
             else:
                 unreachable.append(footprint.instance.name)
@@ -64,6 +66,13 @@ def view_points(
     if len(places_m) <= at_most:
         return places_m
     return places_m[np.linspace(0, len(places_m) - 1, at_most).round().astype(np.int64)]
+
+
+def _near(space: FreeSpace, inside: NDArray[np.bool_], footprint: Footprint) -> NDArray[np.float64]:
+    """(n, 2) centres of all the cells of a mask around a footprint, metres."""
+    rows, cols = space.frame.window(footprint.bounds_m, SUCCESS_DISTANCE_M)
+    corner = np.array([rows.start, cols.start])
+    return space.frame.to_metres(np.argwhere(inside[rows, cols]) + corner)
 
 
 def _spread(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
