@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from sim.houses.furniture.item import Item
-from sim.houses.groups import beside, desk_group, dining_group, hang, hang_over, lay_rug, place, put_things
+from sim.houses.groups import beside, desk_group, hang, hang_over, lay_rug, place, put_things
 from sim.houses.kit import Kit
 from sim.houses.placement import RoomSpace, Standing
 
 Filler = Callable[[RoomSpace, Kit], object]
 """Adds something to a room; a false value where there is no place for it."""
-PICTURE_PER_M2 = 0.04
+PICTURE_PER_M2 = 0.03
 """Pictures a room may have more than its rule gives it."""
 
 
@@ -64,7 +64,8 @@ def reading_corner(space: RoomSpace, kit: Kit) -> Standing | None:
 
 def chat_circle(space: RoomSpace, kit: Kit) -> Standing | None:
     """Easy chairs and ottomans round a low table, away from the walls."""
-    low, chair = kit.make("table", "coffee"), kit.make("chair", "arm")
+    second = any(s.placed.item.category == "sofa" for s in space.standing)  # whose low table stands before it
+    low, chair = kit.make("table", "side" if second else "coffee"), kit.make("chair", "arm")
     if low is None or chair is None:
         return None
     pouf = kit.make("seating", "ottoman")
@@ -76,7 +77,7 @@ def chat_circle(space: RoomSpace, kit: Kit) -> Standing | None:
         for item, turn in zip(around, turns, strict=True)
         for d in [reach + item.size_m[0] / 2]
     ]
-    table = space.in_middle(kit.rng, low, seats, around_m=1.2)
+    table = space.in_middle(kit.rng, low, seats, around_m=1.2, least=0.6, apart_m=0.8)
     if table is None:
         return None
     c, s = math.cos(table.placed.yaw_rad), math.sin(table.placed.yaw_rad)
@@ -98,21 +99,11 @@ def console(space: RoomSpace, kit: Kit) -> Standing | None:
     return board
 
 
-def middle_rug(space: RoomSpace, kit: Kit) -> None:
-    """A rug where the floor is free."""
-    along = math.pi / 2 if space.inner.width_m > space.inner.depth_m else 0.0
-    lay_rug(space, kit, *space.inner.centre, along, runner=False)
-
-
-def runners(space: RoomSpace, kit: Kit) -> None:
-    """Rugs one behind the other along a corridor."""
-    wide = space.inner.width_m > space.inner.depth_m
-    count = max(1, int(space.inner.long_m / 4.5))
-    for n in range(count):
-        share = (n + 0.5) / count
-        x = space.inner.x0 + share * space.inner.width_m if wide else space.inner.centre[0]
-        y = space.inner.centre[1] if wide else space.inner.y0 + share * space.inner.depth_m
-        lay_rug(space, kit, x, y, math.pi / 2 if wide else 0.0, runner=True)
+def middle_rug(space: RoomSpace, kit: Kit) -> bool:
+    """A large rug in the room's middle, where nothing flat lies yet."""
+    along = 0.0 if space.inner.width_m < space.inner.depth_m else math.pi / 2
+    size_m = (1.8, 2.6) if space.inner.area_m2 > 16 else None
+    return lay_rug(space, kit, *space.inner.centre, along, runner=False, size_m=size_m)
 
 
 def pictures(space: RoomSpace, kit: Kit) -> None:
@@ -121,8 +112,11 @@ def pictures(space: RoomSpace, kit: Kit) -> None:
         hang(space, kit, "picture")
 
 
-def _piece(category: str, *uses: str, front_m: float = 0.5, corner: bool = False) -> Filler:
+def _piece(category: str, *uses: str, front_m: float = 0.5, corner: bool = False, most: int = 9) -> Filler:
     def put(space: RoomSpace, kit: Kit) -> Standing | None:
+        alike = [s for s in space.standing if s.placed.item.category == category and s.placed.item.mount == "floor"]
+        if len(alike) >= most:
+            return None
         return place(space, kit, category, *uses, along="corner" if corner else "any", front_m=front_m)
 
     return put
@@ -136,57 +130,69 @@ def _chest(space: RoomSpace, kit: Kit) -> Standing | None:
     return chest
 
 
-def _dining(space: RoomSpace, kit: Kit) -> Standing | None:
-    return dining_group(space, kit, around_m=0.7) if not _has(space, ("table",), 0.9) else None
-
-
 def _desk(space: RoomSpace, kit: Kit) -> Standing | None:
     return desk_group(space, kit)
 
 
 def _machine(space: RoomSpace, kit: Kit) -> Standing | None:
-    """Another machine, of a style that the gym has not."""
-    there = {s.placed.item.style for s in space.standing}
+    """Another machine, of a style that the gym has not, or only once where it is large; in its middle if there is."""
+    there = [s.placed.item.style for s in space.standing if s.placed.item.category == "gym_equipment"]
+    most = 2 if space.inner.area_m2 > 17 and len(there) > 3 else 1
     for _ in range(6):
         item = kit.make("gym_equipment")
-        if item is not None and item.mount == "floor" and not item.walk_over and item.style not in there:
-            return space.against_wall(kit.rng, item, front_m=0.6)
+        if item is not None and item.mount == "floor" and not item.walk_over and there.count(item.style) < most:
+            found = space.in_middle(kit.rng, item, (), around_m=1.2, apart_m=0.5) if space.inner.short_m > 4.0 else None
+            return found or space.against_wall(kit.rng, item, front_m=0.6)
     return None
 
 
-def _has(space: RoomSpace, categories: Sequence[str], wide_m: float) -> bool:
-    """Whether a piece of such a category, at least so wide, stands in the room."""
-    return any(
-        s.placed.item.category in categories and min(s.placed.item.size_m[:2]) >= 0.75 * wide_m for s in space.standing
-    )
+def _towels(space: RoomSpace, kit: Kit) -> Standing | None:
+    return place(space, kit, "towel", "floor", front_m=0.3)
 
 
-_PLANT = _piece("plant", "floor", front_m=0.0, corner=True)
-_LAMP = _piece("lighting", "floor", front_m=0.0, corner=True)
+_PLANT = _piece("plant", "floor", front_m=0.0, corner=True, most=2)
+_LAMP = _piece("lighting", "floor", front_m=0.0, corner=True, most=2)
 _BOOKS = _piece("shelving", "bookcase")
 _BENCH = _piece("seating", "bench", front_m=0.4)
-_OTTOMAN = _piece("seating", "ottoman", front_m=0.3)
-_BOX = _piece("objects", "floor", front_m=0.0, corner=True)
-_PIANO = _piece("furniture", "piano", front_m=0.7)
-_SCREEN = _piece("furniture", "screen", front_m=0.2)
+_PLAIN_BENCH = _piece("seating", "plain", front_m=0.4, most=1)
+_OTTOMAN = _piece("seating", "ottoman", front_m=0.3, most=2)
+_BOX = _piece("objects", "floor", front_m=0.0, corner=True, most=2)
+_BIN = _piece("objects", "bin", front_m=0.0, corner=True, most=1)
+_STOOL = _piece("stool", "low", front_m=0.2, corner=True, most=1)
+_BASKET = _piece("clothes", "floor", front_m=0.2, corner=True, most=1)
+_PIANO = _piece("furniture", "piano", front_m=0.7, most=1)
+_SCREEN = _piece("furniture", "screen", front_m=0.2, most=1)
 _WARDROBE = _piece("cabinet", "wardrobe", front_m=0.7, corner=True)
 _SIDEBOARD = _piece("cabinet", "sideboard", "display", front_m=0.6)
-_RACK = _piece("clothes", "rack", front_m=0.4)
+_RACK = _piece("clothes", "rack", front_m=0.4, most=2)
 
 FILLINGS: Mapping[str, Filling] = MappingProxyType(
     {
         "living_room": Filling(
-            0.25, (reading_corner, chat_circle, console, _BOOKS, _BOOKS, _PLANT, _PIANO, _LAMP, _OTTOMAN, pictures)
+            0.27,
+            (
+                reading_corner,
+                chat_circle,
+                console,
+                _BOOKS,
+                _PLANT,
+                _PIANO,
+                _LAMP,
+                _OTTOMAN,
+                middle_rug,
+                pictures,
+            ),
         ),
-        "bedroom": Filling(0.27, (reading_corner, _chest, _desk, _BENCH, _PLANT, _WARDROBE, _BOOKS, _SCREEN, pictures)),
-        "kitchen": Filling(0.26, (_dining, _SIDEBOARD, _PLANT, _BENCH, console, pictures)),
-        "dining_room": Filling(0.24, (_SIDEBOARD, console, reading_corner, _PLANT, _BENCH, _PIANO, pictures)),
+        "bedroom": Filling(
+            0.30, (reading_corner, _chest, _desk, _PLAIN_BENCH, _PLANT, _WARDROBE, _BOOKS, _SCREEN, pictures)
+        ),
+        "kitchen": Filling(0.28, (_SIDEBOARD, _PLANT, _BIN, pictures)),
+        "dining_room": Filling(0.26, (_SIDEBOARD, console, reading_corner, _PLANT, _PIANO, pictures)),
         "studio": Filling(0.30, (reading_corner, _BOOKS, _PLANT, console, _OTTOMAN)),
-        "office": Filling(0.26, (_BOOKS, _desk, reading_corner, _PLANT, console, pictures, middle_rug)),
-        "gym": Filling(0.24, (_machine, _machine, _BENCH, _PLANT, _OTTOMAN, pictures)),
-        "hallway": Filling(0.13, (console, _BENCH, _PLANT, _BOOKS, _chest, reading_corner, pictures), rounds=3),
-        "bathroom": Filling(0.27, (_PLANT, _BOX, _chest, _BENCH), rounds=1),
-        "laundry": Filling(0.27, (_RACK, _BOOKS, _BOX, _PLANT), rounds=1),
+        "office": Filling(0.28, (_BOOKS, _desk, reading_corner, _PLANT, console, pictures, middle_rug)),
+        "gym": Filling(0.30, (_machine, _machine, _PLAIN_BENCH, _PLANT, _OTTOMAN, _towels, pictures)),
+        "bathroom": Filling(0.27, (_PLANT, _BIN, _towels, _STOOL, _BASKET), rounds=1),
+        "laundry": Filling(0.27, (_BOOKS, _BASKET, _BIN), rounds=1),
         "closet": Filling(0.30, (_WARDROBE, _RACK, _chest, _BOX, _BOOKS, _OTTOMAN), rounds=1),
     }
 )

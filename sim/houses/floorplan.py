@@ -21,6 +21,10 @@ JoinKind = Literal["door", "opening", "open"]
 """A door of 0.8-1.0 m, a wide opening under a lintel, or no wall at all."""
 
 
+CORRIDOR_M = ((180.0, (1.5, 1.9)), (120.0, (1.35, 1.75)), (0.0, (1.2, 1.45)))
+"""Homes from so many square metres on have corridors of such widths: in long ones things stand along the walls."""
+
+
 class PlanError(ValueError):
     """The rooms drawn do not fit together; another draw may."""
 
@@ -120,7 +124,8 @@ def draw_floorplan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wan
     """
     program = draw_program(rng, kind, area_m2, wanted)
     draft = _Draft()
-    corridor_m = _draw(rng, 1.2, 1.45) if area_m2 < 120 else _draw(rng, 1.3, 1.75)
+    low_m, high_m = next(widths for above_m2, widths in CORRIDOR_M if area_m2 >= above_m2)
+    corridor_m = _draw(rng, low_m, high_m)
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))
     depth_scale = float(np.clip(scale**0.5, 0.9, 1.25))
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from sim.houses.fill import fill, runners
-from sim.houses.furniture.item import Item, Look
-from sim.houses.geometry import SIDES, Side
+from sim.houses.fill import chat_circle, fill, middle_rug, reading_corner
+from sim.houses.geometry import SIDES
 from sim.houses.groups import (
     bed_group,
     desk_group,
     dining_group,
     hang,
     hang_over,
+    lay_rug,
     place,
     put_things,
     row,
     sofa_group,
 )
+from sim.houses.halls import furnish_hall
 from sim.houses.kit import Kit
+from sim.houses.kitchens import furnish_kitchen, kitchen_units
 from sim.houses.placement import RoomSpace, Standing
+
+BOXED = frozenset(("bedroom", "closet", "studio"))
+"""Rooms where suitcases and crates may stand; elsewhere it is bins and baskets."""
 
 
 def furnish(space: RoomSpace, kit: Kit) -> None:
@@ -35,15 +40,17 @@ def furnish(space: RoomSpace, kit: Kit) -> None:
 def _bedroom(space: RoomSpace, kit: Kit) -> None:
     area = space.inner.area_m2
     bed_group(space, kit, large=area > 10.5)
-    place(space, kit, "cabinet", "wardrobe", along="corner", front_m=0.7)
-    chest = place(space, kit, "chest_of_drawers", "dresser", front_m=0.7) if kit.chance(0.8) else None
+    for front_m in (0.7, 0.45):
+        if place(space, kit, "cabinet", "wardrobe", along="corner", front_m=front_m):
+            break
+    chest = place(space, kit, "chest_of_drawers", "dresser", front_m=0.55) if kit.chance(0.8) else None
     if chest is not None:
         put_things(space, kit, chest, ("objects", "plant", "objects", "lighting"), (0.6, 0.3, 0.4, 0.2))
         hang_over(space, kit, chest, *(("mirror",) if kit.chance(0.5) else ("picture",)))
-    if area > 13 and kit.chance(0.55):
+    if area > 13 and kit.chance(0.5):
         desk_group(space, kit)
-    if area > 14 and kit.chance(0.5):
-        place(space, kit, "chair", "arm", along="corner", front_m=0.4)
+    if area > 13.5 and (area > 18 or kit.chance(0.6)) and reading_corner(space, kit) is None:
+        place(space, kit, "seating", "plain", front_m=0.4)
     if kit.chance(0.35):
         hang(space, kit, "tv_monitor", "tv_wall")
     if kit.clutter_chance(0.5):
@@ -58,6 +65,7 @@ def _living_room(space: RoomSpace, kit: Kit) -> None:
         if hearth is not None:
             hang_over(space, kit, hearth, "picture" if kit.chance(0.6) else "mirror")
     sofa_group(space, kit)
+    _second_groups(space, kit)
     if area > 20 or kit.chance(0.4):
         place(space, kit, "shelving", "bookcase", front_m=0.6)
     if area > 24:
@@ -65,128 +73,31 @@ def _living_room(space: RoomSpace, kit: Kit) -> None:
         if board is not None:
             put_things(space, kit, board, ("objects", "plant", "lighting", "objects"), (0.6, 0.4, 0.4, 0.4))
             hang_over(space, kit, board, "picture")
-    if area > 30:
-        place(space, kit, "chair", "arm", along="corner", front_m=0.5)
-        place(space, kit, "seating", front_m=0.4)
-    if area > 26 and kit.chance(0.4):
-        desk_group(space, kit)
     place(space, kit, "lighting", "floor", along="corner", front_m=0.0)
     if kit.clutter_chance(0.3):
         place(space, kit, "cushion", "floor", along="corner", front_m=0.2)
     _extras(space, kit, plants=0.9, pictures=(1, 3))
 
 
-def _kitchen(space: RoomSpace, kit: Kit) -> None:
-    kitchen_units(space, kit)
+def _second_groups(space: RoomSpace, kit: Kit) -> None:
+    """What a living room has beside its sofa: one group more from 20 m2 on, two from 30."""
     area = space.inner.area_m2
-    dining_elsewhere = "dining_room" in kit.home_rooms
-    if area > 13 and kit.chance(0.85 if dining_elsewhere else 0.4):
-        _island(space, kit)
-    elif area > 8 and (not dining_elsewhere or kit.chance(0.25)):
-        dining_group(space, kit, around_m=0.65)
-    _extras(space, kit, plants=0.4, pictures=(0, 1))
-
-
-def kitchen_units(space: RoomSpace, kit: Kit) -> None:
-    """A run of units along the best wall (fridge, counter with sink, cooker, counter), cabinets above."""
-    sides = sorted(SIDES, key=lambda side: -space.wall_length(side) + (0.5 if _has_window(space, side) else 0.0))
-    looks = kit.looks("lacquer", "stone", "metal", "wood", "steel")
-    for side in sides:
-        made = _kitchen_run(space, kit, side, min(space.wall_length(side) - 0.02, 5.0), looks)
-        if made:
-            _wall_cabinets(space, kit, side, made, looks)
-            if space.inner.area_m2 > 9 and kit.chance(0.7):
-                _second_run(space, kit, [other for other in sides if other != side], looks)
-            return
-
-
-def _second_run(space: RoomSpace, kit: Kit, sides: Sequence[Side], looks: dict[str, Look]) -> None:
-    """More worktop on another wall."""
-    for side in sides:
-        for share in (0.85, 0.6, 0.4):
-            width = round(min(share * space.wall_length(side), 2.4), 2)
-            item = (
-                kit.make("counter", "run", width_m=width, with_sink=False, with_hob=False, looks=looks)
-                if width > 0.8
-                else None
-            )
-            run = row(space, kit, [item], side) if item else []
-            if run:
-                put_things(space, kit, run[0], ("appliances", "objects", "plant", "objects"), (0.4, 0.8, 0.2, 0.5))
-                _wall_cabinets(space, kit, side, run, looks)
-                return
-
-
-def _kitchen_run(space: RoomSpace, kit: Kit, side: Side, free_m: float, looks: dict[str, Look]) -> list[Standing]:
-    """Units side by side on one wall, fewer and narrower ones where the wall is short."""
-    fridge, cooker = kit.make("appliances", "fridge"), kit.make("appliances", "stove")
-
-    def worktop(width_m: float, *, sink: bool, hob: bool) -> Item | None:
-        return kit.make("counter", "run", width_m=round(width_m, 2), with_sink=sink, with_hob=hob, looks=looks)
-
-    for share in (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4):
-        fixed = sum(item.size_m[1] + 0.005 for item in (fridge, cooker) if item is not None)
-        rest = share * free_m - fixed
-        if rest > 1.9:
-            left = 0.6 * rest
-            wanted = [fridge, worktop(left, sink=True, hob=False), cooker, worktop(rest - left, sink=False, hob=False)]
-        elif rest > 0.95:
-            wanted = [fridge, worktop(rest, sink=True, hob=False), cooker]
-        elif share * free_m > 1.3:
-            wanted = [worktop(share * free_m, sink=True, hob=True)]
-        else:
+    wanted = int(area > 20) + int(area > 30) + int(area > 40)
+    free = [chat_circle, dining_group] if "dining_room" not in kit.home_rooms or area > 38 else [chat_circle]
+    by_wall = [reading_corner, desk_group]
+    groups = [free[n] for n in kit.rng.permutation(len(free)).tolist()]
+    groups += [by_wall[n] for n in kit.rng.permutation(2).tolist()]
+    for group in groups if area > 24 else reversed(groups):
+        if wanted <= 0:
             break
-        run = row(space, kit, [item for item in wanted if item is not None], side)
-        for unit in run:
-            if unit.placed.item.category == "counter":
-                put_things(space, kit, unit, ("objects", "appliances", "objects", "plant"), (0.8, 0.3, 0.5, 0.2))
-        if run:
-            if len(wanted) == 1 and fridge is not None:
-                space.against_wall(kit.rng, fridge, along="corner", front_m=0.6)
-            return run
-    return []
+        wanted -= group(space, kit) is not None
+    if area > 20:
+        middle_rug(space, kit)
 
 
-def _wall_cabinets(space: RoomSpace, kit: Kit, side: Side, run: list[Standing], looks: dict[str, Look]) -> None:
-    for unit in run:
-        if unit.placed.item.size_m[2] > 1.2:
-            continue
-        width = min(unit.placed.item.size_m[1], 2.0)
-        lo, hi = unit.rect.span(side)
-        for share in (1.0, 0.6, 0.4):
-            cabinet = kit.make("cabinet", "kitchen_wall", width_m=round(width * share, 2), looks=looks)
-            if cabinet is None or cabinet.mount != "wall":
-                return
-            half = cabinet.size_m[1] / 2
-            spots = (0.5 * (lo + hi), lo + half, hi - half)
-            if any(space.on_wall(kit.rng, cabinet, sides=[side], at=at, bottom_m=1.45, margin_m=0.0) for at in spots):
-                break
-
-
-def _island(space: RoomSpace, kit: Kit) -> None:
-    """A free-standing counter with stools on one side."""
-    island = kit.make("counter", "island")
-    if island is None:
-        dining_group(space, kit, around_m=0.65)
-        return
-    front = island.size_m[0] / 2 + 0.45
-    spots = [(side * front, y, 0.4) for side in (-1.0, 1.0) for y in (-0.3 * island.size_m[1], 0.3 * island.size_m[1])]
-    standing = space.in_middle(kit.rng, island, spots, around_m=0.9)
-    if standing is None:
-        dining_group(space, kit, around_m=0.65)
-        return
-    put_things(space, kit, standing, ("objects", "plant", "objects"), (0.7, 0.4, 0.3))
-    stool = kit.make("stool", "bar")
-    space.release(standing)
-    if stool is None:
-        return
-    depth, width = island.size_m[:2]
-    count = max(2, min(4, int(width / (stool.size_m[1] + 0.2))))
-    yaw = standing.placed.yaw_rad
-    c, s = math.cos(yaw), math.sin(yaw)
-    for n in range(count):
-        lx, ly = depth / 2 + stool.size_m[0] / 2 + 0.04, (n - 0.5 * (count - 1)) * width / count
-        space.at(stool, standing.placed.x_m + c * lx - s * ly, standing.placed.y_m + s * lx + c * ly, yaw + math.pi)
+def _kitchen(space: RoomSpace, kit: Kit) -> None:
+    furnish_kitchen(space, kit)
+    _extras(space, kit, plants=0.4, pictures=(0, 1))
 
 
 def _dining_room(space: RoomSpace, kit: Kit) -> None:
@@ -195,8 +106,6 @@ def _dining_room(space: RoomSpace, kit: Kit) -> None:
     if board is not None:
         put_things(space, kit, board, ("objects", "plant", "lighting", "objects"), (0.7, 0.4, 0.3, 0.4))
         hang_over(space, kit, board, "picture")
-    if kit.chance(0.3):
-        place(space, kit, "counter", "island", front_m=0.7)
     _extras(space, kit, plants=0.7, pictures=(0, 1))
 
 
@@ -228,11 +137,29 @@ def _bathroom(space: RoomSpace, kit: Kit) -> None:
         hang(space, kit, "mirror")
     for _ in range(1 + kit.chance(0.4)):
         hang(space, kit, "towel", "rail")
+    if basin is not None and area > 9.5:
+        second = _basin(space, kit)
+        if second is not None:
+            hang_over(space, kit, second, "mirror")
+    if area > 5.5 and kit.chance(0.7):
+        _bath_mat(space, kit, got or basin)
+    if area > 7 and kit.chance(0.6):
+        place(space, kit, "towel", "floor", front_m=0.3)
     if kit.chance(0.4):
         place(space, kit, "stool", "low", along="corner", front_m=0.2)
     if kit.clutter_chance(0.4):
-        place(space, kit, "objects", "floor", "basket", along="corner", front_m=0.0)
-    _extras(space, kit, plants=0.3, pictures=(0, 1), lamp=False)
+        place(space, kit, "objects", "bin", along="corner", front_m=0.0)
+    _extras(space, kit, plants=0.3, pictures=(0, int(area > 6)), lamp=False, boxes=False)
+
+
+def _bath_mat(space: RoomSpace, kit: Kit, host: Standing | None) -> None:
+    """A small rug before a tub, a shower or a basin."""
+    if host is None:
+        return
+    ahead = host.placed.item.size_m[0] / 2 + 0.38
+    yaw = host.placed.yaw_rad
+    x, y = host.placed.x_m + ahead * math.cos(yaw), host.placed.y_m + ahead * math.sin(yaw)
+    lay_rug(space, kit, x, y, yaw, size_m=(0.55, 0.85))
 
 
 def _basin(space: RoomSpace, kit: Kit) -> Standing | None:
@@ -242,23 +169,9 @@ def _basin(space: RoomSpace, kit: Kit) -> Standing | None:
 
 
 def _hallway(space: RoomSpace, kit: Kit) -> None:
-    wide = space.inner.short_m
-    if wide > 1.15:
-        if kit.chance(0.7):
-            hang(space, kit, "clothes", "hooks", along="any")
-        for _ in range(1 + int(space.inner.area_m2 > 12)):
-            board = place(
-                space, kit, *(("cabinet", "sideboard") if kit.chance(0.5) else ("table", "console")), front_m=0.45
-            )
-            if board is not None:
-                put_things(space, kit, board, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))
-                hang_over(space, kit, board, "mirror" if kit.chance(0.6) else "picture")
-        if kit.chance(0.5):
-            place(space, kit, "seating", "bench", front_m=0.45)
-    if kit.chance(0.6):
-        runners(space, kit)
+    furnish_hall(space, kit)
     pictures = int(space.inner.long_m / 4.0)
-    _extras(space, kit, plants=0.6, pictures=(min(1, pictures), min(3, 1 + pictures)))
+    _extras(space, kit, plants=0.5, pictures=(min(2, pictures), min(4, 1 + pictures)), lamp=False)
 
 
 def _office(space: RoomSpace, kit: Kit) -> None:
@@ -272,7 +185,9 @@ def _office(space: RoomSpace, kit: Kit) -> None:
         place(space, kit, "chair", "arm", along="corner", front_m=0.4)
     if kit.chance(0.5):
         hang(space, kit, "board_panel")
-    _extras(space, kit, plants=0.8, pictures=(0, 2))
+    if kit.chance(0.7):
+        middle_rug(space, kit)
+    _extras(space, kit, plants=0.6, pictures=(0, 2))
 
 
 def _gym(space: RoomSpace, kit: Kit) -> None:
@@ -287,7 +202,7 @@ def _gym(space: RoomSpace, kit: Kit) -> None:
         if len(seen) >= count:
             break
     hang(space, kit, "mirror")
-    place(space, kit, "seating", "bench", front_m=0.5)
+    place(space, kit, "seating", "plain", front_m=0.5)
     hang(space, kit, "towel", "rail")
     if kit.chance(0.5):
         hang(space, kit, "tv_monitor", "tv_wall")
@@ -314,7 +229,7 @@ def _closet(space: RoomSpace, kit: Kit) -> None:
     if kit.chance(0.5):
         place(space, kit, "stool", "low", along="corner", front_m=0.2)
     if kit.clutter_chance(0.5):
-        place(space, kit, "objects", "floor", "box", along="corner", front_m=0.0)
+        place(space, kit, "objects", "floor", along="corner", front_m=0.0)
     if kit.chance(0.5):
         hang(space, kit, "mirror")
 
@@ -330,7 +245,7 @@ def _extras(
     plants: float,
     pictures: tuple[int, int],
     lamp: bool = True,
-    corner_plants: bool = True,
+    boxes: bool = True,
 ) -> None:
     """Plants in corners, pictures on free wall, something on the floor: how much is the clutter's affair."""
     for chance in (plants, plants - 0.5):
@@ -340,8 +255,9 @@ def _extras(
         hang(space, kit, "picture")
     if lamp and kit.chance(0.25):
         place(space, kit, "lighting", "floor", along="corner", front_m=0.0)
-    if kit.clutter_chance(0.25):
-        place(space, kit, "objects", "floor", "box", "basket", along="corner", front_m=0.0)
+    if boxes and kit.clutter_chance(0.25):
+        kind = "floor" if space.kind in BOXED else "bin"
+        place(space, kit, "objects", kind, along="corner", front_m=0.0)
 
 
 def _curtains(space: RoomSpace, kit: Kit) -> None:
@@ -352,7 +268,8 @@ def _curtains(space: RoomSpace, kit: Kit) -> None:
         width, height = window.span[1] - window.span[0], window.top_m - window.bottom_m
         tries = [("blinds", width - 0.02, height - 0.02)]
         if space.kind not in ("bathroom", "laundry", "kitchen", "hallway") and drawn < 0.7:
-            tries = [("curtain", width + 0.4, 2.2), ("curtain", width + 0.4, height + 0.25), *tries]
+            wide = math.ceil(5.0 * (width + 0.3)) / 5.0  # few widths: windows of nearly one size share a curtain
+            tries = [("curtain", wide, 2.2), ("curtain", wide, math.ceil(5.0 * (height + 0.2)) / 5.0), *tries]
         if drawn > 0.88:
             return
         for category, wide, high in tries:
@@ -375,10 +292,6 @@ def _ceiling_lamp(space: RoomSpace, kit: Kit) -> None:
             else:
                 y = space.inner.y0 + along * space.inner.depth_m
         space.on_ceiling(lamp, x, y)
-
-
-def _has_window(space: RoomSpace, side: Side) -> bool:
-    return any(where == side for where, _ in space.windows())
 
 
 RULES: Mapping[str, Callable[[RoomSpace, Kit], None]] = MappingProxyType(

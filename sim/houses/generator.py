@@ -27,14 +27,14 @@ from sim.houses.structure import build_structure
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
 
-GENERATOR_VERSION = 1
+GENERATOR_VERSION = 2
 """Raised whenever the same seed would give another house."""
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 400.0)
 MAX_BYTES = 395_000
 """Of a house as a file."""
-BYTES_PER_GEOM = (500, 300, 200, 130, 100, 80)
+BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
 """What one geom less to draw may cost in the file: less where the house would get too large otherwise."""
 _POOL_STREAM = {"train": 0, "heldout": 1}
 
@@ -135,8 +135,8 @@ def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHou
             rejects.append(str(error))
             continue
         spec = _build_small(draft, config)
-        faults = check_house(spec)
-        if not faults:
+        faults = check_house(spec) if spec is not None else [f"its file is larger than {MAX_BYTES / 1000:.0f} KB"]
+        if spec is not None and not faults:
             return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
         rejects.append("; ".join(faults))
     raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {' | '.join(rejects)}")
@@ -190,13 +190,16 @@ def _draw_plan(
     return plan, cut_openings(rng, plan)
 
 
-def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec:
-    """The specification of a drawn home, its parts joined as far as the file's size allows."""
-    for bytes_per_geom in BYTES_PER_GEOM[:-1]:
-        spec = _build(draft, config, bytes_per_geom)
-        if len(house_text(spec)) <= MAX_BYTES:
+def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
+    """The specification of a drawn home, its parts joined as far as the file's size allows; None: it is too large."""
+    at = 0
+    while at < len(BYTES_PER_GEOM):
+        spec = _build(draft, config, BYTES_PER_GEOM[at])
+        size = len(house_text(spec))
+        if size <= MAX_BYTES:
             return spec
-    return _build(draft, config, BYTES_PER_GEOM[-1])
+        at += 2 if size > 1.15 * MAX_BYTES and at + 2 < len(BYTES_PER_GEOM) else 1
+    return None
 
 
 def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.MjSpec:

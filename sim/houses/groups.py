@@ -89,13 +89,28 @@ def before(
     return space.at(item, x, y, yaw + math.pi if facing else yaw)
 
 
-def lay_rug(space: RoomSpace, kit: Kit, x_m: float, y_m: float, yaw_rad: float, *, runner: bool | None = None) -> None:
-    """A rug under what stands there; a narrow one for halls if `runner`, a wide one if False."""
+def lay_rug(
+    space: RoomSpace,
+    kit: Kit,
+    x_m: float,
+    y_m: float,
+    yaw_rad: float,
+    *,
+    runner: bool | None = None,
+    size_m: tuple[float, float] | None = None,
+) -> bool:
+    """A rug under what stands there; a narrow one for halls if `runner`, a wide one if False.
+
+    `size_m` is its depth and width; False where none can lie there.
+    """
+    hints: dict[str, Any] = {"depth_m": size_m[0], "width_m": size_m[1]} if size_m else {}
     for n in range(3):
-        rug = kit.make("floor", "rug", fresh=n > 0)
-        if rug is not None and (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)):
-            space.lay(rug, x_m, y_m, yaw_rad)
-            return
+        rug = kit.make("floor", "rug", fresh=n > 0, **hints)
+        if rug is None:
+            return False
+        if (runner is None or runner == (min(rug.size_m[:2]) < RUNNER_M)) and space.lay(rug, x_m, y_m, yaw_rad):
+            return True
+    return False
 
 
 def bed_group(space: RoomSpace, kit: Kit, *, large: bool) -> Standing | None:
@@ -116,17 +131,21 @@ def bed_group(space: RoomSpace, kit: Kit, *, large: bool) -> Standing | None:
         return None
     stand = kit.make("chest_of_drawers", "nightstand") if kit.chance(0.5) else kit.make("table", "nightstand", "side")
     for towards in (1.0, -1.0):
-        if stand is not None and kit.chance(0.85):
+        if stand is not None and kit.chance(0.95):
             night = beside(space, kit, bed, stand, towards)
             if night:
                 put_things(space, kit, night, ("lighting", "objects"), (0.75, 0.4))
     if kit.chance(0.5):
-        bench = kit.make("seating", "bench")
+        bench = kit.make("seating", "plain")
         if bench is not None and bench.size_m[1] <= bed.placed.item.size_m[1] + 0.1:
             before(space, bed, bench, 0.05, facing=False)
     c, s = math.cos(bed.placed.yaw_rad), math.sin(bed.placed.yaw_rad)
-    if kit.chance(0.65):
-        lay_rug(space, kit, bed.placed.x_m + 0.35 * c, bed.placed.y_m + 0.35 * s, bed.placed.yaw_rad + math.pi / 2)
+    if kit.chance(0.95 if space.inner.area_m2 > 13 else 0.6):
+        ahead = 0.25 * bed.placed.item.size_m[0] + 0.15
+        size_m = (1.7, 2.4) if space.inner.area_m2 > 13 else None
+        x, y = bed.placed.x_m + ahead * c, bed.placed.y_m + ahead * s
+        if not lay_rug(space, kit, x, y, bed.placed.yaw_rad, size_m=size_m):
+            lay_rug(space, kit, x, y, bed.placed.yaw_rad + math.pi / 2)
     if kit.chance(0.5):
         hang_over(space, kit, bed, "picture")
     return bed
@@ -178,7 +197,9 @@ def sofa_group(space: RoomSpace, kit: Kit) -> Standing | None:
             put_things(space, kit, table, ("objects", "plant", "objects"), (0.6, 0.3, 0.3))
     ahead = sofa.placed.item.size_m[0] / 2 + 0.65
     if kit.chance(0.8):
-        lay_rug(space, kit, sofa.placed.x_m + c * ahead, sofa.placed.y_m + s * ahead, yaw + math.pi / 2, runner=False)
+        size_m = (1.7, 2.5) if space.inner.area_m2 > 18 else None
+        x, y = sofa.placed.x_m + c * (ahead + 0.15), sofa.placed.y_m + s * (ahead + 0.15)
+        lay_rug(space, kit, x, y, yaw, runner=False, size_m=size_m)
     easy = kit.make("chair", "arm") if kit.chance(0.75) else kit.make("seating", "ottoman")
     if easy is not None:
         for end in kit.rng.permutation([1.0, -1.0]).tolist()[: 1 if kit.chance(0.5) else 2]:
@@ -243,14 +264,15 @@ Seat = tuple[float, float, float]
 def dining_group(space: RoomSpace, kit: Kit, *, around_m: float = 0.75) -> Standing | None:
     """A table with chairs on its sides and a lamp above it."""
     chair = kit.make("chair", "dining")
-    for _ in range(2):
-        item = kit.make("table", "dining")
+    for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
+        hints: dict[str, Any] = {"width_m": width_m} if width_m else {}
+        item = kit.make("table", "dining", **hints)
         if item is None or chair is None:
             return None
         seats = _seats(kit, item, chair)
         half = chair.size_m[1] / 2
         spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
-        table = space.in_middle(kit.rng, item, spots, around_m=around_m)
+        table = space.in_middle(kit.rng, item, spots, around_m=around_m, least=least, apart_m=0.3)
         if table is not None:
             break
     else:
@@ -261,8 +283,23 @@ def dining_group(space: RoomSpace, kit: Kit, *, around_m: float = 0.75) -> Stand
     lamp = kit.make("lighting", "ceiling")
     if lamp is not None and lamp.mount == "ceiling":
         space.on_ceiling(lamp, table.placed.x_m, table.placed.y_m)
-    if kit.chance(0.35):
-        lay_rug(space, kit, table.placed.x_m, table.placed.y_m, table.placed.yaw_rad)
+    if space.kind != "kitchen" and kit.chance(0.4):
+        size_m = (1.9, 2.6) if space.inner.area_m2 > 12 else None
+        lay_rug(space, kit, table.placed.x_m, table.placed.y_m, table.placed.yaw_rad, size_m=size_m)
+    return table
+
+
+def breakfast_group(space: RoomSpace, kit: Kit) -> Standing | None:
+    """A small table against a wall with chairs on its free sides."""
+    chair = kit.make("chair", "dining")
+    table = place(space, kit, "table", "dining", front_m=0.6, width_m=0.95, depth_m=0.7)
+    if chair is None or table is None:
+        return None
+    space.release(table)
+    depth, width = table.placed.item.size_m[:2]
+    for seat in ((0.0, width / 2, -math.pi / 2), (0.0, -width / 2, math.pi / 2), (depth / 2, 0.0, math.pi)):
+        _draw_up(space, kit, table, chair, seat)
+    put_things(space, kit, table, ("objects", "plant"), (0.6, 0.25))
     return table
 
 

@@ -20,6 +20,8 @@ DESIGNS: Mapping[str, int] = MappingProxyType(
     }
 )  # fmt: skip
 """How many designs of a category, for each use, one home has at most (else one): people buy by the set."""
+SETS = frozenset(("counter",))
+"""Categories whose things are of one style in a home, whatever their sizes."""
 ONE_DESIGN = frozenset(("ceiling", "office", "bar", "nightstand", "desk", "media"))
 """Uses whose things are all alike in a home."""
 
@@ -35,6 +37,8 @@ class Kit:
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
         self._designs: dict[str, list[Item]] = {}
+        self._shown: dict[tuple[str, str | None], list[str]] = {}
+        self._bags: dict[str, list[Item]] = {}
         self._window_looks: list[dict[str, Look]] = []
 
     def make(self, category: str, *uses: str, fresh: bool = False, **hints: Any) -> Item | None:
@@ -54,10 +58,26 @@ class Kit:
         key = repr((category, use, sorted(hints.items())))
         known = self._designs.setdefault(key, [])
         if len(known) >= self._variety(category, use) + fresh:
-            return self.pick(known)
-        item = make_item(category, self.rng, pool=self.pool, **({"use": use} if use else {}), **hints)
+            bag = self._bags.setdefault(key, [])
+            if not bag:
+                bag.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
+            return bag.pop()
+        style = self._style(category, use)
+        item = make_item(category, self.rng, pool=self.pool, style=style, **({"use": use} if use else {}), **hints)
         known.append(item)
         return item
+
+    def _style(self, category: str, use: str | None) -> str:
+        """A style that the home has not yet, while there is one; sets keep theirs."""
+        shown = self._shown.setdefault((category, use), [])
+        if category in SETS and shown:
+            return shown[0]
+        every = styles(category, self.pool, use)
+        chosen = self.pick([style for style in every if style not in shown] or every)
+        if len(shown) == len(every):
+            shown.clear()
+        shown.append(chosen)
+        return chosen
 
     def _variety(self, category: str, use: str | None) -> int:
         return 1 if use in ONE_DESIGN else DESIGNS.get(category, 1)

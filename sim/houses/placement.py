@@ -8,7 +8,7 @@ measures the same on the real geoms.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -39,6 +39,8 @@ Along = Literal["any", "middle", "corner"]
 CELL_M = 0.05
 MAX_WALKS = 16
 """Places along the walls that are given up one after the other because they would cut the room in two."""
+GRID_M = 0.3
+"""Between the places in a room that are tried for what stands free."""
 ROBOT_M = 0.22
 """Half the width kept free for the robot: its radius of 0.18 m and 4 cm to spare."""
 ROBOT_HEIGHT_M = 0.9
@@ -154,7 +156,14 @@ class RoomSpace:
         return None
 
     def in_middle(
-        self, rng: np.random.Generator, item: Item, seats: Sequence[tuple[float, float, float]], *, around_m: float
+        self,
+        rng: np.random.Generator,
+        item: Item,
+        seats: Sequence[tuple[float, float, float]],
+        *,
+        around_m: float,
+        least: float = 0.0,
+        apart_m: float = 0.0,
     ) -> Standing | None:
         """Put an item where most of its seats can be used, nearer the room's middle rather than not.
 
@@ -163,26 +172,45 @@ class RoomSpace:
             item: floor item.
             seats: x, y in the item's frame and the radius of the free floor wanted there.
             around_m: how far from the walls it stays if it can.
+            least: share of the seats that must be usable; two of them must be anyhow.
+            apart_m: how far from walls and other things it stays at least.
         """
         best: tuple[int, Standing] | None = None
-        longer = 0.0 if self.inner.depth_m > self.inner.width_m else math.pi / 2
-        cx, cy = self.inner.centre
-        for n in range(24):
-            yaw = longer if n % 4 else longer - math.pi / 2
-            ex, ey = rotated_extent(item.size_m[0], item.size_m[1], yaw)
-            x = cx + float(rng.uniform(-1, 1)) * max(0.0, self.inner.width_m / 2 - ex / 2 - around_m) * min(1.0, n / 12)
-            y = cy + float(rng.uniform(-1, 1)) * max(0.0, self.inner.depth_m / 2 - ey / 2 - around_m) * min(1.0, n / 12)
+        for x, y, yaw in self._spots_inside(rng, item, around_m):
             standing = Standing(Placed(item, x, y, 0.0, yaw), footprint(x, y, item.size_m[0], item.size_m[1], yaw))
-            if not self._is_clear(standing.rect, 0.0, item.size_m[2], None):
+            around = standing.rect.grown(apart_m)
+            if not self.inner.contains(around, 0.01) or not self._is_clear(around, 0.0, item.size_m[2], None):
                 continue
             usable = sum(self._seat_free(standing, seat) for seat in seats)
-            if (best is None or usable > best[0]) and self._allows(standing):
-                best = (usable, standing)
-                if usable == len(seats):
-                    break
-        if best is None or best[0] < min(2, len(seats)) or not self.try_put(best[1], []):
-            return None
-        return best[1]
+            if usable < max(min(2, len(seats)), least * len(seats)) or (best is not None and usable <= best[0]):
+                continue
+            if any(standing.rect.overlaps(zone, 0.01) for _, zone in self._clear) or not self._allows(standing):
+                continue
+            best = (usable, standing)
+            if usable == len(seats):
+                break
+        return best[1] if best is not None and self.try_put(best[1], []) else None
+
+    def _spots_inside(
+        self, rng: np.random.Generator, item: Item, around_m: float
+    ) -> Iterator[tuple[float, float, float]]:
+        """Places and headings away from the walls: a few about the middle, then all over the room."""
+        longer = 0.0 if self.inner.depth_m > self.inner.width_m else math.pi / 2
+        cx, cy = self.inner.centre
+        for n in range(12):
+            yaw = longer if n % 4 else longer - math.pi / 2
+            ex, ey = rotated_extent(item.size_m[0], item.size_m[1], yaw)
+            free_x, free_y = (
+                max(0.0, size / 2 - extent / 2 - around_m) * min(1.0, n / 12)
+                for size, extent in ((self.inner.width_m, ex), (self.inner.depth_m, ey))
+            )
+            yield cx + float(rng.uniform(-1, 1)) * free_x, cy + float(rng.uniform(-1, 1)) * free_y, yaw
+        xs = np.arange(self.inner.x0 + 0.6, self.inner.x1 - 0.5, GRID_M)
+        ys = np.arange(self.inner.y0 + 0.6, self.inner.y1 - 0.5, GRID_M)
+        spots = sorted((abs(float(x) - cx) + abs(float(y) - cy), float(x), float(y)) for x in xs for y in ys)
+        for yaw in (longer, longer - math.pi / 2):
+            for _, x, y in spots:
+                yield x, y, yaw
 
     def _seat_free(self, host: Standing, seat: tuple[float, float, float]) -> bool:
         """Whether the floor round a seat of something is free."""
@@ -275,6 +303,11 @@ class RoomSpace:
         """Give up the free zone of something, for what belongs in it (a table before a sofa, chairs at a table)."""
         self._clear = [(owner, zone) for owner, zone in self._clear if owner != standing.rect]
 
+    def reserve(self, standing: Standing, front_m: float) -> None:
+        """Keep the floor free again before something that stands against a wall."""
+        if standing.side is not None:
+            self._clear.append((standing.rect, _ahead(standing.rect, standing.side, front_m)))
+
     def lay(self, item: Item, x_m: float, y_m: float, yaw_rad: float) -> bool:
         """Lay a flat thing (a rug) on the floor; others may stand on it, no other flat thing may overlap it."""
         rect = footprint(x_m, y_m, item.size_m[0], item.size_m[1], yaw_rad)
@@ -296,7 +329,8 @@ class RoomSpace:
             return False
         raster = self._taken.copy()
         self._mark(raster, rect)
-        if not self._walkable(raster, [s.rect for s in self.standing if not s.placed.item.walk_over] + [rect]):
+        others = [s.rect for s in self.standing if s.placed.item.mount == "floor" and not s.placed.item.walk_over]
+        if not self._walkable(raster, [*others, rect]):
             return False
         self._taken = raster
         self._clear += [(rect, zone) for zone in zones]

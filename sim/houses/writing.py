@@ -24,7 +24,7 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
     if textures is not None:
         text = text.replace(f'texturedir="{spec.texturedir}"', f'texturedir="{textures}"', 1)
     text = _QUAT.sub(_short_quat, text.replace(_NO_TURN, ""))
-    return _INDENT.sub("\n ", _LEADING_ZERO.sub(".", text))
+    return _INDENT.sub("\n", _LEADING_ZERO.sub(".", text))
 
 
 def _short_quat(found: re.Match[str]) -> str:

@@ -129,7 +129,7 @@ def make_item(category: str, rng: np.random.Generator, *, pool: Pool, style: str
     ================ =============================================================================================
     chair            dining, office, arm
     stool            bar (seat 0.62-0.78 m), low (0.42-0.47 m)
-    seating          bench (long ones), ottoman (small, low, free-standing: poufs, bean bags)
+    seating          bench, plain (a bench without a back), ottoman (small, low, free-standing: poufs, bean bags)
     sofa             (none); corner: an L or an oval that wants a corner or the middle of a room
     cushion          throw (lies on sofas, beds), floor (on the floor by itself)
     table            dining, coffee, desk, side, nightstand, console
@@ -149,7 +149,7 @@ def make_item(category: str, rng: np.random.Generator, *, pool: Pool, style: str
     lighting         ceiling, floor, table (top), wall
     appliances       fridge, stove, washing_machine, dishwasher; microwave, small (top); hood (wall); hob (a child)
     gym_equipment    machine, weights, small
-    objects          top (books, clocks), kitchen (bowls, kettles), both mount top; floor (boxes, baskets, suitcases)
+    objects          top (books, clocks), kitchen (bowls, kettles), both mount top; floor (boxes, suitcases), bin
     furniture        piano, screen
     floor            rug
     ================ =============================================================================================

@@ -209,9 +209,9 @@ STYLES = (
     Style("objects", "kettle", "train", kettle, ("kitchen",), "top"),
     Style("objects", "clock", "train", clock, ("top",), "top"),
     Style("objects", "photo_stand", "train", photo_stand, ("top",), "top"),
-    Style("objects", "basket", "train", basket, ("floor",)),
+    Style("objects", "basket", "train", basket, ("floor", "bin")),
     Style("objects", "place_setting", "heldout", place_setting, ("kitchen", "top"), "top"),
     Style("objects", "bottles", "heldout", bottles, ("kitchen", "top"), "top"),
-    Style("objects", "waste_bin", "heldout", waste_bin, ("floor",)),
+    Style("objects", "waste_bin", "heldout", waste_bin, ("floor", "bin")),
     Style("objects", "suitcase", "heldout", suitcase, ("floor",)),
 )

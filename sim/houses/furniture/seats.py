@@ -173,12 +173,12 @@ def slab_bench(w: Workbench) -> None:
 
 
 STYLES = (
-    Style("seating", "bench_wood", "train", bench_wood, ("bench",)),
+    Style("seating", "bench_wood", "train", bench_wood, ("bench", "plain")),
     Style("seating", "storage_bench", "train", storage_bench, ("bench",)),
     Style("seating", "beanbag", "train", beanbag, ("ottoman",)),
-    Style("seating", "tufted_bench", "train", tufted_bench, ("bench",)),
+    Style("seating", "tufted_bench", "train", tufted_bench, ("bench", "plain")),
     Style("seating", "ottoman", "train", ottoman, ("ottoman",)),
     Style("seating", "pouf", "heldout", pouf, ("ottoman",)),
     Style("seating", "settle", "heldout", settle, ("bench",)),
-    Style("seating", "slab_bench", "heldout", slab_bench, ("bench",)),
+    Style("seating", "slab_bench", "heldout", slab_bench, ("bench", "plain")),
 )
