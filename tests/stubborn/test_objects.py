@@ -93,7 +93,7 @@ def test_a_target_on_a_wall_lands_within_a_cell_of_it(distance_m: float, pose: P
     Mapper(CAMERA, RobotModel(), MappingConfig()).add_scores(navmap, depth, Scores(target, 1 - target), pose, 0)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.size > 5
-    assert np.abs(x_m - distance_m).max() <= 0.05
+    assert np.abs(x_m - distance_m).max() <= 0.05 + 1e-6
 
 
 def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
