@@ -21,7 +21,7 @@ from sim.interface import (
     Segmenter,
     wrap_angle,
 )
-from stubborn.collisions import CollisionConfig, is_collision, mark_collision, mark_visited
+from stubborn.collisions import CollisionConfig, Jitter, is_collision, mark_collision, mark_visited
 from stubborn.exploration import CornerExplorer, ExplorationConfig, Explorer, Route
 from stubborn.glance import GlanceConfig, Glancer
 from stubborn.grid import GridFrame, PlanarPose, Window
@@ -126,6 +126,7 @@ class StubbornAgent:
         self.window: Window | None = None
         self.pose: PlanarPose | None = None
         self.last_action: Action | None = None
+        self.jitter = Jitter()
         self.route: Route | None = None
         """What is being followed, for pictures."""
         self.approach: Approach | None = None
@@ -148,7 +149,8 @@ class StubbornAgent:
     def _feel(self, before: PlanarPose, pose: PlanarPose) -> None:
         """Learn from how the last action went."""
         config, moved_m = self.config.collisions, pose.distance_to(before.x_m, before.y_m)
-        failed = is_collision(self.last_action, moved_m, config.failed_below_m)
+        self.jitter.observe(self.last_action, moved_m)
+        failed = is_collision(self.last_action, moved_m, self.jitter.failed_below_m(config))
         mark_visited(self.navmap, before, pose, self.robot.radius_m, config)
         if failed and self.config.avoidance.collision_layers:
             mark_collision(self.navmap, pose, config)

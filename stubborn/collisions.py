@@ -8,12 +8,13 @@ are kept, one that is probably too large (pessimistic) and one that is probably 
 from __future__ import annotations
 
 import math
+import statistics
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import Action, ConfigError
+from sim.interface import FORWARD_M, Action, ConfigError
 from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
 from stubborn.navmap import NavMap
 
@@ -30,6 +31,10 @@ class CollisionConfig:
     """From the robot's centre to the near edge of both squares."""
     failed_below_m: float = 0.20
     """A MOVE_FORWARD that moved less than this is a collision: a real body slides, so "unmoved" would miss most."""
+    jitter_sigmas: float = 2.5
+    """With a jittery gps a forward must fall short of a whole one by so many standard deviations too."""
+    least_failed_m: float = 0.10
+    """However jittery the gps, a forward that seems to have moved less than this is a collision."""
     trail_radius_m: float = 0.07
     """Half the width of the trail that the robot's centre leaves: a cell and its neighbours."""
 
@@ -41,6 +46,38 @@ class CollisionConfig:
 def is_collision(action: Action | None, moved_m: float, failed_below_m: float) -> bool:
     """Whether the last action was a forward that did not get through."""
     return action is Action.MOVE_FORWARD and moved_m < failed_below_m
+
+
+class Jitter:
+    """How much the pose jumps while the robot stands: what a turn on the spot seems to have moved is noise of the gps.
+
+    Between two readings with normal noise the distance has a Rayleigh distribution, whose median is 1.177 standard
+    deviations; the median does not mind the turn that did push the robot aside.
+    """
+
+    _FEWEST = 3
+    _MEDIAN_SIGMAS = math.sqrt(2.0 * math.log(2.0))
+
+    def __init__(self) -> None:
+        self._moved_m: list[float] = []
+
+    def observe(self, action: Action | None, moved_m: float) -> None:
+        """Take in how far the last action seems to have moved the robot."""
+        if action in (Action.TURN_LEFT, Action.TURN_RIGHT):
+            self._moved_m.append(moved_m)
+
+    def std_m(self) -> float:
+        """Standard deviation of a measured move along any direction; 0 until some turns were made."""
+        if len(self._moved_m) < self._FEWEST:
+            return 0.0
+        return statistics.median(self._moved_m) / self._MEDIAN_SIGMAS
+
+    def failed_below_m(self, config: CollisionConfig) -> float:
+        """Below which distance a forward has failed: as configured, less where that would be within the jitter."""
+        return max(
+            min(config.failed_below_m, FORWARD_M - config.jitter_sigmas * self.std_m()),
+            min(config.least_failed_m, config.failed_below_m),
+        )
 
 
 def square_ahead(

@@ -17,7 +17,7 @@ from sim.interface import CameraModel, ConfigError, RobotModel, Scores
 from stubborn.grid import PlanarPose, Window
 from stubborn.navmap import NavMap
 from stubborn.objects import AllFrames, FrameScores, ObjectLayers
-from stubborn.occupancy import Occupancy, OccupancyConfig, SightLines, agrees, on_surface
+from stubborn.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,13 +150,13 @@ class Mapper:
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, c = self._obstacle_rays, self.config
-        d = rays.sample(depth)
-        points = rays.project(d, on_surface(d, c.occupancy.jump_1_m, c.occupancy.neighbours), camera_pose, window)
+        surfaces = Surfaces.of(rays.sample(depth), c.occupancy.jump_1_m)
+        points = rays.project(surfaces.depth, surfaces.neighbours >= c.occupancy.neighbours, camera_pose, window)
         view = navmap.view(window)
         solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
         tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
         sight = SightLines.of_frame(
-            d, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+            surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
         )
         self._occupancy.add(view, _cells(points, solid, window), _cells(points, tall, window), sight)
 
@@ -167,14 +167,15 @@ class Mapper:
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
-        d = rays.sample(depth)
+        target = scores.target[score_pick]
+        d, confirmed = self._confirm(target, rays.sample(depth))
         points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
         if points.rows.size == 0:
             return NOTHING_SIGHTED
         navmap.grow_known(_span(points.rows, window.rows.start), _span(points.cols, window.cols.start))
         low = points.height_m <= self.config.score_max_height_m
         flat = _cells(points, low, window)
-        target = self._confirmed(scores.target[score_pick], d)[points.valid][low]
+        target = np.where(confirmed, target, 0.0)[points.valid][low]
         other = scores.best_other[score_pick][points.valid][low]
         self.layers.add(navmap.view(window), FrameScores(window.frame.shape, flat, target, other), step)
         found = target > self.config.candidate_score
@@ -189,19 +190,23 @@ class Mapper:
         navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
         return Sighting(rows, cols, distance_m)
 
-    def _confirmed(self, target: NDArray[np.float32], d: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Target scores without those of pixels that lie elsewhere than most target pixels around them.
+    def _confirm(
+        self, target: NDArray[np.float32], d: NDArray[np.float32]
+    ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+        """Depth smoothed over the target, and False where a target pixel lies elsewhere than most of those around it.
 
         At the rim of an object a noisy depth image shows what is behind or before it.
         """
+        confirmed = np.ones(d.shape, np.bool_)
         found = target > self.config.candidate_score
         rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
         if rows.size == 0 or self.config.occupancy.neighbours == 0:
-            return target
+            return d, confirmed
         box = slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
-        confirmed = target.copy()
-        confirmed[box][found[box] & ~agrees(np.where(found[box], d[box], 0.0), self.config.occupancy)] = 0.0
-        return confirmed
+        sure, smooth = agreeing(np.where(found[box], d[box], np.float32(0.0)), self.config.occupancy)
+        confirmed[box] = sure | ~found[box]
+        d[box] = np.where(found[box], smooth, d[box])
+        return d, confirmed
 
     def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
         x_m, y_m = pose.ahead(self.camera_forward_m)

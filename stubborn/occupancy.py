@@ -50,28 +50,45 @@ class OccupancyConfig:
             raise ConfigError("OccupancyConfig: jump_1_m, patch_m2, hit, miss and neighbours must not be negative.")
 
 
-def on_surface(depth: NDArray[np.float32], jump_1_m: float, neighbours: int) -> NDArray[np.bool_]:
-    """Which pixels of an image (h, w) of metres lie on one surface with at least so many of their eight neighbours."""
-    return _neighbours_on_surface(depth, jump_1_m) >= neighbours if neighbours else np.ones(depth.shape, np.bool_)
+@dataclass(frozen=True)
+class Surfaces:
+    """A depth image smoothed along surfaces but never across their edges."""
+
+    depth: NDArray[np.float32]
+    """(h, w) metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
+    neighbours: NDArray[np.uint8]
+    """(h, w) how many of the neighbours that are."""
+
+    @classmethod
+    def of(cls, depth: NDArray[np.float32], jump_1_m: float) -> Surfaces:
+        """Of an image (h, w) of metres, where 0 is no distance; `jump_1_m` as in `OccupancyConfig`."""
+        scaled = depth * np.float32(jump_1_m)
+        total, count = depth.copy(), np.zeros(depth.shape, np.uint8)
+        for ahead, behind in _NEIGHBOUR_PAIRS:
+            a, b = depth[ahead], depth[behind]
+            gap = b - a
+            # |1/a - 1/b| < jump, without a division; never true where one of them is 0.
+            same = np.abs(gap) < scaled[ahead] * b
+            gap *= same
+            count[ahead] += same
+            count[behind] += same
+            total[ahead] += gap  # sums of differences from the pixel itself
+            total[behind] -= gap
+        total -= depth
+        total /= count + np.float32(1.0)
+        total += depth
+        return cls(total, count)
 
 
-def agrees(depth: NDArray[np.float32], config: OccupancyConfig) -> NDArray[np.bool_]:
-    """The same, where at least half of the neighbours with a distance must lie on the surface; 0: no distance."""
+def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+    """Which pixels of an image lie on one surface with most of their neighbours that have a distance, and how far.
+
+    `depth` is (h, w) metres, 0 where there is no distance; both results are (h, w).
+    """
     known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
-    same = _neighbours_on_surface(depth, config.jump_1_m)
-    return (same >= config.neighbours) & (2 * same + 1 >= np.asarray(known))
-
-
-def _neighbours_on_surface(depth: NDArray[np.float32], jump_1_m: float) -> NDArray[np.uint8]:
-    scaled = depth * np.float32(jump_1_m)
-    count = np.zeros(depth.shape, np.uint8)
-    for ahead, behind in _NEIGHBOUR_PAIRS:
-        # |1/a - 1/b| < jump, without a division; never true where one of them is 0.
-        gap = np.abs(depth[ahead] - depth[behind])
-        same = (gap < scaled[ahead] * depth[behind]).view(np.uint8)
-        count[ahead] += same
-        count[behind] += same
-    return count
+    surfaces = Surfaces.of(depth, config.jump_1_m)
+    same = surfaces.neighbours
+    return (same >= config.neighbours) & (2 * same + 1 >= np.asarray(known)), surfaces.depth
 
 
 _ALL, _FIRST, _LAST = slice(None), slice(None, -1), slice(1, None)

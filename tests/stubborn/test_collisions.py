@@ -4,8 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.interface import Action
-from stubborn.collisions import CollisionConfig, is_collision, mark_collision, mark_visited, square_ahead
+from sim.interface import FORWARD_M, Action
+from sim.sensors.noise import get_noise
+from sim.sensors.pose_noise import NoisyPose
+from stubborn.collisions import CollisionConfig, Jitter, is_collision, mark_collision, mark_visited, square_ahead
 from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 from stubborn.planning import Bumps, Planner, PlanningConfig
@@ -89,3 +91,31 @@ def test_visited_is_the_swept_disc():
 )
 def test_a_collision_is_a_forward_that_moved_less_than_20_cm(action: Action | None, moved_m: float, failed: bool):
     assert is_collision(action, moved_m, CONFIG.failed_below_m) is failed
+
+
+def test_without_jitter_the_collision_rule_is_as_configured():
+    jitter = Jitter()
+    for _ in range(20):
+        jitter.observe(Action.TURN_LEFT, 0.0)
+    assert jitter.failed_below_m(CONFIG) == CONFIG.failed_below_m
+    assert Jitter().failed_below_m(CONFIG) == CONFIG.failed_below_m
+
+
+@pytest.mark.parametrize("preset", ["realsense", "harsh"])
+def test_noise_of_the_gps_makes_no_collision_of_a_whole_forward_and_hides_no_blocked_one(preset: str):
+    noise, rng = NoisyPose(get_noise(preset).pose), np.random.default_rng(3)
+    noise.begin()
+    jitter, x_m, last, false, missed = Jitter(), 0.0, np.zeros(2), 0, 0
+    for step in range(1200):
+        action = (Action.TURN_LEFT, Action.MOVE_FORWARD, Action.MOVE_FORWARD)[step % 3]
+        blocked = step % 3 == 1
+        x_m += FORWARD_M if action is Action.MOVE_FORWARD and not blocked else 0.0
+        gps, _ = noise.apply(np.array([x_m, 0.0], np.float32), np.zeros(1, np.float32), rng)
+        moved_m = float(np.hypot(*(gps - last)))
+        last = gps
+        jitter.observe(action, moved_m)
+        failed = is_collision(action, moved_m, jitter.failed_below_m(CONFIG))
+        false += step > 20 and action is Action.MOVE_FORWARD and not blocked and failed
+        missed += step > 20 and blocked and not failed
+    assert false <= 8  # of 393; 50 with the fixed rule under `harsh`
+    assert missed <= 4
