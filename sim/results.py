@@ -9,6 +9,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -91,6 +92,7 @@ class RunDirectory:
 def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """Number of episodes and, for each of `SUMMARY_METRICS`, mean and 95 % bootstrap interval over episodes.
 
+    Also how many episodes failed by which cause (`sim.failures`), the most frequent first.
     Episodes in which a metric is null (no way to the goal) do not count for that metric.
     """
     lines = list(lines)
@@ -98,6 +100,8 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     for metric in SUMMARY_METRICS:
         values = np.array([line[metric] for line in lines if line.get(metric) is not None], dtype=float)
         summary[metric] = {"mean": _mean(values), "ci95": bootstrap_interval(values)}
+    causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
+    summary["failures"] = dict(causes.most_common())
     return summary
 
 

@@ -35,7 +35,7 @@ def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: i
 
 def describe(line: Line) -> str:
     """One episode in one sentence."""
-    outcome = "found" if line["success"] else f"not found ({line['end_reason']})"
+    outcome = "found" if line["success"] else f"not found ({line['end_reason']}, {line['failure']})"
     return (
         f"{line['episode_id']}: {line['goal']} {outcome} after {line['num_steps']} steps, {line['wall_time_s']:.0f} s"
     )
@@ -46,6 +46,8 @@ def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str,
     if len(lines) <= MOST_EPISODES_SHOWN:
         console.print(_episode_table(lines))
     console.print(_summary_table(summary))
+    if summary["failures"]:
+        console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in summary["failures"].items()))
     for line in lines:
         if line.get("error"):
             console.print(f"error in {line['episode_id']}: {line['error']}", markup=False, soft_wrap=True)
@@ -70,13 +72,14 @@ def _episode_table(lines: Sequence[Line]) -> Table:
     table = Table(title="Episodes")
     for name in ("episode", "goal"):
         table.add_column(name)
-    for name in ("success", "SPL", "steps", "path m", "shortest m", "left m", "collisions", "steps/s"):
+    table.add_column("success")
+    for name in ("SPL", "steps", "path m", "shortest m", "left m", "collisions", "steps/s"):
         table.add_column(name, justify="right")
     for line in sorted(lines, key=lambda line: line["episode_id"]):
         table.add_row(
             line["episode_id"],
             line["goal"],
-            "yes" if line["success"] else "no",
+            "yes" if line["success"] else f"no: {line['failure']}",
             _number(line["spl"]),
             str(line["num_steps"]),
             _number(line["path_length"]),

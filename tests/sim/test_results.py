@@ -74,6 +74,11 @@ def test_null_metrics_do_not_count_in_the_mean() -> None:
     assert summary["episodes"] == 2
 
 
+def test_a_summary_counts_the_causes_of_failure() -> None:
+    failed = [line(n, failure=cause) for n, cause in enumerate(["explore", "trapped", "trapped", None])]
+    assert summarise(failed)["failures"] == {"trapped": 2, "explore": 1}
+
+
 def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
