@@ -1,0 +1,189 @@
+"""Labelled views out of WebDataset shards, as arrays and as a PyTorch data set.
+
+A shard is a tar file whose members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
+millimetres), `key.semantic.png` (uint8 mpcat40 id) and `key.json`. The `webdataset` package reads them too; this reader
+needs no more than the standard library and OpenCV, and names a file that is broken.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import tarfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch.utils.data import IterableDataset, get_worker_info
+
+from sim.interface import MPCAT40, ConfigError
+
+_PARTS = ("rgb", "depth", "semantic", "json")
+
+
+@dataclass(frozen=True)
+class LabelledView:
+    """One view as it was stored."""
+
+    key: str
+    rgb: NDArray[np.uint8]
+    """(h, w, 3)"""
+    depth_m: NDArray[np.float32]
+    """(h, w) metres; 0: no return or nearer than the camera's range."""
+    semantic: NDArray[np.uint8]
+    """(h, w) mpcat40 id"""
+    record: dict[str, Any] = field(default_factory=dict)
+
+
+def list_shards(folder: Path) -> list[Path]:
+    """The shards of a folder, in order.
+
+    Raises:
+        ConfigError: there are none.
+    """
+    shards = sorted(folder.glob("*.tar"))
+    if not shards:
+        raise ConfigError(f"No shards (*.tar) in '{folder}'. tools/generate_views.py makes them.")
+    return shards
+
+
+def read_shard(file: Path) -> Iterator[LabelledView]:
+    """The views of one shard, in its order.
+
+    Raises:
+        ConfigError: the file is no tar file, is cut off, or a view in it is not whole.
+    """
+    parts: dict[str, bytes] = {}
+    key = ""
+    try:
+        with tarfile.open(file) as archive:
+            for member in archive:
+                name, _, suffix = member.name.partition(".")
+                if parts and name != key:
+                    yield _decoded(file, key, parts)
+                    parts = {}
+                content = archive.extractfile(member)
+                key, parts[suffix.split(".")[0]] = name, b"" if content is None else content.read()
+            if parts:
+                yield _decoded(file, key, parts)
+    except (tarfile.TarError, OSError, EOFError) as error:
+        raise ConfigError(f"Shard '{file}' is broken: {error}. tools/generate_views.py makes it again.") from None
+
+
+class ViewDataset(IterableDataset):
+    """Views of many shards in random order, each epoch another one, shared between the loader's workers.
+
+    Args:
+        shards: files.
+        transform: makes a sample of a view; the generator is the worker's own.
+        buffer: views among which the next one is drawn.
+        seed: drives order and transform, with the epoch.
+        shuffle: False reads in order, for evaluation.
+    """
+
+    def __init__(
+        self,
+        shards: Sequence[Path],
+        transform: Callable[[LabelledView, np.random.Generator], Any],
+        *,
+        buffer: int = 1000,
+        seed: int = 0,
+        shuffle: bool = True,
+    ) -> None:
+        super().__init__()
+        self.shards = list(shards)
+        self.transform = transform
+        self.buffer = buffer
+        self.seed = seed
+        self.shuffle = shuffle
+        self.epoch = 0
+
+    def __iter__(self) -> Iterator[Any]:
+        """The samples of this worker's shards."""
+        info = get_worker_info()
+        worker, workers = (0, 1) if info is None else (info.id, info.num_workers)
+        order = np.random.default_rng([self.seed, self.epoch])
+        shards = [self.shards[i] for i in order.permutation(len(self.shards))] if self.shuffle else self.shards
+        rng = np.random.default_rng([self.seed, self.epoch, worker])
+        views = (view for shard in shards[worker::workers] for view in read_shard(shard))
+        for view in _shuffled(views, rng, self.buffer) if self.shuffle else views:
+            yield self.transform(view, rng)
+
+
+def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: int) -> Iterator[LabelledView]:
+    """The same views, each drawn from the next `buffer` ones."""
+    held: list[LabelledView] = []
+    for view in views:
+        if len(held) < buffer:
+            held.append(view)
+            continue
+        i = int(rng.integers(len(held)))
+        held[i], view = view, held[i]
+        yield view
+    for i in rng.permutation(len(held)).tolist():
+        yield held[i]
+
+
+def count_views(shards: Sequence[Path]) -> int:
+    """How many views the notes beside the shards promise; 0 where there are no notes."""
+    total = 0
+    for shard in shards:
+        note = shard.with_suffix(".json")
+        if note.is_file():
+            total += int(json.loads(note.read_text(encoding="utf-8")).get("views", 0))
+    return total
+
+
+def class_weights(pixels: NDArray[np.float64], *, smallest: float = 1.02) -> torch.Tensor:
+    """Weights (classes,) that let rare categories count: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
+
+    Args:
+        pixels: (41,) pixels of each mpcat40 category, void included.
+        smallest: bounds the largest weight.
+    """
+    counts = np.asarray(pixels, np.float64)[1:]
+    share = counts / max(counts.sum(), 1.0)
+    weights = 1.0 / np.log(smallest + share)
+    weights[counts == 0] = 0.0  # never seen: nothing to learn
+    return torch.tensor(weights / weights[counts > 0].mean() if (counts > 0).any() else weights, dtype=torch.float32)
+
+
+def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
+    missing = [part for part in _PARTS if part not in parts]
+    if missing:
+        raise ConfigError(f"Shard '{file}': view '{key}' has no '{missing[0]}'.")
+    rgb = _image(file, key, "rgb", parts, cv2.IMREAD_COLOR)
+    depth = _image(file, key, "depth", parts, cv2.IMREAD_UNCHANGED)
+    semantic = _image(file, key, "semantic", parts, cv2.IMREAD_UNCHANGED)
+    if not rgb.shape[:2] == depth.shape == semantic.shape:
+        raise ConfigError(f"Shard '{file}': the images of view '{key}' differ in size.")
+    if semantic.max() >= len(MPCAT40):
+        raise ConfigError(f"Shard '{file}': view '{key}' has category {semantic.max()}, mpcat40 ends at 40.")
+    try:
+        record = json.loads(parts["json"])
+    except ValueError:
+        raise ConfigError(f"Shard '{file}': the record of view '{key}' is no JSON.") from None
+    return LabelledView(key, cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), depth.astype(np.float32) / 1000.0, semantic, record)
+
+
+def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> NDArray:
+    buffer = np.frombuffer(parts[part], np.uint8)
+    image = cv2.imdecode(buffer, flag) if buffer.size else None
+    if image is None:
+        raise ConfigError(f"Shard '{file}': the {part} image of view '{key}' cannot be read.")
+    return image
+
+
+def tile(pictures: Sequence[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
+    """Pictures (h, w, 3) of one size as one sheet, row by row."""
+    height, width = pictures[0].shape[:2]
+    sheet = np.full((math.ceil(len(pictures) / columns) * height, columns * width, 3), 255, np.uint8)
+    for i, picture in enumerate(pictures):
+        row, col = divmod(i, columns)
+        sheet[row * height : (row + 1) * height, col * width : (col + 1) * width] = picture
+    return sheet

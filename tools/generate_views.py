@@ -1,0 +1,225 @@
+"""Labelled views as WebDataset shards, for training segmentation networks.
+
+python tools/generate_views.py --split train --views 100000 --out /data/views --workers 2
+python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
+
+A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
+of freshly generated ones. Killed and started again it goes on; the same options give the same bytes. Several machines
+may share the work with --shard 0/4, 1/4, ...; whoever ends last writes an index of everything.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+import shlex
+import sys
+import time
+from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sim import cli
+from sim.episodes import Split, load_split
+from sim.errors import HouseError
+from sim.houses.house import House
+from sim.houses.splits import train_recipe
+from sim.interface import CameraModel, ConfigError
+from sim.parallel import ordered_map
+from sim.robot.config import RobotConfig
+from sim.scene import Scene
+from sim.sensors.camera import describe_gl
+from sim.sensors.profiles import get_profile
+from sim.shards import ShardNote, read_note, shard_name, write_index, write_shard
+from sim.views import sample_views
+
+FRESH_SEEDS_FROM = 1_000_000
+"""Seeds of freshly generated train houses: none of a shipped split is as high."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Which views, how many, and where they go."""
+
+    split: str = "train"
+    """Houses of a shipped split, or of a folder laid out like one."""
+    views: int = 1000
+    """How many, over all shards."""
+    out: Path
+    """Folder of the shards; shards that are there and whole are kept."""
+    workers: int = 1
+    """Processes."""
+    shard: str = "0/1"
+    """i/n: make every n-th shard from the i-th on."""
+    profile: str = "good"
+    """Rendering quality: good or fast."""
+    seed: int = 0
+    """Draws houses and poses."""
+    views_per_shard: int = 250
+    """Views of one house."""
+    shrink: int = 1
+    """Store views smaller by this factor: 2 gives 320 x 240."""
+    rgb: str = "jpg"
+    """Colour as jpg or png."""
+    check: bool = False
+    """Compare the checksums of all shards that are there, not only their sizes."""
+
+
+@dataclass(frozen=True)
+class ShardTask:
+    """One shard to make."""
+
+    number: int
+    views: int
+    house: str
+    fresh_seed: int | None
+    """Seed of a house that is in no split."""
+
+
+def main(args: Args) -> int:
+    """Make what is missing, then write the index; returns the exit status."""
+    picked = _picked(args)
+    split = load_split(args.split)
+    tasks, config = plan(args, split), _config(args, split)
+    args.out.mkdir(parents=True, exist_ok=True)
+    notes = {task.number: _kept(args, task, config) for task in tasks}
+    missing = [task for task in tasks if notes[task.number] is None]
+    todo = [task for task in missing if picked(task.number)]
+    print(f"{len(tasks)} shards, {len(tasks) - len(missing)} of them there, {len(todo)} to make here.", flush=True)
+    began, made = time.perf_counter(), 0
+    for note in ordered_map(functools.partial(make_shard, args, config), todo, workers=args.workers):
+        made += note.views
+        rate = made / (time.perf_counter() - began)
+        print(f"{note.shard}: {note.views} views of {note.house}, {note.size_bytes >> 20} MB, {rate:.1f} views/s")
+        sys.stdout.flush()
+        notes[int(note.shard.rsplit("-", 1)[1])] = note
+    # Others may have made theirs meanwhile.
+    whole = [
+        n for task in tasks if (n := notes[task.number] or read_note(args.out, shard_name(task.number), verify=False))
+    ]
+    command = "python tools/generate_views.py " + _command(args)
+    index = write_index(args.out, whole, command=command, config=config)
+    print(_summary(index))
+    return 0
+
+
+def plan(args: Args, split: Split) -> list[ShardTask]:
+    """Every shard, whoever makes it."""
+    rng = np.random.default_rng([args.seed, 0])
+    houses = [split.houses[i] for i in rng.permutation(len(split.houses)).tolist()]
+    if not houses:
+        raise ConfigError(f"Split '{split.name}' has no houses.")
+    tasks = []
+    for number, first in enumerate(range(0, args.views, args.views_per_shard)):
+        count = min(args.views_per_shard, args.views - first)
+        fresh = number >= len(houses) and split.name == "train"
+        seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
+        house = f"train_{seed}" if fresh else houses[number % len(houses)]
+        tasks.append(ShardTask(number, count, house, seed))
+    return tasks
+
+
+def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
+    """One shard, in any process.
+
+    Raises:
+        ConfigError: it cannot be written.
+        HouseError: the house gives no views.
+    """
+    began = time.perf_counter()
+    scene = Scene(_house(args, task), robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
+    house_s = time.perf_counter() - began
+    try:
+        name = shard_name(task.number)
+        rng = np.random.default_rng([args.seed, 1, task.number])
+        record = {"house": task.house, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
+        views = sample_views(scene, rng, task.views, stem=name, record=record, block_px=args.shrink)
+        note = write_shard(args.out, name, views, house=task.house, config=config, rgb_format=args.rgb)
+    finally:
+        scene.close()
+    return replace(note, seconds=note.seconds | {"house": round(house_s, 3)})
+
+
+def _house(args: Args, task: ShardTask) -> House:
+    if task.fresh_seed is None:
+        return load_split(args.split).load_house(task.house)
+    try:
+        return House(task.house, train_recipe(task.fresh_seed).make().spec)
+    except HouseError:  # a seed without a house: its neighbour, for everybody who makes this shard
+        return House(task.house, train_recipe(task.fresh_seed + FRESH_SEEDS_FROM // 2).make().spec)
+
+
+def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
+    """The note of a shard that is there and whole.
+
+    Raises:
+        ConfigError: it was made with other options.
+    """
+    note = read_note(args.out, shard_name(task.number), verify=args.check)
+    if note is None:
+        return None
+    for key in sorted(set(config) | set(note.config)):
+        if config.get(key) != note.config.get(key):
+            raise ConfigError(
+                f"--out '{args.out}' holds shards with {key} = {note.config.get(key)!r}, this run has "
+                f"{config.get(key)!r}; take another folder, or the same options to go on."
+            )
+    return note if (note.house, note.views) == (task.house, task.views) else None
+
+
+def _config(args: Args, split: Split) -> dict[str, Any]:
+    """What the bytes of a shard hang on, beside its number."""
+    packages = ("stubborn-objectnav", "mujoco", "numpy", "opencv-python-headless")
+    return {
+        "split": split.name,
+        "split_version": split.version,
+        "split_sha256": split.sha256,
+        "seed": args.seed,
+        "profile": asdict(get_profile(args.profile)),
+        "views_per_shard": args.views_per_shard,
+        "shrink": args.shrink,
+        "rgb": args.rgb,
+        "versions": {name: version(name) for name in packages} | {"gl_renderer": describe_gl()},
+    }
+
+
+def _picked(args: Args) -> Any:
+    """Which shards are made here; refuses options that cannot be."""
+    for name in ("views", "workers", "views_per_shard", "shrink"):
+        if getattr(args, name) < 1:
+            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
+    camera = CameraModel()
+    if camera.width_px % args.shrink or camera.height_px % args.shrink:
+        raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
+    if args.rgb not in ("jpg", "png"):
+        raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
+    if args.seed < 0:
+        raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
+    match = re.fullmatch(r"(\d+)/(\d+)", args.shard)
+    if match is None or not int(match[1]) < int(match[2]):
+        raise ConfigError(f'--shard must be "i/n" with 0 <= i < n, got "{args.shard}".')
+    part, parts = int(match[1]), int(match[2])
+    return lambda number: number % parts == part
+
+
+def _command(args: Args) -> str:
+    """The options that make the same shards."""
+    keys = ("split", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
+    return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(getattr(args, key)))}" for key in keys) + " --out DIR"
+
+
+def _summary(index: dict[str, Any]) -> str:
+    seconds = index["seconds"]
+    total = sum(seconds.values()) or 1.0
+    share = ", ".join(f"{part} {100 * value / total:.0f} %" for part, value in seconds.items())
+    return (
+        f"{index['views']} views of {index['houses']} houses in {len(index['shards'])} shards, "
+        f"{index['bytes'] >> 20} MB; of the processes' time: {share}."
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))

@@ -1,0 +1,67 @@
+"""A sheet of random views out of shards: colour, depth and labels side by side.
+
+python tools/show_views.py --views runs/views --out runs/views.png
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim import cli
+from sim.interface import ConfigError
+from sim.palette import with_legend
+from stubborn.segmentation.views import LabelledView, list_shards, read_shard, tile
+
+WIDTH_PX = 400
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Which views to draw."""
+
+    views: Path
+    """Folder of shards."""
+    out: Path
+    """The PNG file."""
+    count: int = 12
+    """How many views."""
+    seed: int = 0
+    """Draws them."""
+
+
+def main(args: Args) -> int:
+    """Draw the sheet and say where it is."""
+    if args.count < 1:
+        raise ConfigError(f"--count must be at least 1, got {args.count}.")
+    rng = np.random.default_rng(args.seed)
+    shards = list_shards(args.views)
+    picked = [shards[i] for i in rng.permutation(len(shards))[: args.count]]
+    views: list[LabelledView] = []
+    for number, shard in enumerate(picked):
+        there = list(read_shard(shard))
+        share = -(-(args.count - len(views)) // (len(picked) - number))
+        views += [there[i] for i in rng.permutation(len(there))[:share]]
+    args.out.parent.mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(args.out), cv2.cvtColor(tile([draw(view) for view in views], columns=2), cv2.COLOR_RGB2BGR))
+    print(f"{len(views)} views in {args.out}")
+    return 0
+
+
+def draw(view: LabelledView) -> NDArray[np.uint8]:
+    """Colour, depth (near is bright, no return is black) and labels of a view."""
+    near = np.where(view.depth_m > 0.0, 255.0 - 230.0 * view.depth_m / max(float(view.depth_m.max()), 0.1), 0.0)
+    grey = cv2.cvtColor(near.astype(np.uint8), cv2.COLOR_GRAY2RGB)
+    height_px = round(WIDTH_PX * view.rgb.shape[0] / view.rgb.shape[1])
+    labels = cv2.resize(view.semantic, (WIDTH_PX, height_px), interpolation=cv2.INTER_NEAREST)
+    panels = [cv2.resize(panel, (WIDTH_PX, height_px), interpolation=cv2.INTER_AREA) for panel in (view.rgb, grey)]
+    return np.hstack([*panels, with_legend(labels.astype(np.uint8))], dtype=np.uint8)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))

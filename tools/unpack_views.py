@@ -1,0 +1,64 @@
+"""Shards of views as folders of PNG files, for training code that wants those.
+
+python tools/unpack_views.py --views runs/views --out runs/views_png
+
+Writes `rgb/<key>.png`, `depth/<key>.png` (uint16 millimetres), `semantic/<key>.png` (uint8 mpcat40 id; 0 is void) and
+`record/<key>.json`. What is there already is left alone, so that it can be stopped and started again.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from sim import cli
+from sim.house_list import write_atomically
+from sim.interface import ConfigError
+from stubborn.segmentation.views import LabelledView, list_shards, read_shard
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """From where to where."""
+
+    views: Path
+    """Folder of shards."""
+    out: Path
+    """Folder of the folders; made if missing."""
+
+
+def main(args: Args) -> int:
+    """Unpack every shard and say how many views there were."""
+    count = 0
+    for shard in list_shards(args.views):
+        for view in read_shard(shard):
+            _unpack(args.out, view)
+            count += 1
+    print(f"{count} views in {args.out}")
+    return 0
+
+
+def _unpack(out: Path, view: LabelledView) -> None:
+    images = {
+        "rgb": cv2.cvtColor(view.rgb, cv2.COLOR_RGB2BGR),
+        "depth": np.rint(view.depth_m * 1000.0).astype(np.uint16),
+        "semantic": view.semantic,
+    }
+    record = out / "record" / f"{view.key}.json"
+    if record.is_file():  # written last
+        return
+    try:
+        for folder, image in images.items():
+            write_atomically(out / folder / f"{view.key}.png", cv2.imencode(".png", image)[1].tobytes())
+        write_atomically(record, json.dumps(view.record, sort_keys=True).encode())
+    except OSError as error:
+        raise ConfigError(f"'{out}' cannot be written: {error.strerror or error}.") from None
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
