@@ -1,0 +1,74 @@
+"""Pictures of recorded episodes show what the trajectory says, where it says it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from sim import run
+from sim.comparison import read_run
+from sim.interface import ConfigError
+from sim.planframe import PlanFrame
+from sim.trajectory import read_trajectory, trajectory_file
+from tests.helpers.worlds import room, with_box
+from tools import draw_trajectories
+
+FRAME = PlanFrame(origin_xy_m=(-3.0, -2.0), shape=(160, 240))
+HEIGHT_PX = round(160 * FRAME.cell_m * draw_trajectories.PX_M)
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of two recorded episodes in which the agent stops at once."""
+    folder = tmp_path_factory.mktemp("played")
+    house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    (folder / "lounge.xml").write_text(house.spec.to_xml())
+    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
+    assert run.entry([*options, "--episodes", "2", "--out", str(folder / "run")]) == 0
+    return folder
+
+
+def test_x_goes_right_and_y_up_at_the_scale_of_the_picture() -> None:
+    corner, right, up = draw_trajectories.to_pixels(FRAME, np.array([[-3, -2], [-2, -2], [-3, -1]]), HEIGHT_PX)
+    assert corner.tolist() == [0, HEIGHT_PX]
+    assert (right - corner).tolist() == [draw_trajectories.PX_M, 0]
+    assert (up - corner).tolist() == [0, -draw_trajectories.PX_M]
+
+
+def test_each_failed_episode_gets_a_picture_with_the_end_of_its_way(
+    played: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert draw_trajectories.main(draw_trajectories.Args(run=played / "run")) == 0
+    told = capsys.readouterr().out
+    for episode_id, line in read_run(played / "run").lines.items():
+        assert f"{episode_id} sofa: {line['failure']} (stop); 1 steps, 0.0 m" in told
+        file = played / "run" / "pictures" / f"{episode_id}.png"
+        picture = np.asarray(cv2.imread(str(file)))[..., ::-1]
+        trajectory = read_trajectory(trajectory_file(played / "run", episode_id))
+        x_m, y_m = trajectory.positions_m[-1].tolist()
+        from_bottom = picture.shape[0] - draw_trajectories.CHART_PX
+        # The plan lies above the chart and begins 0.25 m outside the room.
+        pixel_m = 1.0 / draw_trajectories.PX_M
+        for place_m, colour in (((2.5, 0.0), draw_trajectories.INSTANCE), ((x_m, y_m), draw_trajectories.INK)):
+            column = round((place_m[0] + 3.25) / pixel_m)
+            row = round(from_bottom - (place_m[1] + 2.25) / pixel_m)
+            assert picture[row, column].tolist() == list(colour), place_m
+
+
+def test_a_house_that_has_changed_since_is_refused(played: Path) -> None:
+    file = played / "lounge.xml"
+    before = file.read_text()
+    try:
+        file.write_text(before + "\n")
+        with pytest.raises(ConfigError, match="another version of 'lounge'"):
+            draw_trajectories.main(draw_trajectories.Args(run=played / "run"))
+    finally:
+        file.write_text(before)
+
+
+def test_an_episode_that_was_not_played_is_told(played: Path) -> None:
+    with pytest.raises(ConfigError, match="no episode 'nowhere'"):
+        draw_trajectories.main(draw_trajectories.Args(run=played / "run", episodes=("nowhere",)))

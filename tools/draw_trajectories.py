@@ -1,0 +1,206 @@
+"""Pictures of recorded episodes: the floor plan with the robot's way, and how far the goal was at each step.
+
+    python tools/draw_trajectories.py runs/mine                          # the failed ones
+    python tools/draw_trajectories.py runs/mine --episodes val_0007 val_0012
+
+In the plan: free space white, what the robot's disc cannot enter grey, the goal's instances green, places where a STOP
+succeeds light green; the way from blue to red, contacts that stopped it black, the start a ring, the end a disc, where
+the goal was first seen (0.8 % of a frame) a yellow ring. Below: distance to the goal over the steps, yellow where the
+goal was in view. Made from the trajectory files and the houses; nothing is played again.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import tyro
+from numpy.typing import NDArray
+
+from sim import cli, tables
+from sim.comparison import Run, read_run
+from sim.episodes import Split, load_split, one_house
+from sim.failures import cause_of_failure, first_looping_step, first_trapped_step
+from sim.ground_truth import GroundTruth
+from sim.interface import ConfigError
+from sim.metrics import EXPLORED_SHARE
+from sim.planframe import PlanFrame
+from sim.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.world import World
+
+Picture = NDArray[np.uint8]
+PX_M = 60.0
+"""Pixels of a metre."""
+CHART_PX = 140
+MIN_WIDTH_PX = 640
+BLOCKED, FREE, SUCCEEDS, INSTANCE = (150, 150, 150), (255, 255, 255), (214, 240, 205), (60, 160, 70)
+CONTACT, SEEN, INK = (0, 0, 0), (230, 180, 0), (30, 30, 30)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Draw episodes of a run that was made with --record."""
+
+    run: tyro.conf.Positional[Path]
+    """Folder of the run."""
+    episodes: tuple[str, ...] = ()
+    """Which; all that failed if not given."""
+    out: Path | None = None
+    """Folder for the pictures (<run>/pictures)."""
+
+
+def main(args: Args) -> int:
+    """Draw; returns the exit status."""
+    console = tables.make_console()
+    run = read_run(args.run)
+    wanted = args.episodes or tuple(i for i, line in run.lines.items() if not line["success"])
+    unknown = [i for i in wanted if i not in run.lines]
+    if unknown:
+        raise ConfigError(f"'{args.run}' has no episode '{unknown[0]}'.")
+    split, out = split_of(run), args.out or args.run / "pictures"
+    out.mkdir(parents=True, exist_ok=True)
+    truth: GroundTruth | None = None
+    for episode_id in sorted(wanted, key=lambda i: (run.lines[i]["house"], i)):
+        line = run.lines[episode_id]
+        trajectory = read_trajectory(trajectory_file(run.path, episode_id))
+        if truth is None or truth.world.house.name != line["house"]:
+            truth = GroundTruth(World(split.load_house(line["house"])))
+        words = in_words(episode_id, line["goal"], trajectory)
+        file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
+        cv2.imwrite(str(file), draw(truth, line["goal"], trajectory, words)[..., ::-1])
+        console.print(f"{words} -> {file}", highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def split_of(run: Run) -> Split:
+    """The split or the house that a run was played in.
+
+    Raises:
+        ConfigError: it is another version now.
+    """
+    config = run.config
+    split = (
+        one_house(config["house"], labels=config.get("labels")) if config.get("house") else load_split(config["split"])
+    )
+    if split.sha256 != config["split_identity"]["sha256"]:
+        raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than is here now.")
+    return split
+
+
+def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
+    """One line: what was looked for, how it ended, and what the rules of `sim.failures` go by."""
+    seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
+    facts = [f"{trajectory.num_steps} steps", f"{float(trajectory.moved_m.sum()):.1f} m"]
+    facts += [f"{int(trajectory.collided.sum())} collisions"]
+    facts += [f"seen from step {seen[0]} in {len(seen)} frames" if len(seen) else "never seen"]
+    if np.isfinite(trajectory.distance_m).any():
+        nearest = int(np.nanargmin(trajectory.distance_m))
+        facts.append(f"nearest {trajectory.distance_m[nearest]:.1f} m at step {nearest}")
+    for name, step in (
+        ("trapped", first_trapped_step(trajectory.positions_m)),
+        ("loop", first_looping_step(trajectory)),
+    ):
+        facts += [f"{name} from step {step}"] if step is not None else []
+    outcome = "found" if trajectory.success else f"{cause_of_failure(trajectory)} ({trajectory.end_reason})"
+    return f"{episode_id} {goal}: {outcome}; {', '.join(facts)}"
+
+
+def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str) -> Picture:
+    """Plan and chart with a line of words above, uint8 (h, w, 3)."""
+    plan = draw_plan(truth, goal, trajectory)
+    width = max(plan.shape[1], MIN_WIDTH_PX)
+    parts = [_heading(words, width), _widened(plan, width), draw_chart(trajectory, width)]
+    return np.vstack(parts)
+
+
+def draw_plan(truth: GroundTruth, goal: str, trajectory: Trajectory) -> Picture:
+    """The storey of the start from above, x to the right and y up."""
+    floor_z_m = float(trajectory.poses[0, 3])
+    space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
+    cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
+    cells[target.reached] = SUCCEEDS
+    scale = PX_M * space.frame.cell_m
+    size = (round(cells.shape[1] * scale), round(cells.shape[0] * scale))
+    image = np.asarray(cv2.resize(cells, size, interpolation=cv2.INTER_NEAREST)[::-1], np.uint8).copy()
+
+    def pixels(places_m: NDArray[np.floating]) -> NDArray[np.int32]:
+        return to_pixels(space.frame, places_m, image.shape[0])
+
+    for footprint in target.region.footprints:
+        for part in footprint.parts:
+            cv2.fillConvexPoly(image, pixels(part.vertices_m), INSTANCE, cv2.LINE_AA)
+    way = pixels(trajectory.positions_m)
+    for i in range(len(way) - 1):
+        age = i / max(1, len(way) - 2)
+        colour = (round(40 + 190 * age), 70, round(220 - 190 * age))
+        cv2.line(image, way[i].tolist(), way[i + 1].tolist(), colour, 2, cv2.LINE_AA)
+    for contact in pixels(trajectory.contacts[:, 1:]):
+        cv2.circle(image, contact.tolist(), 2, CONTACT, -1, cv2.LINE_AA)
+    seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
+    if len(seen):
+        cv2.circle(image, way[seen[0]].tolist(), 11, SEEN, 3, cv2.LINE_AA)
+    cv2.circle(image, way[0].tolist(), 8, INK, 2, cv2.LINE_AA)
+    cv2.circle(image, way[-1].tolist(), 6, INK, -1, cv2.LINE_AA)
+    return image
+
+
+def draw_chart(trajectory: Trajectory, width_px: int) -> Picture:
+    """Distance to the goal, from 0 at the bottom, over the steps; yellow where the goal is in view."""
+    image = np.full((CHART_PX, width_px, 3), 245, np.uint8)
+    known = np.isfinite(trajectory.distance_m)
+    top_m = max(1.0, float(trajectory.distance_m[known].max())) if known.any() else 1.0
+    x = np.linspace(0, width_px - 1, trajectory.num_steps + 1).round().astype(int)
+    y = np.full(len(x), 20.0)
+    y[known] = CHART_PX - 2 - (CHART_PX - 22) * trajectory.distance_m[known] / top_m
+    for step in np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE):
+        cv2.line(image, (int(x[step]), CHART_PX), (int(x[step]), 20), SEEN, 1)
+    for step in np.flatnonzero(trajectory.collided):
+        cv2.line(image, (int(x[step]), CHART_PX), (int(x[step]), CHART_PX - 8), CONTACT, 1)
+    for step in np.flatnonzero(known[:-1] & known[1:]):
+        begin, end = ((int(x[i]), round(float(y[i]))) for i in (step, step + 1))
+        cv2.line(image, begin, end, (40, 70, 200), 2, cv2.LINE_AA)
+    words = f"{top_m:.1f} m to go at the top" if known.any() else "no way to the goal"
+    _write(image, f"{words}; {trajectory.num_steps} steps; collisions as ticks", 14)
+    return image
+
+
+def to_pixels(frame: PlanFrame, places_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
+    """(n, 2) column and row in the picture of places (n, 2) in the world."""
+    from_corner_m = np.asarray(places_m, np.float64) - np.asarray(frame.origin_xy_m)
+    return (
+        np.stack([PX_M * from_corner_m[:, 0], height_px - PX_M * from_corner_m[:, 1]], axis=1).round().astype(np.int32)
+    )
+
+
+def _heading(words: str, width_px: int) -> Picture:
+    lines = _wrapped(words.split(" "), width_px // 8)
+    image = np.full((18 * len(lines) + 8, width_px, 3), 255, np.uint8)
+    for i, line in enumerate(lines):
+        _write(image, line, 16 + 18 * i)
+    return image
+
+
+def _wrapped(words: Sequence[str], most: int) -> list[str]:
+    lines = [""]
+    for word in words:
+        if lines[-1] and len(lines[-1]) + len(word) >= most:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return lines
+
+
+def _widened(image: Picture, width_px: int) -> Picture:
+    spare = width_px - image.shape[1]
+    return np.pad(image, ((0, 0), (0, spare), (0, 0)), constant_values=255)
+
+
+def _write(image: Picture, words: str, row: int) -> None:
+    cv2.putText(image, words, (6, row), cv2.FONT_HERSHEY_SIMPLEX, 0.42, INK, 1, cv2.LINE_AA)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
