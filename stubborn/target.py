@@ -207,4 +207,6 @@ class TargetSeeker:
             free = free_spaces[self._maps[-1]]
             reach_m = np.where(free.reachable, gap_m, np.inf)
             if reach_m.min() <= self.config.last_resort_m:
-                yield free, reach_m <= reach_m.min() + view.frame.cell_m, False
+                # The robot's own ground is free to it and moves with it: without a margin it would push on for ever.
+                margin_m = self.planner.config.own_ground_m + view.frame.cell_m
+                yield free, reach_m <= reach_m.min() + margin_m, False

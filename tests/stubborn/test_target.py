@@ -180,6 +180,52 @@ def test_late_in_the_episode_the_nearest_reachable_place_will_do():
     assert late.route is not None
 
 
+def far_target() -> tuple[NavMap, PlanarPose]:
+    """A candidate in the middle of a large piece of furniture, 1.35 m from where a robot fits."""
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(6, 54):
+        for col in range(36, 79):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "o"
+    return known(text_of(rows))
+
+
+def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reachable_place():
+    navmap, pose = far_target()
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None  # there is nothing to verify
+    navmap, pose = far_target()
+    seek = seeker(RefuseAll())
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert not approach.near_enough
+    rows, cols = np.nonzero(approach.route.plan.goal)
+    reachable = approach.route.free.reachable
+    gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
+    assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
+    there = PlanarPose(*(float(v[0]) for v in navmap.frame.centres(rows[:1], cols[:1])), 0.0)
+    approach = seek.approach(navmap, whole(navmap), there, 1)
+    assert approach is not None
+    assert approach.route is None
+    assert not approach.near_enough
+    assert seek.judge(navmap, approach.cell) is False
+    assert seek.approach(navmap, whole(navmap), there, 2) is None
+
+
+def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
+    navmap, pose = far_target()
+    seek = seeker(RefuseAll(), last_resort_step=100, retry_after_steps=10)
+    approach = seek.approach(navmap, whole(navmap), pose, 5)
+    assert approach is not None
+    assert not approach.near_enough
+    seek.postpone(navmap, 5)
+    assert seek.approach(navmap, whole(navmap), pose, 14) is None
+    assert seek.approach(navmap, whole(navmap), pose, 15) is not None
+    late = seek.approach(navmap, whole(navmap), pose, 100)
+    assert late is not None
+    assert late.near_enough
+
+
 def test_pessimistic_marks_that_close_the_way_to_a_target_give_way_to_optimistic_ones():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
