@@ -107,7 +107,7 @@ def failures(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
 
 def ablation(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
     """Table III: what each means against collisions does; a row against the one before, the last against the first."""
-    names = {agent: f"{row} {agent}" for row, agent in ABLATION.items()}
+    names = {agent: row for row, agent in ABLATION.items()}
     metrics = (TRAPPED, EXPLORED, COLLISIONS, SPL, SUCCESS)
     pairs = [(b, a) for a, b in itertools.pairwise(players)]
     if len(players) > 2:
@@ -182,7 +182,10 @@ def _means_and_differences(
     metrics: Sequence[Metric],
     names: Mapping[str, str],
 ) -> list[ResultTable]:
-    rows = [(names.get(p.agent, p.label), [metric.cell(lines[p]) for metric in metrics]) for p in players]
+    rows = [
+        (f"{names[p.agent]} {p.agent}" if p.agent in names else p.label, [metric.cell(lines[p]) for metric in metrics])
+        for p in players
+    ]
     means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)
     return [means, _differences(name, lines, pairs, metrics, names)]
 
