@@ -142,11 +142,13 @@ class TargetSeeker:
         view = navmap.view(whole)
         row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
         instance = connected(view.score_max > self.config.candidate_score, row, col, connectivity=8)
+        # Its edge, which is nearest, shares its cells with what is around it; the cell seen best speaks for the whole.
+        best = np.unravel_index(int(np.argmax(np.where(instance, view.score_sum, -1.0))), instance.shape)
         features = Features(
-            int(view.frames_in_view[row, col]),
-            float(view.score_sum[row, col]),
-            float(view.score_max[row, col]),
-            float(view.other_max[row, col]),
+            int(view.frames_in_view[best]),
+            float(view.score_sum[best]),
+            float(view.score_max[best]),
+            float(view.other_max[best]),
         )
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
         if found_late or self.verifier.accepts(self.goal, features):

@@ -53,8 +53,8 @@ class Args:
     """The first N of the split."""
     minutes: float | None = None
     """Play no longer than this; what is there is fitted."""
-    max_steps: int = 300
-    """Of an episode. Candidates first found after step 200 are never verified."""
+    max_steps: int = 200
+    """Of an episode: what is first found after step 200 is never verified."""
     least_of_either: int = 20
     """A category with fewer true or fewer false candidates takes the pooled classifier."""
     seed: int = 0

@@ -33,7 +33,7 @@ BOXES = boxes_from_plan(PLAN, 0.3)
 STEPS = 40
 
 
-def build(name: str, **options: object) -> Agent:
+def build(name: str, **options: Any) -> Agent:
     if name == "example":
         return my_agent.make(camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
     return agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), **options)

@@ -203,7 +203,8 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     reachable = approach.route.free.reachable
     gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
     assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
-    there = PlanarPose(*(float(v[0]) for v in navmap.frame.centres(rows[:1], cols[:1])), 0.0)
+    x_m, y_m = navmap.frame.centres(rows[0], cols[0])
+    there = PlanarPose(float(x_m), float(y_m), 0.0)
     approach = seek.approach(navmap, whole(navmap), there, 1)
     assert approach is not None
     assert approach.route is None
@@ -270,9 +271,10 @@ def test_a_verifier_is_asked_with_the_four_features_and_refusal_takes_the_connec
     navmap.score_max[20:25, 40:50] = 0.9
     navmap.score_max[20:25, 60] = 0.9
     navmap.score_sum[22, 44], navmap.other_max[22, 44], navmap.frames_in_view[22, 44] = 3.5, 0.4, 7
+    navmap.score_sum[22, 60] = 9.0  # another candidate
     refuse = RefuseAll()
     seek = seeker(refuse)
-    assert seek.judge(navmap, (22, 44)) is False
+    assert seek.judge(navmap, (20, 40)) is False  # approached at its edge, judged by its cell seen best
     [(goal, features)] = refuse.asked
     assert goal == "sofa"
     assert tuple(features) == pytest.approx((7, 3.5, 0.9, 0.4))
