@@ -61,7 +61,9 @@ class ResultTable:
 
 def to_rich(table: ResultTable) -> Table:
     """For the terminal."""
-    shown = Table(title=table.title, caption="\n".join(table.notes) or None, title_justify="left")
+    shown = Table(
+        title=table.title, caption="\n".join(table.notes) or None, title_justify="left", caption_justify="left"
+    )
     shown.add_column(table.header[0])
     for name in table.header[1:]:
         shown.add_column(name, justify="right")

@@ -15,7 +15,7 @@ from pathlib import Path
 import tyro
 
 from sim import cli, tables
-from sim.comparison import Run, read_run, require_same_episodes
+from sim.comparison import MIN_PAIRS, Run, read_run, require_same_episodes
 from sim.paper_tables import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric
 from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
 
@@ -65,7 +65,10 @@ def compare(first: Run, second: Run) -> ResultTable:
     a, b = ([of.lines[i] for i in common] for of in (first, second))
     rows = [(metric.title, [metric.cell(a), metric.cell(b), metric.difference(a, b)]) for metric in METRICS]
     changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
-    notes = [f"A: {first.path}, B: {second.path}; {len(common)} episodes that both have played."]
+    notes = [
+        f"A: {first.path}, B: {second.path}; {len(common)} episodes that both have played.",
+        f"unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
+    ]
     if changed:
         lost = [i for i in changed if first.lines[i]["success"]]
         gained = [i for i in changed if not first.lines[i]["success"]]
