@@ -42,6 +42,9 @@ _BOX = int(mujoco.mjtGeom.mjGEOM_BOX)
 _UNBOUNDED = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))  # always drawn
 _SIGNS = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])  # (8, 3)
 
+Horizon = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+"""Of each strip's wall, and once more (strips + 1,): depth in metres, slopes of its lower and of its upper edge."""
+
 
 class Visibility:
     """Finds what may be seen in one model; what does not move is prepared once.
@@ -69,7 +72,12 @@ class Visibility:
         self._movable = np.flatnonzero(~static[self._ids])  # indices into `_ids`
         self._bounded = ~np.isin(model.geom_type[self._ids], _UNBOUNDED)
         self._corners = _corners(model, data, self._ids)  # (3, 8, n) world
-        self._boxes = _Boxes.find(model, data, np.flatnonzero(drawable & static & _opaque(model)))
+        flat = np.flatnonzero(self._bounded & static[self._ids])
+        self._bounds, upright = _Boxes.around(model, data, self._ids[flat])
+        self._bound_of = np.full(len(self._ids), -1)  # index into `_bounds`, by index into `_ids`
+        self._bound_of[flat[upright]] = np.arange(len(self._bounds.top))
+        solid = self._ids[flat[upright]]
+        self._boxes = self._bounds.take((model.geom_type[solid] == _BOX) & _opaque(model)[solid])
         self._tall_at = (math.nan, self._boxes)
 
     def visible(self, data: mujoco.MjData, eye_m: NDArray, yaw_rad: float, *, hide: bool = True) -> NDArray[np.intp]:
@@ -93,16 +101,21 @@ class Visibility:
             outside |= beyond.all(axis=0)
         kept = np.flatnonzero(~(outside & self._bounded))
         if hide:
-            kept = kept[~self._hidden(depth[:, kept], right[:, kept], z[:, kept], eye_m, (c, s)) | ~self._bounded[kept]]
+            horizon = self._horizon(eye_m, (c, s))
+            hidden = self._hidden(depth[:, kept], right[:, kept], z[:, kept], horizon)
+            kept = kept[~(hidden & self._bounded[kept])]
+            upright = np.flatnonzero(self._bound_of[kept] >= 0)
+            hidden = self._hidden_by_strip(self._bounds.take(self._bound_of[kept[upright]]), eye_m, (c, s), horizon)
+            kept = np.delete(kept, upright[hidden])
         return self._ids[kept]
 
-    def _hidden(self, depth: NDArray, right: NDArray, up: NDArray, eye_m: NDArray, yaw: tuple[float, float]) -> NDArray:
+    def _hidden(self, depth: NDArray, right: NDArray, up: NDArray, horizon: Horizon) -> NDArray:
         """(k,) True where a geom with these corners, (8, k) in camera axes, is behind walls."""
         nearest = depth.min(axis=0)
         before = nearest > self._near_m  # slopes mean something only for what is wholly before the eye
         with np.errstate(divide="ignore", invalid="ignore"):
             u, v = right / depth, up / depth
-        wall_m, wall_low, wall_high = self._horizon(eye_m, yaw)
+        wall_m, wall_low, wall_high = horizon
         first = np.where(before, np.floor((u.min(axis=0) - self._slack + self._right_max) / self._strip), 0)
         last = np.where(before, np.floor((u.max(axis=0) + self._slack + self._right_max) / self._strip), 0)
         strips = len(wall_m) - 1  # one more follows, so that a range may end with the last strip
@@ -113,10 +126,42 @@ class Visibility:
         hidden &= np.maximum(v.min(axis=0), -self._up_max) - self._slack > np.maximum.reduceat(wall_low, ranges)[::2]
         return hidden
 
-    def _horizon(self, eye_m: NDArray, yaw: tuple[float, float]) -> tuple[NDArray, NDArray, NDArray]:
-        """Of each strip's wall, (strips + 1,): its depth (inf without one), its lower and its upper slope."""
+    def _hidden_by_strip(self, boxes: _Boxes, eye_m: NDArray, yaw: tuple[float, float], horizon: Horizon) -> NDArray:
+        """(k,) True where an upright box is behind the wall of each strip by what of it is in that very strip.
+
+        Long things need it: a floor, or another room's wall, is near in one strip and high in another, or partly
+        behind the eye. What of a convex outline lies in a strip has its corners where the strip's edges enter the
+        outline and at the outline's own corners.
+        """
+        wall_m, wall_low, wall_high = (part[:-1] for part in horizon)
+        (c, s), strips = yaw, len(wall_m)
+        entry, leave = boxes.cross(eye_m, self._rays(yaw))
+        entry[leave < 0.0] = np.nan  # behind the eye
+        near = np.fmin(entry[:, :-1], entry[:, 1:])  # (k, strips), nan where neither edge enters
+        x, y = boxes.corners()  # (k, 4)
+        depth = c * (x - eye_m[0]) + s * (y - eye_m[1])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = (s * (x - eye_m[0]) - c * (y - eye_m[1])) / depth
+        for grown in (-self._slack, self._slack):
+            at = np.floor((u + grown + self._right_max) / self._strip)
+            box, corner = np.nonzero((depth > 0.0) & (at >= 0) & (at < strips))
+            np.fmin.at(near, (box, at[box, corner].astype(np.intp)), depth[box, corner])
+        rise, drop = np.maximum(boxes.top - eye_m[2], 0.0), np.minimum(boxes.bottom - eye_m[2], 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            high, low = rise[:, None] / near, drop[:, None] / near
+        behind = near > wall_m + _SLACK_M
+        behind &= np.minimum(high, self._up_max) + self._slack < wall_high
+        behind &= np.maximum(low, -self._up_max) - self._slack > wall_low
+        return (behind | np.isnan(near)).all(axis=1)
+
+    def _rays(self, yaw: tuple[float, float]) -> NDArray:
+        """(2, strips + 1) the edges of the strips in plan, metres per metre of depth."""
         c, s = yaw
-        ray = np.stack([c + s * self._edges, s - c * self._edges])  # (2, strips + 1) metres per metre of depth
+        return np.stack([c + s * self._edges, s - c * self._edges])
+
+    def _horizon(self, eye_m: NDArray, yaw: tuple[float, float]) -> Horizon:
+        """Of each strip's wall, (strips + 1,): its depth (inf without one), its lower and its upper slope."""
+        ray = self._rays(yaw)
         walls = self._tall(float(eye_m[2])).in_fan(eye_m, yaw, self._right_max)
         entry, _ = walls.cross(eye_m, ray)
         entry[~(entry > self._near_m + _SLACK_M)] = np.inf
@@ -173,26 +218,36 @@ class _Boxes:
     top: NDArray[np.float64]
 
     @classmethod
-    def find(cls, model: mujoco.MjModel, data: mujoco.MjData, ids: NDArray[np.intp]) -> _Boxes:
-        """The upright boxes among these geoms."""
-        ids = ids[model.geom_type[ids] == _BOX]
-        axes = data.geom_xmat[ids].reshape(-1, 3, 3).transpose(0, 2, 1)  # rows are the box's own axes
+    def around(
+        cls, model: mujoco.MjModel, data: mujoco.MjData, ids: NDArray[np.intp]
+    ) -> tuple[_Boxes, NDArray[np.intp]]:
+        """The boxes around those geoms whose own axes have one upright, and which of `ids` these are."""
+        axes = data.geom_xmat[ids].reshape(-1, 3, 3).transpose(0, 2, 1)  # rows are the geom's own axes
         is_up = np.abs(axes[:, :, 2]) > 1.0 - _UPRIGHT_TOLERANCE
-        upright = is_up.any(axis=1)
-        ids, axes, up = ids[upright], axes[upright], is_up[upright].argmax(axis=1)
+        kept = np.flatnonzero(is_up.any(axis=1))
+        ids, axes, up = ids[kept], axes[kept], is_up[kept].argmax(axis=1)
         n, first, second = np.arange(len(ids)), (up + 1) % 3, (up + 2) % 3
-        size, centre = model.geom_size[ids], data.geom_xpos[ids]
-        return cls(
+        size = model.geom_aabb[ids, 3:]
+        centre = data.geom_xpos[ids] + np.einsum("nij,ni->nj", axes, model.geom_aabb[ids, :3])
+        boxes = cls(
             centre=centre[:, :2].copy(),
             axis=axes[n, first, :2].copy(),
             half=np.stack([size[n, first], size[n, second]], axis=1),
             bottom=centre[:, 2] - size[n, up],
             top=centre[:, 2] + size[n, up],
         )
+        return boxes, kept
 
     def take(self, chosen: NDArray) -> _Boxes:
         """Some of them, by mask or index."""
         return _Boxes(self.centre[chosen], self.axis[chosen], self.half[chosen], self.bottom[chosen], self.top[chosen])
+
+    def corners(self) -> tuple[NDArray, NDArray]:
+        """x and y of the corners, each (n, 4)."""
+        along = self.half[:, :1] * np.array([-1.0, -1.0, 1.0, 1.0])
+        across = self.half[:, 1:] * np.array([-1.0, 1.0, -1.0, 1.0])
+        ax, ay = self.axis[:, :1], self.axis[:, 1:]
+        return self.centre[:, :1] + ax * along - ay * across, self.centre[:, 1:] + ay * along + ax * across
 
     def tall(self, eye_z_m: float) -> _Boxes:
         """Those that reach the ceiling and the floor, as the most wall does, and so hide most.

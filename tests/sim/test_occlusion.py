@@ -145,6 +145,60 @@ def test_under_a_ceiling_that_covers_the_wall_nothing_shows_above_it() -> None:
     assert "shelving_00" in drawn(short)
 
 
+def test_a_wall_that_reaches_behind_the_eye_is_hidden_by_a_nearer_one_but_for_its_gaps() -> None:
+    near = {"half_m": (5.0, 0.05, 1.25), "y_m": 1.0}
+    far = {"half_m": (8.0, 0.05, 1.25), "y_m": 1.5}
+    yaw_rad = 0.9  # ahead is the nearer wall's side, its ends are at 11 deg and far behind
+    closed = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far), x_m=0.0, **near)
+    assert "wall_91" in drawn(closed, yaw_rad=0.0)  # beyond the nearer wall's end
+    assert "wall_91" not in drawn(closed, yaw_rad=yaw_rad)
+    with_gap = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far), x_m=-4.9, **near)
+    with_gap = with_wall(with_gap, "wall_92", x_m=5.12, **near)  # 2 cm, nearly straight to the left
+    assert "wall_91" in drawn(with_gap, yaw_rad=yaw_rad)
+    higher = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far, z_m=2.75), x_m=0.0, **near)
+    assert "wall_91" in drawn(higher, yaw_rad=yaw_rad)
+    deeper = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far, z_m=0.25), x_m=0.0, **near)
+    assert "wall_91" in drawn(deeper, yaw_rad=yaw_rad)
+
+
+def test_a_needle_between_two_edge_rays_is_drawn() -> None:
+    walled = with_wall(open_floor())
+    for y_m in np.linspace(-0.011, 0.011, 9):
+        needle = with_box(walled, "plant_00", centre_m=(1.0, float(y_m), 0.9), half_m=(0.0005, 0.0005, 0.5))
+        assert "plant_00" in drawn(needle), y_m
+
+
+def test_a_corner_that_points_out_of_a_wall_at_the_eye_is_drawn() -> None:
+    """Turned by 45 degrees, it shows only a tip of 3 mm in the middle of a strip, where no edge ray meets it."""
+    walled = with_wall(open_floor())
+    front_m = 1.95
+    for y_m in np.linspace(-0.02, 0.02, 9):
+        tip_m = front_m - 0.012
+        box = with_box(
+            walled,
+            "plant_00",
+            centre_m=(tip_m + 0.1 * math.sqrt(2), float(y_m), 0.9),
+            half_m=(0.1, 0.1, 0.5),
+            yaw_rad=math.pi / 4,
+        )
+        assert "plant_00" in drawn(box), y_m
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0], ids=["right", "left"])
+def test_what_comes_in_over_the_pictures_border_is_drawn(side: float) -> None:
+    """A plate nearly along the border ray: before the wall only where the border itself cuts it."""
+    outer, inner = (1.5, 1.5 * 0.835), (2.4, 2.4 * 0.805)  # the border is at a slope of 0.824
+    dx, dy = inner[0] - outer[0], inner[1] - outer[1]
+    plate = with_box(
+        with_wall(open_floor(), half_m=(0.05, 3.0, 1.25)),
+        "plant_00",
+        centre_m=(0.5 * (outer[0] + inner[0]), side * 0.5 * (outer[1] + inner[1]), 0.9),
+        half_m=(0.5 * math.hypot(dx, dy), 0.0001, 0.4),
+        yaw_rad=side * math.atan2(dy, dx),
+    )
+    assert "plant_00" in drawn(plate)
+
+
 def test_what_moves_is_looked_up_where_it_is() -> None:
     house = with_movable(with_wall(open_floor()), "chair_00", xy_m=(3.0, 0.0))
     model = house.spec.copy().compile()
@@ -193,21 +247,23 @@ def house_poses() -> list[tuple[Path, int]]:
 def test_in_shipped_houses_no_pixel_changes() -> None:
     """500 poses in 20 houses under `--all-cases`."""
     by_house: dict[Path, list[int]] = {}
-    for path, number in sample(house_poses(), 6):
+    for path, number in sample(house_poses(), 4):
         by_house.setdefault(path, []).append(number)
     for path, numbers in by_house.items():
         world = World(load_house(path))
-        poses = [somewhere(world, number) for number in numbers]
-        assert differing_pixels(world, poses, ("rgb", "depth", "geom")) == 0, path.name
+        assert differing_pixels(world, somewhere(world, numbers), ("rgb", "depth", "geom")) == 0, path.name
 
 
-def somewhere(world: World, seed: int) -> Pose:
-    """A pose anywhere in the robot's free space."""
-    rng = np.random.default_rng(seed)
+def somewhere(world: World, seeds: list[int]) -> list[Pose]:
+    """Poses anywhere in the robot's free space."""
     space = FreeSpace.from_world(world)
-    row, col = rng.choice(np.argwhere(space.largest_part()))
-    x, y = space.frame.centres()
-    return Pose(float(x[col]), float(y[row]), float(rng.uniform(-math.pi, math.pi)))
+    cells, (x, y) = np.argwhere(space.largest_part()), space.frame.centres()
+    poses = []
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        row, col = rng.choice(cells)
+        poses.append(Pose(float(x[col]), float(y[row]), float(rng.uniform(-math.pi, math.pi))))
+    return poses
 
 
 def differing_pixels(world: World, poses: list[Pose], sensors: tuple[str, ...]) -> int:
