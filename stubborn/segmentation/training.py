@@ -101,13 +101,13 @@ def jitter_depth(depth_m: NDArray[np.float32], a: Augmentation, rng: np.random.G
     if a.depth_noise == 0.0 and a.holes == 0:
         return depth_m
     scale = np.float32(rng.uniform(0.0, 2.0) * a.depth_noise)
-    noisy = depth_m + rng.standard_normal(depth_m.shape, np.float32) * scale * depth_m**2
+    noisy = depth_m + rng.standard_normal(depth_m.shape, np.float32) * (scale * depth_m * depth_m)
     height, width = depth_m.shape
     for _ in range(int(rng.integers(0, a.holes + 1))):
         h, w = rng.integers(2, height // 5), rng.integers(2, width // 5)
         top, left = rng.integers(0, height - h), rng.integers(0, width - w)
         noisy[top : top + h, left : left + w] = 0.0
-    return noisy
+    return noisy.astype(np.float32, copy=False)
 
 
 def pyramid_loss(outputs: Sequence[Tensor], target: Tensor, weights: Tensor) -> Tensor:

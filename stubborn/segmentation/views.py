@@ -129,14 +129,29 @@ def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: i
         yield held[i]
 
 
-def count_views(shards: Sequence[Path]) -> int:
-    """How many views the notes beside the shards promise; 0 where there are no notes."""
-    total = 0
+def pixel_counts(shards: Sequence[Path]) -> NDArray[np.float64]:
+    """(41,) pixels of each mpcat40 category, from the notes beside the shards; a shard without one is read."""
+    counts = np.zeros(len(MPCAT40))
     for shard in shards:
         note = shard.with_suffix(".json")
         if note.is_file():
-            total += int(json.loads(note.read_text(encoding="utf-8")).get("views", 0))
-    return total
+            pixels = json.loads(note.read_text(encoding="utf-8"))["pixels"]
+            counts += [pixels.get(name, 0) for name in MPCAT40]
+        else:
+            for view in read_shard(shard):
+                counts += np.bincount(view.semantic.reshape(-1), minlength=len(MPCAT40))
+    return counts
+
+
+def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
+    """`count` views, as many of each shard as of the others and evenly over it; all of them when count is 0."""
+    picked: list[LabelledView] = []
+    for number, shard in enumerate(shards):
+        views = list(read_shard(shard))
+        share = len(views) if count == 0 else math.ceil((count - len(picked)) / (len(shards) - number))
+        share = min(share, len(views))
+        picked += [views[i] for i in np.linspace(0, len(views) - 1, share).round().astype(int).tolist()]
+    return picked
 
 
 def class_weights(pixels: NDArray[np.float64], *, smallest: float = 1.02) -> torch.Tensor:
@@ -168,7 +183,8 @@ def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
         record = json.loads(parts["json"])
     except ValueError:
         raise ConfigError(f"Shard '{file}': the record of view '{key}' is no JSON.") from None
-    return LabelledView(key, cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), depth.astype(np.float32) / 1000.0, semantic, record)
+    colour = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), np.uint8)
+    return LabelledView(key, colour, depth.astype(np.float32) / 1000.0, semantic, record)
 
 
 def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> NDArray:

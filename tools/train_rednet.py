@@ -1,0 +1,293 @@
+"""Train a RedNet on labelled views, or finetune a published checkpoint.
+
+python tools/train_rednet.py --views runs/views --val-views runs/views_val --out runs/rednet --hours 3
+python tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views runs/views \
+    --val-views runs/views_val --out runs/finetuned --steps 20000
+
+Killed and started again it goes on: `state.pt` (one file, replaced) holds weights, optimiser and step. `train.csv` and
+`val.csv` hold the curves; `rednet.safetensors` is the network of the best evaluation so far.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.utils.data import DataLoader, Dataset
+
+from sim import cli
+from sim.interface import CameraModel, ConfigError
+from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.rednet import SIZES, RedNet
+from stubborn.segmentation.training import (
+    NONE,
+    Augmentation,
+    Iou,
+    Sampler,
+    evaluate,
+    learning_rate,
+    pyramid_loss,
+)
+from stubborn.segmentation.views import (
+    LabelledView,
+    ViewDataset,
+    class_weights,
+    list_shards,
+    pixel_counts,
+    spread_views,
+)
+
+LOG_EVERY_STEPS = 20
+SAVE_EVERY_S = 60.0
+"""State is written no more often than this."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """What to train, on what, how long."""
+
+    views: Path
+    """Folder of training shards (tools/generate_views.py)."""
+    val_views: Path
+    """Folder of shards to evaluate on."""
+    out: Path
+    """Folder of the run; one that is there goes on."""
+    size: str = "compact"
+    """compact or published."""
+    init: Path | None = None
+    """Weights to start from: a file of ours, or a checkpoint of the published network."""
+    block_px: int = 2
+    """The network sees a 640 x 480 image shrunk by this."""
+    steps: int = 20_000
+    """Steps of the learning-rate schedule."""
+    hours: float | None = None
+    """End after so much time, the schedule fitted to it (the speed is measured first)."""
+    batch: int = 16
+    """Views a step."""
+    rate: float = 2e-3
+    """Peak learning rate of AdamW."""
+    weight_decay: float = 0.01
+    """Of AdamW."""
+    workers: int = 0
+    """Processes that read views."""
+    threads: int | None = None
+    """Threads of PyTorch; None leaves its choice."""
+    device: str = "auto"
+    """auto, cpu or cuda."""
+    evaluate_every: int = 500
+    """Steps between evaluations."""
+    val_count: int = 400
+    """Views an evaluation looks at; 0: all."""
+    seed: int = 0
+    """Drives initial weights, order and augmentation."""
+
+
+def main(args: Args) -> int:
+    """Train; returns the exit status."""
+    trainer = Trainer(args)
+    trainer.run()
+    return 0
+
+
+class Views(Dataset):
+    """Views in memory, as samples without augmentation."""
+
+    def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
+        self._views, self._sampler = views, sampler
+
+    def __len__(self) -> int:
+        return len(self._views)
+
+    def __getitem__(self, i: int) -> tuple[Tensor, Tensor, Tensor]:
+        return self._sampler(self._views[i], np.random.default_rng(0))
+
+
+class Trainer:
+    """Network, optimiser and data of one run, and where it stands."""
+
+    def __init__(self, args: Args) -> None:
+        _check(args)
+        self.args = args
+        self.device = _device(args.device)
+        if args.threads is not None:
+            torch.set_num_threads(args.threads)
+        torch.manual_seed(args.seed)
+        self.model = _network(args).to(self.device)
+        self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
+        shards = list_shards(args.views)
+        self.weights = class_weights(pixel_counts(shards)).to(self.device)
+        camera = CameraModel()
+        self.data = ViewDataset(shards, Sampler(camera, args.block_px, Augmentation()), seed=args.seed)
+        self.val = Views(
+            spread_views(list_shards(args.val_views), args.val_count), Sampler(camera, args.block_px, NONE)
+        )
+        self.step, self.spent_s, self.best = 0, 0.0, -math.inf
+        self.total = args.steps
+        args.out.mkdir(parents=True, exist_ok=True)
+        self._resume()
+
+    def run(self) -> None:
+        """Go on until the steps are done or the time is up."""
+        began, last_saved = time.perf_counter() - self.spent_s, time.perf_counter()
+        losses: list[float] = []
+        for rgb, depth, target in self._batches():
+            if self.step >= self.total:
+                break
+            losses.append(self._train_on(rgb, depth, target))
+            self.step += 1
+            self.spent_s = time.perf_counter() - began
+            if self.args.hours is not None and self.step % LOG_EVERY_STEPS == 0:
+                self.total = max(self.step, int(self.step * 3600 * self.args.hours / self.spent_s))
+            if self.step % LOG_EVERY_STEPS == 0:
+                self._log(float(np.mean(losses)))
+                losses.clear()
+            if self.step % self.args.evaluate_every == 0:
+                self._evaluate()
+            if time.perf_counter() - last_saved > SAVE_EVERY_S:
+                self._save_state()
+                last_saved = time.perf_counter()
+        if self.step % self.args.evaluate_every:
+            self._evaluate()
+        self._save_state()
+
+    def _batches(self) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+        """Batches without end, epoch after epoch."""
+        self.data.epoch = self.step  # another order after a restart
+        while True:
+            loader = DataLoader(self.data, batch_size=self.args.batch, num_workers=self.args.workers, drop_last=True)
+            before = self.step
+            yield from loader
+            if self.step == before:
+                raise ConfigError(f"'{self.args.views}' holds fewer views than one batch of {self.args.batch}.")
+            self.data.epoch += 1
+
+    def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor) -> float:
+        for group in self.optimiser.param_groups:
+            group["lr"] = learning_rate(
+                self.step, self.total, peak=self.args.rate, warmup=min(200, 1 + self.total // 20)
+            )
+        self.model.train()
+        self.optimiser.zero_grad(set_to_none=True)
+        with torch.autocast(self.device.type, dtype=torch.bfloat16):
+            rgb = rgb.to(self.device).contiguous(memory_format=torch.channels_last)
+            outputs = self.model.pyramid(rgb, depth.to(self.device))
+            loss = pyramid_loss(outputs, target.to(self.device), self.weights)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
+        self.optimiser.step()
+        return float(loss.detach())
+
+    def _evaluate(self) -> None:
+        """Measure, write a row, and keep the network if it is the best so far."""
+        iou, reliability = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
+        row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
+        row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
+        _append(self.args.out / "val.csv", row | iou.by_category)
+        print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, of all {iou.everything:.3f}", flush=True)
+        if iou.goals > self.best:
+            self.best = iou.goals
+            save_rednet(self.args.out / "rednet.safetensors", self.model, self._card(iou))
+
+    def _card(self, iou: Iou) -> dict[str, Any]:
+        """What the file of weights says of itself."""
+        options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(self.args).items()}
+        return {
+            "block_px": self.args.block_px,
+            "step": self.step,
+            "hours": round(self.spent_s / 3600, 3),
+            "miou_goals": round(iou.goals, 4),
+            "options": options,
+            "torch": torch.__version__,
+        }
+
+    def _log(self, loss: float) -> None:
+        rate = self.optimiser.param_groups[0]["lr"]
+        per_s = self.args.batch * self.step / max(self.spent_s, 1e-9)
+        row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
+        _append(self.args.out / "train.csv", row | {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2)})
+
+    def _save_state(self) -> None:
+        part = self.args.out / "state.pt.part"
+        torch.save(
+            {
+                "model": self.model.state_dict(),
+                "optimiser": self.optimiser.state_dict(),
+                "progress": {"step": self.step, "spent_s": self.spent_s, "best": self.best, "total": self.total},
+                "size": self.args.size,
+            },
+            part,
+        )
+        part.replace(self.args.out / "state.pt")
+
+    def _resume(self) -> None:
+        file = self.args.out / "state.pt"
+        if not file.exists():
+            return
+        state = torch.load(file, map_location=self.device, weights_only=True)
+        if state["size"] != self.args.size:
+            raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state['size']}'; take another folder.")
+        self.model.load_state_dict(state["model"])
+        self.optimiser.load_state_dict(state["optimiser"])
+        progress = state["progress"]
+        self.step, self.spent_s, self.best = progress["step"], progress["spent_s"], progress["best"]
+        if self.args.hours is not None:
+            self.total = max(progress["total"], self.step)
+        print(f"goes on from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+
+
+def _network(args: Args) -> RedNet:
+    if args.init is None:
+        return RedNet(SIZES[args.size])
+    model, _ = load_rednet(args.init)
+    if model.config != SIZES[args.size]:
+        raise ConfigError(f"--init '{args.init}' is not of size '{args.size}'.")
+    return model
+
+
+def _device(name: str) -> torch.device:
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    if name == "cuda" and not torch.cuda.is_available():
+        raise ConfigError("--device cuda: PyTorch sees no CUDA device here.")
+    return torch.device(name)
+
+
+def _append(file: Path, row: dict[str, Any]) -> None:
+    """A row of a CSV file, under a heading that the first row makes."""
+    if file.exists():
+        with file.open(newline="") as stream:
+            heading = next(csv.reader(stream))
+    else:
+        heading = list(row)
+        with file.open("w", newline="") as stream:
+            csv.writer(stream).writerow(heading)
+    with file.open("a", newline="") as stream:
+        csv.DictWriter(stream, heading, extrasaction="ignore").writerow(row)
+
+
+def _check(args: Args) -> None:
+    if args.size not in SIZES:
+        raise ConfigError(f"--size must be one of {', '.join(SIZES)}, got '{args.size}'.")
+    if args.device not in ("auto", "cpu", "cuda"):
+        raise ConfigError(f"--device must be auto, cpu or cuda, got '{args.device}'.")
+    for name in ("steps", "batch", "block_px", "evaluate_every"):
+        if getattr(args, name) < 1:
+            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
+    if args.batch < 2:
+        raise ConfigError("--batch must be at least 2: batch normalisation needs more than one view.")
+    if args.hours is not None and args.hours <= 0:
+        raise ConfigError(f"--hours must be > 0, got {args.hours}.")
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
