@@ -14,7 +14,7 @@ from sim.houses.placement import RoomSpace, Standing
 
 Filler = Callable[[RoomSpace, Kit], object]
 """Adds something to a room; a false value where there is no place for it."""
-PICTURE_PER_M2 = 0.03
+PICTURE_PER_M2 = 0.02
 """Pictures a room may have more than its rule gives it."""
 
 
@@ -169,7 +169,7 @@ _RACK = _piece("clothes", "rack", front_m=0.4, most=2)
 FILLINGS: Mapping[str, Filling] = MappingProxyType(
     {
         "living_room": Filling(
-            0.27,
+            0.25,
             (
                 reading_corner,
                 chat_circle,
@@ -184,13 +184,13 @@ FILLINGS: Mapping[str, Filling] = MappingProxyType(
             ),
         ),
         "bedroom": Filling(
-            0.30, (reading_corner, _chest, _desk, _PLAIN_BENCH, _PLANT, _WARDROBE, _BOOKS, _SCREEN, pictures)
+            0.26, (reading_corner, _chest, _desk, _PLAIN_BENCH, _PLANT, _WARDROBE, _BOOKS, _SCREEN, pictures)
         ),
-        "kitchen": Filling(0.28, (_SIDEBOARD, _PLANT, _BIN, pictures)),
-        "dining_room": Filling(0.26, (_SIDEBOARD, console, reading_corner, _PLANT, _PIANO, pictures)),
+        "kitchen": Filling(0.26, (_SIDEBOARD, _PLANT, _BIN, pictures)),
+        "dining_room": Filling(0.24, (_SIDEBOARD, console, reading_corner, _PLANT, _PIANO, pictures)),
         "studio": Filling(0.30, (reading_corner, _BOOKS, _PLANT, console, _OTTOMAN)),
-        "office": Filling(0.28, (_BOOKS, _desk, reading_corner, _PLANT, console, pictures, middle_rug)),
-        "gym": Filling(0.30, (_machine, _machine, _PLAIN_BENCH, _PLANT, _OTTOMAN, _towels, pictures)),
+        "office": Filling(0.26, (_BOOKS, _desk, reading_corner, _PLANT, console, pictures, middle_rug)),
+        "gym": Filling(0.26, (_machine, _machine, _PLAIN_BENCH, _PLANT, _OTTOMAN, _towels, pictures)),
         "bathroom": Filling(0.27, (_PLANT, _BIN, _towels, _STOOL, _BASKET), rounds=1),
         "laundry": Filling(0.27, (_BOOKS, _BASKET, _BIN), rounds=1),
         "closet": Filling(0.30, (_WARDROBE, _RACK, _chest, _BOX, _BOOKS, _OTTOMAN), rounds=1),

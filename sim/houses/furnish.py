@@ -171,7 +171,7 @@ def _basin(space: RoomSpace, kit: Kit) -> Standing | None:
 def _hallway(space: RoomSpace, kit: Kit) -> None:
     furnish_hall(space, kit)
     pictures = int(space.inner.long_m / 4.0)
-    _extras(space, kit, plants=0.5, pictures=(min(2, pictures), min(4, 1 + pictures)), lamp=False)
+    _extras(space, kit, plants=0.5, pictures=(min(1, pictures), min(3, 1 + pictures)), lamp=False)
 
 
 def _office(space: RoomSpace, kit: Kit) -> None:

@@ -198,7 +198,8 @@ def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
         size = len(house_text(spec))
         if size <= MAX_BYTES:
             return spec
-        at += 2 if size > 1.15 * MAX_BYTES and at + 2 < len(BYTES_PER_GEOM) else 1
+        steps = 1 + (size > 1.12 * MAX_BYTES) + (size > 1.3 * MAX_BYTES)  # each level saves some 7 percent
+        at = min(at + steps, len(BYTES_PER_GEOM) - 1) if at + 1 < len(BYTES_PER_GEOM) else len(BYTES_PER_GEOM)
     return None
 
 

@@ -211,8 +211,8 @@ def monstera(w: Workbench) -> None:
     r, high, tall = w.length(0.15, 0.20), w.length(0.22, 0.30), w.length(0.60, 0.95)
     _pot(w, r, high)
     green = w.look("foliage")
-    for i in range(8):
-        a, t = 2.4 * i, i / 7
+    for i in range(6):
+        a, t = 2.4 * i, i / 5
         reach = 0.16 + 0.20 * t
         tip = (reach * math.cos(a), reach * math.sin(a), high + tall * (1.0 - 0.65 * t))
         w.rod((0.0, 0.0, high - 0.01), tip, 0.007, green, solid=i < 3)
