@@ -12,10 +12,13 @@ import pytest
 from sim.gl import mujoco
 from sim.houses import generate
 from sim.houses.check import check_house
+from sim.houses.furniture import make_item
 from sim.houses.generator import GeneratedHouse, HouseConfig, generate_house
+from sim.houses.geometry import Rect
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import validate_house
+from sim.houses.placement import RoomSpace
 from sim.houses.rooms import PLAN_AREA_M2
 from sim.houses.splits import SPLITS
 from sim.interface import GOAL_CATEGORIES, ConfigError
@@ -128,3 +131,13 @@ def test_things_stand_inside_their_rooms() -> None:
             continue
         x, y, _ = np.mean(data.geom_xpos[list(thing.geom_ids)], axis=0)
         assert any(room.contains(x, y) for room in rooms), thing.name
+
+
+def test_a_picture_high_over_a_bed_keeps_nothing_out_of_the_room() -> None:
+    rng = np.random.default_rng(0)
+    space = RoomSpace(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
+    bed = make_item("bed", rng, pool="train", width_m=1.6)
+    picture = make_item("picture", rng, pool="train", width_m=0.5)
+    assert space.against_wall(rng, bed, sides=["west"], along="middle") is not None
+    assert space.on_wall(rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
+    assert space.against_wall(rng, make_item("cabinet", rng, pool="train", use="wardrobe"), sides=["east"]) is not None
