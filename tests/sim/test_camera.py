@@ -88,6 +88,20 @@ def test_culling_changes_no_pixel(clutter: tuple[Eye, Eye]) -> None:
             np.testing.assert_array_equal(culled[sensor], whole[sensor], err_msg=f"{sensor} at {pose}")
 
 
+def test_in_the_good_profile_what_is_not_seen_still_throws_its_shadow() -> None:
+    """A cupboard behind the camera, under a lamp further back."""
+    spec = with_box(room(8, 8), "cabinet_00", centre_m=(-0.6, 0.0, 1.2), half_m=(0.1, 0.5, 0.3)).spec.copy()
+    spec.lights[0].pos, spec.lights[0].dir = (-2.0, 0.0, 2.4), (0.8, 0.0, -0.6)
+    house = House("lamp", spec)
+    culled, whole = (Eye(house, profile="good", cull=cull) for cull in (True, False))
+    bare = Eye(with_box(room(8, 8), "cabinet_00", centre_m=(-3.5, 3.5, 0.5), half_m=(0.1, 0.1, 0.3)), profile="good")
+    bare.model.light_pos[:], bare.model.light_dir[:] = (-2.0, 0.0, 2.4), (0.8, 0.0, -0.6)
+    mujoco.mj_forward(bare.model, bare.data)
+    shadow, same, none = (eye.see(0, 0, 0, "rgb", "depth")["rgb"] for eye in (culled, whole, bare))
+    np.testing.assert_array_equal(shadow, same)
+    assert (shadow != none).any()
+
+
 def test_images_never_share_memory(clutter: tuple[Eye, Eye]) -> None:
     first = clutter[0].see(0, 0, 0, "rgb", "depth", "semantic")
     kept = {name: image.copy() for name, image in first.items()}
