@@ -14,17 +14,18 @@ from stubborn.occupancy import OccupancyConfig
 from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel(width_px=160, height_px=120)
+FULL = CameraModel()
 FRAME = GridFrame.around_start(300)
 TOP_M = 2.2
 POSES = (PlanarPose(0.0, 0.0, 0.0), PlanarPose(0.13, -0.27, math.radians(37.0)))
 
 
-def frame_at(pose: PlanarPose, distance_m: float) -> np.ndarray:
+def frame_at(pose: PlanarPose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
     """Depth of a wall across the view at x = `distance_m`, which stands higher than the layers look."""
     world = GridWorld(
         [Box((distance_m, distance_m + 0.1), (-9.0, 9.0), (0.0, 3.0))],
         (pose.x_m, pose.y_m, pose.yaw_rad),
-        camera=CAMERA,
+        camera=camera,
     )
     return world.render()[0]
 
@@ -85,12 +86,12 @@ def test_the_four_layers_are_what_projecting_every_pixel_gives(distance_m: float
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 @pytest.mark.parametrize("pose", POSES)
 def test_a_target_on_a_wall_lands_within_a_cell_of_it(distance_m: float, pose: PlanarPose):
-    depth = frame_at(pose, distance_m)
-    up = (0.5 * CAMERA.height_px - np.arange(CAMERA.height_px) - 0.5) / CAMERA.focal_px
-    height_m = CAMERA.height_m + depth * up[:, None]
+    depth = frame_at(pose, distance_m, FULL)
+    up = (0.5 * FULL.height_px - np.arange(FULL.height_px) - 0.5) / FULL.focal_px
+    height_m = FULL.height_m + depth * up[:, None]
     target = (height_m > 0.3).astype(np.float32)  # all of the wall but its foot
     navmap = NavMap.empty(FRAME)
-    Mapper(CAMERA, RobotModel(), MappingConfig()).add_scores(navmap, depth, Scores(target, 1 - target), pose, 0)
+    Mapper(FULL, RobotModel(), MappingConfig()).add_scores(navmap, depth, Scores(target, 1 - target), pose, 0)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.size > 5
     assert np.abs(x_m - distance_m).max() <= 0.05 + 1e-6
