@@ -136,8 +136,8 @@ def test_things_stand_inside_their_rooms() -> None:
 def test_a_picture_high_over_a_bed_keeps_nothing_out_of_the_room() -> None:
     rng = np.random.default_rng(0)
     space = RoomSpace(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
-    bed = make_item("bed", rng, pool="train", width_m=1.6)
-    picture = make_item("picture", rng, pool="train", width_m=0.5)
+    bed = make_item("bed", rng, pool="train", width_m=1.8)
+    picture = make_item("picture", rng, pool="train", width_m=0.3)
     assert space.against_wall(rng, bed, sides=["west"], along="middle") is not None
     assert space.on_wall(rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
     assert space.against_wall(rng, make_item("cabinet", rng, pool="train", use="wardrobe"), sides=["east"]) is not None
