@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from sim import run
 from sim.confusions import CONFUSIONS
 from sim.env import ObjectNavEnv
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, Action, ConfigError
@@ -111,7 +113,7 @@ def test_small_things_are_missed_more_often_by_the_law_of_the_config(share: floa
 def test_what_is_missed_small_is_seen_when_it_has_grown_and_not_the_other_way_round():
     of, config = things("cushion"), replace(FLAWLESS, miss_share=0.003)
     small = seen(config, of, share=np.full(COUNT, 0.002)).first == 0
-    large = seen(config, of, share=np.full(COUNT, 0.02)).first == 0
+    large = seen(config, of, share=np.full(COUNT, 0.02), frame=1).first == 0
     assert small.sum() > 1000 > large.sum()
     assert not (large & ~small).any()
 
@@ -207,6 +209,24 @@ def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a
     assert all(sofa < 0.5 for sofa, _ in mistaken.values())
     assert any(seating > 0.5 for _, seating in mistaken.values())
     assert all(seating < 0.5 < sofa for sofa, seating in right.values())
+
+
+def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_with(house: Path, tmp_path: Path):
+    lines = []
+    for name in ("once", "twice"):
+        args = run.Args(house=house, goal="sofa", semantics="noisy", episodes=1, out=tmp_path / name)
+        assert run.main(args) == 0
+        config = json.loads((tmp_path / name / "config.json").read_text())
+        assert config["semantics_config"] == json.loads(json.dumps(asdict(NoisyConfig())))
+        (line,) = [json.loads(text) for text in (tmp_path / name / "results.jsonl").read_text().splitlines()]
+        lines.append({key: value for key, value in line.items() if key not in ("wall_time_s", "steps_per_s")})
+    assert lines[0] == lines[1]
+    assert lines[0]["semantics"] == "noisy"
+
+
+def test_unknown_semantics_are_refused_with_what_there_is(house: Path, tmp_path: Path):
+    with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. There is: gt, noisy"):
+        run.main(run.Args(house=house, semantics="dreams", out=tmp_path))
 
 
 def test_rates_outside_their_range_are_refused():
