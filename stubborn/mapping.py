@@ -38,6 +38,8 @@ class MappingConfig:
     """Every so many pixels, each way, go into the object layers."""
     candidate_score: float = 0.5
     """A cell with a higher target score is a candidate."""
+    candidate_gap_m: float = 0.15
+    """A candidate goes where a frame sees through it, and sees the target only farther than this behind it."""
     occupancy: OccupancyConfig = field(default_factory=OccupancyConfig)
     """When points of a noisy depth image count."""
 
@@ -143,14 +145,14 @@ class Mapper:
         used_top_m = max(top_m, camera.height_m + config.eye_level_halfwidth_m)
         self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
         self._score_rays: dict[int, Rays] = {}
-        self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m, stride_px)
+        self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
 
     def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> None:
         """Enter one depth image, (height_px, width_px) metres, into the obstacle layers."""
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, c = self._obstacle_rays, self.config
-        surfaces = Surfaces.of(rays.sample(depth), c.occupancy.jump_1_m)
+        surfaces = Surfaces.of(rays.sample(depth), c.occupancy)
         points = rays.project(surfaces.depth, surfaces.neighbours >= c.occupancy.neighbours, camera_pose, window)
         view = navmap.view(window)
         solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
@@ -181,6 +183,8 @@ class Mapper:
         found = target > self.config.candidate_score
         if not found.any():
             return NOTHING_SIGHTED
+        sure = confirmed & (scores.target[score_pick] > self.config.candidate_score)
+        self._drop_candidates(navmap.view(window), d, sure, rays, camera_pose)
         rows, cols = np.divmod(np.unique(flat[found]), window.frame.shape[1])
         x_m, y_m = window.frame.centres(rows, cols)
         to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
@@ -207,6 +211,19 @@ class Mapper:
         confirmed[box] = sure | ~found[box]
         d[box] = np.where(found[box], smooth, d[box])
         return d, confirmed
+
+    def _drop_candidates(
+        self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: PlanarPose
+    ) -> None:
+        """Forget candidates in free air with the target behind: from afar a noisy image shows it too near."""
+        rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
+        target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
+        sight = SightLines.of_frame(
+            d, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+        ).towards(target_m)
+        passed = self._occupancy.passes(view.frame, rows, cols, sight, self.config.candidate_gap_m)
+        view.score_max[rows[passed], cols[passed]] = 0.0
+        view.score_sum[rows[passed], cols[passed]] = 0.0
 
     def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
         x_m, y_m = pose.ahead(self.camera_forward_m)

@@ -2,14 +2,14 @@
 
 A depth camera invents points: flying pixels between the two sides of an edge, floor that seems to rise far away, walls
 that shift with a noisy pose. Three questions keep them off the map. Does a pixel lie on a surface, that is, at the
-depth of some of its neighbours? Does a cell hold enough such points for its distance? And do later frames see through
-it? Exact depth passes all three, so there the map is as if nothing had been asked.
+depth of some of its neighbours? Does a cell hold more than one such point? And do later frames see through it? Exact
+depth passes all three, so there the map is nearly as if nothing had been asked.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -28,10 +28,10 @@ class OccupancyConfig:
     """Two pixels lie on one surface when their 1 / depth differs by less: 3 cm at 1 m, 27 cm at 3 m."""
     neighbours: int = 2
     """Of its eight neighbours so many must lie on a pixel's surface: a thin leg is one pixel wide; 0: none need."""
-    patch_m2: float = 0.0003
-    """A cell must show in one frame as many points as a surface of this size facing the camera."""
+    exact_1_m: float = 0.0005
+    """An image whose 1 / depth differs from its smoothed self by less, at the median, is exact and stays as it is."""
     hit: int = 2
-    """Evidence that a frame adds where it shows at least two points and the patch; a single point adds half."""
+    """Evidence that a frame adds to a cell where it shows at least two points; a single point adds half."""
     miss: int = 1
     """Evidence that a frame takes away where it sees through a cell at all heights of the obstacle band; 0: none."""
     obstacle_from: int = 2
@@ -46,8 +46,8 @@ class OccupancyConfig:
             raise ConfigError(
                 f"OccupancyConfig needs 0 < obstacle_from <= most <= 100, got {self.obstacle_from} and {self.most}."
             )
-        if min(self.jump_1_m, self.patch_m2, self.hit, self.miss, self.neighbours) < 0:
-            raise ConfigError("OccupancyConfig: jump_1_m, patch_m2, hit, miss and neighbours must not be negative.")
+        if min(self.jump_1_m, self.exact_1_m, self.hit, self.miss, self.neighbours) < 0:
+            raise ConfigError("OccupancyConfig: jump_1_m, exact_1_m, hit, miss and neighbours must not be negative.")
 
 
 @dataclass(frozen=True)
@@ -60,9 +60,9 @@ class Surfaces:
     """(h, w) how many of the neighbours that are."""
 
     @classmethod
-    def of(cls, depth: NDArray[np.float32], jump_1_m: float) -> Surfaces:
-        """Of an image (h, w) of metres, where 0 is no distance; `jump_1_m` as in `OccupancyConfig`."""
-        scaled = depth * np.float32(jump_1_m)
+    def of(cls, depth: NDArray[np.float32], config: OccupancyConfig) -> Surfaces:
+        """Of an image (h, w) of metres, where 0 is no distance."""
+        scaled = depth * np.float32(config.jump_1_m)
         total, count = depth.copy(), np.zeros(depth.shape, np.uint8)
         for ahead, behind in _NEIGHBOUR_PAIRS:
             a, b = depth[ahead], depth[behind]
@@ -76,8 +76,12 @@ class Surfaces:
             total[behind] -= gap
         total -= depth
         total /= count + np.float32(1.0)
-        total += depth
-        return cls(total, count)
+        some = count[::4, ::4] > 0
+        if not some.any():
+            return cls(depth, count)
+        rough_1_m = np.median(np.abs(total[::4, ::4][some]) / np.square(depth[::4, ::4][some]))
+        # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
+        return cls(depth if rough_1_m < config.exact_1_m else total + depth, count)
 
 
 def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
@@ -86,7 +90,7 @@ def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArr
     `depth` is (h, w) metres, 0 where there is no distance; both results are (h, w).
     """
     known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
-    surfaces = Surfaces.of(depth, config.jump_1_m)
+    surfaces = Surfaces.of(depth, config)
     same = surfaces.neighbours
     return (same >= config.neighbours) & (2 * same + 1 >= np.asarray(known)), surfaces.depth
 
@@ -129,6 +133,11 @@ class SightLines:
         first = int(np.count_nonzero(up > max(rise_m, 0.0)))
         return cls(np.minimum.accumulate(depth[first:], axis=0), up[first:], left, pose)
 
+    def towards(self, target_m: NDArray[np.float32]) -> SightLines:
+        """The same, no farther than the nearest target point of each column, (columns,) metres; inf: no sight."""
+        nearest_m = np.where(np.isfinite(target_m), np.minimum(self.nearest_m, target_m), np.float32(0.0))
+        return replace(self, nearest_m=nearest_m)
+
     def passes(
         self,
         frame: GridFrame,
@@ -164,48 +173,41 @@ class SightLines:
 class Occupancy:
     """Weighs the points of each frame against what later frames see through. Keeps no memory: that is on the map."""
 
-    def __init__(self, camera: CameraModel, config: OccupancyConfig, min_height_m: float, stride_px: int) -> None:
-        """The obstacle band starts at `min_height_m`; every `stride_px`-th pixel is looked at, each way."""
+    def __init__(self, camera: CameraModel, config: OccupancyConfig, min_height_m: float) -> None:
+        """The obstacle band starts at `min_height_m`."""
         self.camera = camera
         self.config = config
         self._drop_m = camera.height_m - min_height_m
-        self._points_m2 = config.patch_m2 * (camera.focal_px / stride_px) ** 2  # points of the patch, times range^2
 
     def add(self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines) -> None:
         """Enter a frame into the obstacle layers of a view that holds everything within sight.
 
         `solid` (n,) and `tall` (n,) are the row-major cells of the points in the obstacle band and at eye level.
         """
-        hits = self._hits(view.frame, solid, sight.pose)
-        view.seen_at_eye_level |= self._hits(view.frame, tall, sight.pose) > 0
-        rows, cols = np.nonzero(hits | view.obstacle_evidence)
+        hits = self._hits(view.frame.shape, solid)
+        view.seen_at_eye_level |= self._hits(view.frame.shape, tall) > 0
+        rows, cols = np.divmod(np.flatnonzero((hits | view.obstacle_evidence) != 0), view.frame.shape[1])
         evidence, hit = view.obstacle_evidence[rows, cols], hits[rows, cols]
         if self.config.miss:
             contested = np.flatnonzero((hit == 0) & (evidence > 0))
-            passed = contested[self._passes(view.frame, rows[contested], cols[contested], sight)]
+            passed = contested[self.passes(view.frame, rows[contested], cols[contested], sight, self.config.margin_m)]
             evidence[passed] = np.maximum(evidence[passed] - self.config.miss, 0)
         evidence = np.minimum(evidence + hit, self.config.most).astype(np.int8)
         view.obstacle_evidence[rows, cols] = evidence
         view.seen_obstacle[rows, cols] = evidence >= self.config.obstacle_from
         view.seen_at_eye_level[rows, cols] &= evidence > 0
 
-    def _passes(
-        self, frame: GridFrame, rows: NDArray[np.integer], cols: NDArray[np.integer], sight: SightLines
+    def passes(
+        self, frame: GridFrame, rows: NDArray[np.integer], cols: NDArray[np.integer], sight: SightLines, margin_m: float
     ) -> NDArray[np.bool_]:
+        """For each cell whether a frame saw through it, and so far past it, at all heights of the obstacle band."""
         range_m = (self.camera.min_depth_m, self.camera.max_depth_m)
-        return sight.passes(frame, rows, cols, self._drop_m, range_m, self.config.margin_m)
+        return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
 
-    def _hits(self, frame: GridFrame, cells: NDArray[np.integer], pose: PlanarPose) -> NDArray[np.int8]:
+    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer]) -> NDArray[np.int8]:
         """(rows, cols) evidence from one frame's points."""
-        evidence = np.zeros(frame.shape, np.int8)
+        evidence = np.zeros(shape, np.int8)
+        evidence.reshape(-1)[cells] = self.config.hit // 2
         counts = np.bincount(cells, minlength=evidence.size)
-        found = np.flatnonzero(counts)
-        rows, cols = np.divmod(found, frame.shape[1])
-        x_m, y_m = frame.centres(rows, cols)
-        ahead_m = math.cos(pose.yaw_rad) * (x_m - pose.x_m) + math.sin(pose.yaw_rad) * (y_m - pose.y_m)
-        count = counts[found]
-        enough = count * ahead_m * ahead_m >= self._points_m2
-        single = (count == 1) & (ahead_m > 1.0)
-        hit = np.where(single, self.config.hit // 2, self.config.hit)
-        evidence.reshape(-1)[found] = np.where(enough, hit, 0)
+        evidence.reshape(-1)[counts > 1] = self.config.hit
         return evidence
