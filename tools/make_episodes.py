@@ -70,7 +70,11 @@ def main(args: Args) -> int:
         raise ConfigError("--episodes, --view-points and --workers must be at least 1.")
     began_s = time.perf_counter()
     surveyed = ordered_map(functools.partial(_survey, args.split, args.view_points), list(files), workers=args.workers)
-    goals = dict(zip(files, surveyed, strict=True))
+    goals: dict[str, HouseGoals] = {}
+    for house, found in zip(files, surveyed, strict=True):
+        goals[house] = found
+        instances = sum(map(len, found.listed.values()))
+        print(f"{house}: {len(found.listed)} goals, {instances} things to find, {len(found.unreachable)} out of reach")
     turns = take_turns({house: tuple(found.listed) for house, found in goals.items()}, args.episodes)
     episodes = draw_episodes(args, turns)
     write_split(
@@ -128,7 +132,10 @@ def draw_episodes(args: Args, turns: Sequence[tuple[str, str]]) -> list[Episode]
     digits = max(4, len(str(len(turns) - 1)))
     draw = functools.partial(_draw, args.split, args.seed, digits)
     drawn = ordered_map(draw, list(turns_in.items()), workers=args.workers)
-    episodes = {i: episode for house in drawn for i, episode in house}
+    episodes: dict[int, Episode] = {}
+    for house, found in zip(turns_in, drawn, strict=True):
+        episodes |= dict(found)
+        print(f"{house}: {len(found)} episodes", flush=True)
     return [episodes[i] for i in range(len(turns))]
 
 
