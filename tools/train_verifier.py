@@ -2,16 +2,19 @@
 
     python tools/train_verifier.py --semantics noisy --split train --episodes 2000
 
-The agent plays without stopping: whatever it would verify is logged with its four features and the truth, whether a
-STOP there would succeed, and then it goes on as if the candidate had been rejected. The log has a line an episode; the
-same command goes on where it was, and more episodes add to what is there. Then one Gaussian naive Bayes is fitted for
-each goal category, and a pooled one for those with too few candidates of either kind, and written as JSON with counts
-and a table that says how far probabilities can be believed: cross-validated, episodes never on both sides.
+The agent plays without stopping: whatever it would verify is logged with its four features, the truth, whether a STOP
+there would succeed, and the place; then it goes on as if the candidate had been rejected. The log has a line an
+episode; the same command goes on where it was, and more episodes add to what is there. What is left of an object after
+such a rejection is met again, but an agent that had stopped would never see it: of the true candidates of an episode
+within 2 m of one another only the first counts. Then one Gaussian naive Bayes is fitted for each goal category, and a
+pooled one for those with too few candidates of either kind, and written as JSON with counts and a table that says how
+far probabilities can be believed: cross-validated, episodes never on both sides.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -39,6 +42,7 @@ from stubborn.verification import FOLDER, UNVERIFIED, Features
 NEVER = 1_000_000
 """A step that no episode reaches."""
 FOLDS = 5
+SAME_PLACE_M = 2.0
 
 
 @dataclass(frozen=True)
@@ -73,14 +77,14 @@ class Witness:
     def __init__(self, env: ObjectNavEnv) -> None:
         self._env = env
         self.candidates: list[list[float]] = []
-        """Features, then 1 where a STOP would have succeeded, else 0."""
+        """Features, then 1 where a STOP would have succeeded, else 0, then the robot's x and y in metres."""
 
     def accepts(self, goal: str, features: Features) -> bool:
         """False."""
         world, task = self._env.scene.world, self._env.scene.task
         x_m, y_m, floor_z_m = world.pose.x_m, world.pose.y_m, world.pose.floor_z_m
         truth = task.truth.succeeds_now(goal, x_m, y_m, floor_z_m)
-        self.candidates.append([*(round(float(value), 4) for value in features), float(truth)])
+        self.candidates.append([round(float(value), 4) for value in (*features, truth, x_m, y_m)])
         return False
 
 
@@ -187,11 +191,24 @@ def _table(
     lines: Sequence[Mapping[str, Any]],
 ) -> tuple[NDArray[np.str_], NDArray[np.intp], NDArray[np.float64], NDArray[np.bool_]]:
     """Goal, number of the episode, features (n, 4) and truth of all candidates."""
-    rows = [(line["goal"], number, *each) for number, line in enumerate(lines) for each in line["candidates"]]
+    rows = [(line["goal"], number, *each) for number, line in enumerate(lines) for each in _first_of_each(line)]
     goals = np.array([row[0] for row in rows], np.str_)
     groups = np.array([row[1] for row in rows], np.intp)
     values = np.array([row[2:] for row in rows], np.float64).reshape(-1, len(Features._fields) + 1)
     return goals, groups, values[:, :-1], values[:, -1] > 0.5
+
+
+def _first_of_each(line: Mapping[str, Any]) -> list[list[float]]:
+    """Features and truth of an episode's candidates, without true ones near an earlier true one."""
+    places: list[tuple[float, float]] = []
+    kept = []
+    for *features, truth, x_m, y_m in line["candidates"]:
+        if truth and any(math.hypot(x_m - x, y_m - y) <= SAME_PLACE_M for x, y in places):
+            continue
+        if truth:
+            places.append((x_m, y_m))
+        kept.append([*features, truth])
+    return kept
 
 
 def _parameters(features: NDArray[np.float64], truth: NDArray[np.bool_]) -> dict[str, Any]:

@@ -298,6 +298,21 @@ def test_a_candidate_first_found_after_step_200_is_not_verified():
     assert seeker(refuse).judge(navmap, (22, 44)) is False
 
 
+def test_reset_forgets_what_was_set_aside_and_how_long_it_would_have_waited():
+    navmap, pose = enclosed_target()
+    seek = seeker(retry_after_steps=10)
+    for step in (0, 10, 30):
+        assert seek.approach(navmap, whole(navmap), pose, step) is None
+    seek.reset("sofa")
+    fresh, pose = enclosed_target()
+    assert seek.approach(fresh, whole(fresh), pose, 0) is None
+    assert fresh.set_aside.any()
+    fresh.seen_obstacle[:] = False  # the way opens
+    fresh.seen_at_eye_level[:] = False
+    assert seek.approach(fresh, whole(fresh), pose, 9) is None
+    assert seek.approach(fresh, whole(fresh), pose, 10) is not None
+
+
 def test_stands_in_the_wrong_order_are_refused():
     with pytest.raises(ConfigError, match="stand_m <= far_stand_m"):
         TargetConfig(stand_m=1.2)

@@ -39,10 +39,12 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_goes_on_where_it_was(
     first = played(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     candidates = [each for line in first for each in line["candidates"]]
-    assert any(each[-1] == 1.0 for each in candidates)  # it came to the sofa, where a STOP would have succeeded
-    for *features, truth in candidates:
+    assert any(each[4] == 1.0 for each in candidates)  # it came to the sofa, where a STOP would have succeeded
+    for *features, truth, x_m, y_m in candidates:
         views, total, highest, other = Features(*features)
         assert truth in (0.0, 1.0)
+        assert abs(x_m) < 3.5
+        assert abs(y_m) < 2.5
         assert views >= 1
         assert 0.5 < highest <= 1.0
         assert highest <= total + 1e-3 <= views + 2e-3
