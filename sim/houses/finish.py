@@ -17,8 +17,6 @@ OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
 SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
 PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper, one of them in a home."""
-MAX_POINT_LAMPS = 4
-"""Fixed-function OpenGL has eight lights; four shine everywhere."""
 
 
 def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
@@ -64,9 +62,11 @@ def _flowing(plan: FloorPlan) -> set[int]:
 
 
 def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
-    """Daylight from three sides, a reflection from the floors, and lamps in the largest rooms.
+    """Daylight from three sides, a reflection from the floors, and a lamp in each room, the largest room's first.
 
-    The light that is the same everywhere casts no shadow: a ceiling would swallow it. Strengths were set by looking.
+    Fixed-function OpenGL has eight lights; four shine everywhere, and `sim.sensors.camera` lights the lamp that is in
+    sight. Another viewer takes the first ones. The light that is the same everywhere casts no shadow: a ceiling would
+    swallow it. Strengths were set by looking.
     """
     warm = float(rng.uniform(0.0, 1.0))
     tint = np.array([1.0, 0.99 - 0.03 * warm, 0.97 - 0.10 * warm])
@@ -92,8 +92,7 @@ def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> l
         Lamp(above, light(0.16), towards(turn + 4.1, -0.50)),
         Lamp((above[0], above[1], 0.1), light(0.40), towards(turn + 1.0, 1.2)),
     ]
-    rooms = sorted(plan.rooms, key=lambda room: -room.rect.area_m2)[:MAX_POINT_LAMPS]
-    for room in rooms:
+    for room in sorted(plan.rooms, key=lambda room: -room.rect.area_m2):
         cx, cy = room.rect.centre
         lamps.append(Lamp((round(cx, 2), round(cy, 2), round(ceiling_m - 0.25, 2)), light(0.42), shadow=True))
     return lamps
