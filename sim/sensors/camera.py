@@ -20,6 +20,7 @@ from sim.gl import INSTALL_HINT, mujoco
 from sim.houses.labels import RENDERED_GROUPS, Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.pose import Pose
+from sim.sensors.lamps import Lamps
 from sim.sensors.occlusion import Visibility
 from sim.sensors.profiles import RenderProfile, get_profile
 
@@ -79,9 +80,11 @@ class Camera:
         # Numbers must not be blended at edges and need no vertices inside a flat face, so they have their own buffer.
         self._number_context = _make_context(model, self.camera, self.profile, samples=0, quads=1)
         self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
+        self._reflects = self.profile.reflections and bool((model.mat_reflectance > 0.0).any())
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
         self._view = mujoco.MjvCamera()
         self._visibility = Visibility(model, drawable, self.camera, Z_NEAR_M)
+        self._lamps = Lamps(model, self._visibility, self._drawable)
 
     def render(self, data: mujoco.MjData, pose: Pose, sensors: Sequence[str]) -> dict[str, NDArray]:
         """Images of the sensors asked for, each in memory of its own; see `sim.interface.Observation`.
@@ -107,8 +110,7 @@ class Camera:
         if {"depth", "semantic", "geom"} & set(sensors):
             images |= self._numbers_and_depth(seen, sensors)
         if "rgb" in sensors:
-            if self.profile.shadows or self.profile.reflections:  # what is not seen may be reflected, or throw a shadow
-                self._fill_scene(data, self._drawable, eye_m, axes)
+            self._light_scene(data, seen, eye_m, axes)
             images["rgb"] = self._color()
         return images
 
@@ -117,7 +119,7 @@ class Camera:
         self._finalizer()
 
     def _fill_scene(self, data: mujoco.MjData, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray) -> None:
-        """Put these geoms, given in ascending order, and the lights before the eye."""
+        """Put these geoms, given in ascending order, and the lights that shine before the eye."""
         group = np.full_like(self._groups, _LEFT_OUT_GROUP)
         group[geoms] = self._groups[geoms]
         self._model.geom_group[:] = group
@@ -128,6 +130,18 @@ class Camera:
         if self._scene.ngeom != len(geoms):
             raise RenderError(f"The scene holds {self._scene.ngeom} geoms where {len(geoms)} were expected.")
         _aim(self._scene, eye_m, axes, self.camera)
+
+    def _light_scene(self, data: mujoco.MjData, seen: NDArray[np.intp], eye_m: NDArray, axes: NDArray) -> None:
+        """The scene again, with its lamps, and with what is not seen but throws a shadow or is reflected."""
+        lamps = self._lamps.choose(data, eye_m, axes[0])
+        geoms = seen
+        if self._reflects:
+            geoms = self._drawable
+        elif self.profile.shadows and lamps and self.cull:
+            geoms = np.union1d(seen, self._lamps.casters(data, lamps[0]))
+        self._lamps.light(lamps)
+        self._fill_scene(data, geoms, eye_m, axes)
+        self._lamps.restore()
 
     def _numbers_and_depth(self, drawn_ids: NDArray[np.intp], sensors: Sequence[str]) -> dict[str, NDArray]:
         flags = self._scene.flags

@@ -109,6 +109,17 @@ class Visibility:
             kept = np.delete(kept, upright[hidden])
         return self._ids[kept]
 
+    def in_sight(self, eye_m: NDArray, places_m: NDArray) -> NDArray[np.bool_]:
+        """(k,) True where no wall stands between the eye and a place (k, 3), in plan; on a wall counts as before it.
+
+        The walls are those that reach from floor to ceiling and span the eye; what can be seen through a door can be
+        seen under its lintel.
+        """
+        walls = self._tall(float(eye_m[2]))
+        entry, leave = walls.cross(eye_m, (places_m[:, :2] - eye_m[:2]).T)  # (walls, k) shares of the way
+        with np.errstate(invalid="ignore"):
+            return ~((entry > 0.0) & (leave < 1.0)).any(axis=0)
+
     def _hidden(self, depth: NDArray, right: NDArray, up: NDArray, horizon: Horizon) -> NDArray:
         """(k,) True where a geom with these corners, (8, k) in camera axes, is behind walls."""
         nearest = depth.min(axis=0)

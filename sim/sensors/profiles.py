@@ -33,7 +33,7 @@ PROFILES: dict[str, RenderProfile] = {
             name="fast", shadows=False, reflections=False, skybox=False, samples=0, slices=12, stacks=8, quads=2
         ),
         RenderProfile(
-            name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=28, stacks=16, quads=4
+            name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=20, stacks=10, quads=3
         ),
     )
 }

@@ -1,0 +1,104 @@
+"""Which lamps light a picture."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.compose import compose
+from sim.gl import mujoco
+from sim.houses.house import House
+from sim.houses.labels import rendered_geoms
+from sim.interface import CameraModel
+from sim.pose import Pose
+from sim.robot.config import RobotConfig
+from sim.sensors.camera import Z_NEAR_M, Camera
+from sim.sensors.lamps import LAMPS_LIT, Lamps
+from sim.sensors.occlusion import Visibility
+from tests.helpers.worlds import room, with_box
+
+FORWARD = np.array([1.0, 0.0, 0.0])
+
+
+def two_rooms() -> House:
+    """A wall with a doorway at y < -1 between two halves of a room; a lamp in each half, the left one first."""
+    house = with_box(room(8, 5), "wall_10", centre_m=(0, 0.75, 1.25), half_m=(0.05, 1.75, 1.25))
+    spec = house.spec
+    for light in list(spec.lights):
+        spec.delete(light)
+    for x in (-2.0, 2.0):
+        spec.worldbody.add_light(pos=(x, 1.0, 2.3), dir=(0, 0, -1), castshadow=True, diffuse=(0.6, 0.6, 0.6))
+    return house
+
+
+class Eye:
+    """A camera in a house, and the lamps it would choose."""
+
+    def __init__(self, house: House, *, profile: str = "fast", cull: bool = True) -> None:
+        self.model, self.labels, _ = compose(house, RobotConfig())
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_forward(self.model, self.data)
+        drawable = rendered_geoms(self.model)
+        visibility = Visibility(self.model, drawable, CameraModel(), Z_NEAR_M)
+        self.lamps = Lamps(self.model, visibility, np.flatnonzero(drawable))
+        self.profile, self.cull = profile, cull
+
+    def choose(self, x_m: float, y_m: float) -> list[int]:
+        return self.lamps.choose(self.data, np.array([x_m, y_m, 0.88]), FORWARD)
+
+    def rgb(self, pose: Pose) -> np.ndarray:
+        camera = Camera(self.model, self.labels, profile=self.profile, cull=self.cull)
+        image = camera.render(self.data, pose, ("rgb",))["rgb"]
+        camera.close()
+        return image
+
+
+def test_the_lamp_behind_a_wall_is_off_and_through_the_doorway_it_is_on() -> None:
+    eye = Eye(two_rooms())
+    assert eye.choose(-3.0, 1.0) == [0]
+    assert eye.choose(3.0, 1.0) == [1]
+    assert set(eye.choose(0.0, -1.8)) == {0, 1}
+
+
+def test_the_nearest_to_what_is_looked_at_comes_first_and_no_more_than_some_shine() -> None:
+    house = room(20, 4)
+    for x in (-8.0, -4.0, 0.0, 4.0, 8.0):
+        house.spec.worldbody.add_light(pos=(x, 0, 2.3), dir=(0, 0, -1))
+    chosen = Eye(house).choose(2.0, 0.0)
+    assert len(chosen) == LAMPS_LIT
+    assert chosen[0] == 4  # of the six, number 4 hangs 0.5 m past the place looked at
+
+
+def test_light_from_everywhere_always_shines() -> None:
+    house = two_rooms()
+    house.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 0, -1))
+    eye = Eye(house)
+    eye.lamps.light(eye.choose(-3.0, 1.0))
+    assert eye.model.light_active.tolist() == [1, 0, 1]
+    eye.lamps.restore()
+    assert eye.model.light_active.tolist() == [1, 1, 1]
+
+
+def test_only_the_first_lamp_throws_shadows() -> None:
+    eye = Eye(two_rooms())
+    eye.lamps.light([1, 0])
+    assert eye.model.light_castshadow.tolist() == [0, 1]
+    eye.lamps.restore()
+    assert eye.model.light_castshadow.tolist() == [1, 1]
+
+
+def test_a_room_is_as_bright_as_its_neighbour_whichever_lamp_comes_first_in_the_file() -> None:
+    eye = Eye(two_rooms())
+    left, right = (eye.rgb(Pose(x, 1.5, yaw, 0.0)).mean() for x, yaw in ((-0.5, np.pi), (0.5, 0.0)))
+    assert abs(left - right) < 2.0
+
+
+def test_leaving_out_what_a_wall_keeps_from_the_lamp_changes_no_shadow() -> None:
+    house = two_rooms()
+    house = with_box(house, "table_00", centre_m=(-1.5, 1.0, 0.5), half_m=(0.3, 0.3, 0.5))
+    house = with_box(house, "table_01", centre_m=(1.5, 1.0, 0.5), half_m=(0.3, 0.3, 0.5))
+    pose = Pose(-1.5, -1.0, np.pi / 2, 0.0)
+    np.testing.assert_array_equal(
+        Eye(house, profile="good").rgb(pose), Eye(house, profile="good", cull=False).rgb(pose)
+    )
+    bare = Eye(two_rooms(), profile="good").rgb(pose)
+    assert (bare != Eye(house, profile="good").rgb(pose)).any()
