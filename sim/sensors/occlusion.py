@@ -118,7 +118,8 @@ class Visibility:
         walls = self._tall(float(eye_m[2]))
         entry, leave = walls.cross(eye_m, (places_m[:, :2] - eye_m[:2]).T)  # (walls, k) shares of the way
         with np.errstate(invalid="ignore"):
-            return ~((entry > 0.0) & (leave < 1.0)).any(axis=0)
+            between = (entry > 0.0) & (leave < 1.0)
+        return ~np.asarray(between.any(axis=0), np.bool_)
 
     def _hidden(self, depth: NDArray, right: NDArray, up: NDArray, horizon: Horizon) -> NDArray:
         """(k,) True where a geom with these corners, (8, k) in camera axes, is behind walls."""
