@@ -153,14 +153,15 @@ class Mapper:
         window = self._sight_window(navmap, camera_pose)
         rays, c = self._obstacle_rays, self.config
         surfaces = Surfaces.of(rays.sample(depth), c.occupancy)
-        points = rays.project(surfaces.depth, surfaces.neighbours >= c.occupancy.neighbours, camera_pose, window)
+        points = rays.project(surfaces.depth, surfaces.confirmed(c.occupancy.neighbours), camera_pose, window)
         view = navmap.view(window)
         solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
         tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
         sight = SightLines.of_frame(
             surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
         )
-        self._occupancy.add(view, _cells(points, solid, window), _cells(points, tall, window), sight)
+        in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
+        self._occupancy.add(view, in_band, at_eye_level, sight, exact=surfaces.exact)
 
     def add_scores(
         self, navmap: NavMap, depth: NDArray[np.float32], scores: Scores, pose: PlanarPose, step: int

@@ -31,7 +31,7 @@ class OccupancyConfig:
     exact_1_m: float = 0.0005
     """An image whose 1 / depth differs from its smoothed self by less, at the median, is exact and stays as it is."""
     hit: int = 2
-    """Evidence that a frame adds to a cell where it shows at least two points; a single point adds half."""
+    """Evidence that a frame adds to a cell where it shows at least two points; a single noisy point adds half."""
     miss: int = 1
     """Evidence that a frame takes away where it sees through a cell at all heights of the obstacle band; 0: none."""
     obstacle_from: int = 2
@@ -58,6 +58,8 @@ class Surfaces:
     """(h, w) metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
     neighbours: NDArray[np.uint8]
     """(h, w) how many of the neighbours that are."""
+    exact: bool
+    """True: there is no noise to be seen, so every pixel is believed."""
 
     @classmethod
     def of(cls, depth: NDArray[np.float32], config: OccupancyConfig) -> Surfaces:
@@ -78,10 +80,15 @@ class Surfaces:
         total /= count + np.float32(1.0)
         some = count[::4, ::4] > 0
         if not some.any():
-            return cls(depth, count)
+            return cls(depth, count, exact=False)
         rough_1_m = np.median(np.abs(total[::4, ::4][some]) / np.square(depth[::4, ::4][some]))
         # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
-        return cls(depth if rough_1_m < config.exact_1_m else total + depth, count)
+        exact = bool(rough_1_m < config.exact_1_m)
+        return cls(depth if exact else total + depth, count, exact)
+
+    def confirmed(self, least: int) -> NDArray[np.bool_]:
+        """(h, w) Which pixels have at least so many neighbours on their surface; in an exact image all of them."""
+        return self.neighbours >= (0 if self.exact else least)
 
 
 def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
@@ -92,7 +99,8 @@ def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArr
     known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     surfaces = Surfaces.of(depth, config)
     same = surfaces.neighbours
-    return (same >= config.neighbours) & (2 * same + 1 >= np.asarray(known)), surfaces.depth
+    most = (2 * same + 1 >= np.asarray(known)) | surfaces.exact
+    return surfaces.confirmed(config.neighbours) & most, surfaces.depth
 
 
 _ALL, _FIRST, _LAST = slice(None), slice(None, -1), slice(1, None)
@@ -179,13 +187,16 @@ class Occupancy:
         self.config = config
         self._drop_m = camera.height_m - min_height_m
 
-    def add(self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines) -> None:
+    def add(
+        self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines, *, exact: bool
+    ) -> None:
         """Enter a frame into the obstacle layers of a view that holds everything within sight.
 
-        `solid` (n,) and `tall` (n,) are the row-major cells of the points in the obstacle band and at eye level.
+        `solid` (n,) and `tall` (n,) are the row-major cells of the points in the obstacle band and at eye level;
+        `exact` says that one point is enough.
         """
-        hits = self._hits(view.frame.shape, solid)
-        view.seen_at_eye_level |= self._hits(view.frame.shape, tall) > 0
+        hits = self._hits(view.frame.shape, solid, exact)
+        view.seen_at_eye_level |= self._hits(view.frame.shape, tall, exact) > 0
         rows, cols = np.divmod(np.flatnonzero((hits | view.obstacle_evidence) != 0), view.frame.shape[1])
         evidence, hit = view.obstacle_evidence[rows, cols], hits[rows, cols]
         if self.config.miss:
@@ -204,10 +215,12 @@ class Occupancy:
         range_m = (self.camera.min_depth_m, self.camera.max_depth_m)
         return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
 
-    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer]) -> NDArray[np.int8]:
+    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer], exact: bool) -> NDArray[np.int8]:
         """(rows, cols) evidence from one frame's points."""
         evidence = np.zeros(shape, np.int8)
-        evidence.reshape(-1)[cells] = self.config.hit // 2
+        evidence.reshape(-1)[cells] = self.config.hit if exact else self.config.hit // 2
+        if exact:
+            return evidence
         counts = np.bincount(cells, minlength=evidence.size)
         evidence.reshape(-1)[counts > 1] = self.config.hit
         return evidence

@@ -156,9 +156,10 @@ def test_exact_depth_is_left_as_it_is_and_noise_is_halved():
     d = depth[240::2, ::2]
     surfaces = Surfaces.of(d, OccupancyConfig())
     np.testing.assert_array_equal(surfaces.depth, d)
-    assert (surfaces.neighbours >= 2).mean() > 0.99
+    assert surfaces.confirmed(8).all()
     rough = (d + np.random.default_rng(0).normal(0.0, 0.01, d.shape) * d**2).astype(np.float32)
     smooth = Surfaces.of(rough, OccupancyConfig()).depth
+    assert not Surfaces.of(rough, OccupancyConfig()).exact
     assert np.median(np.abs(smooth - d) / d**2) < 0.5 * np.median(np.abs(rough - d) / d**2)
 
 
