@@ -38,13 +38,13 @@ class NoisyConfig:
     """Directions from which a thing is seen make so many views."""
     distances_m: tuple[float, ...] = (1.3, 2.6)
     """Between these distances to a thing's middle lies a change of view."""
-    lookalike_share: float = 0.25
+    lookalike_share: float = 0.35
     """Of all things: those that resemble another category, one of their row in `sim.confusions`."""
-    lookalike_rate: float = 0.6
+    lookalike_rate: float = 0.7
     """Of the views of such a thing: those in which it is taken for that category."""
-    mistake_rate: float = 0.05
+    mistake_rate: float = 0.08
     """Of the views of any other thing: those in which it is taken for one of its row."""
-    flicker_rate: float = 0.03
+    flicker_rate: float = 0.04
     """Of the frames of any thing: those in which it is taken for one of its row, whatever the view says."""
     miss_rate: float = 0.03
     """Of the views of a thing, however large it appears: those in which it is missed."""

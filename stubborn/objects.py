@@ -1,6 +1,7 @@
 """How the scores of one frame enter the object layers of the map (paper: Mapping Module, channels 4 to 7).
 
-A cell takes the highest score of its pixels: a picture shares its cell with the wall above and below it.
+A cell stands for the pixel in it that looks most like the target: a picture shares its cell with the wall above and
+below it, and what these look like says nothing about the picture.
 """
 
 from __future__ import annotations
@@ -35,15 +36,17 @@ class FrameScores:
         self.in_view = np.zeros(shape, np.bool_)
         """(rows, cols) True where a pixel fell."""
         self.in_view.reshape(-1)[flat] = True
-        self.other = np.zeros(shape, np.float32)
-        """(rows, cols) Highest score of any other category; 0 out of view."""
-        np.maximum.at(self.other.reshape(-1), flat, other)
         self.target: NDArray[np.float32] | None = None
         """(rows, cols) Highest score of the target; 0 out of view. None: 0 everywhere."""
         hit = target > 0
         if hit.any():
             self.target = np.zeros(shape, np.float32)
             np.maximum.at(self.target.reshape(-1), flat[hit], target[hit])
+            speaks = target == self.target.reshape(-1)[flat]
+            flat, other = flat[speaks], other[speaks]
+        self.other = np.zeros(shape, np.float32)
+        """(rows, cols) Highest score of any other category where the target's is highest; 0 out of view."""
+        np.maximum.at(self.other.reshape(-1), flat, other)
 
 
 class AllFrames:

@@ -33,12 +33,12 @@ def frame_at(pose: PlanarPose, distance_m: float, camera: CameraModel = CAMERA) 
 def random_scores(seed: int) -> Scores:
     rng = np.random.default_rng(seed)
     target = rng.random((CAMERA.height_px, CAMERA.width_px), np.float32)
-    return Scores(target * (target > 0.3), 1.0 - target)
+    return Scores(target * (target > 0.3), rng.random(target.shape, np.float32))
 
 
-def brute_force(depth: np.ndarray, scores: Scores, pose: PlanarPose) -> dict[tuple[int, int], list[float]]:
-    """Highest target and other score of each cell in view."""
-    found: dict[tuple[int, int], list[float]] = {}
+def brute_force(depth: np.ndarray, scores: Scores, pose: PlanarPose) -> dict[tuple[int, int], tuple[float, float]]:
+    """Highest target score of each cell in view, and the highest other score where it is that."""
+    found: dict[tuple[int, int], tuple[float, float]] = {}
     for v in range(CAMERA.height_px):
         for u in range(CAMERA.width_px):
             d = np.float64(depth[v, u])
@@ -48,11 +48,8 @@ def brute_force(depth: np.ndarray, scores: Scores, pose: PlanarPose) -> dict[tup
             left = d * (0.5 * CAMERA.width_px - u - 0.5) / CAMERA.focal_px
             x = pose.x_m + d * math.cos(pose.yaw_rad) - left * math.sin(pose.yaw_rad)
             y = pose.y_m + d * math.sin(pose.yaw_rad) + left * math.cos(pose.yaw_rad)
-            best = found.setdefault(FRAME.cell(x, y), [0.0, 0.0])
-            best[0], best[1] = (
-                max(best[0], float(scores.target[v, u])),
-                max(best[1], float(scores.best_other[v, u])),
-            )
+            here = float(scores.target[v, u]), float(scores.best_other[v, u])
+            found[FRAME.cell(x, y)] = max(found.get(FRAME.cell(x, y), (0.0, 0.0)), here)
     return found
 
 
