@@ -1,0 +1,75 @@
+"""The training tool on a handful of tiny views: it learns, it goes on where it was, it refuses what will not do."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import tarfile
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from sim.interface import MPCAT40_ID, ConfigError
+from stubborn.segmentation.checkpoints import load_rednet
+from stubborn.segmentation.rednet import COMPACT
+from tools.train_rednet import Args, main
+
+
+def write_views(folder: Path, count: int, size_px: int = 64) -> None:
+    """Views whose bright half is a sofa before a wall."""
+    folder.mkdir()
+    rng = np.random.default_rng(0)
+    with tarfile.open(folder / "views-000000.tar", "w") as archive:
+        for i in range(count):
+            semantic = np.full((size_px, size_px), MPCAT40_ID["wall"], np.uint8)
+            semantic[:, rng.integers(16, 48) :] = MPCAT40_ID["sofa"]
+            is_sofa = semantic == MPCAT40_ID["sofa"]
+            rgb = np.repeat(np.where(is_sofa, 200, 50).astype(np.uint8)[..., None], 3, axis=2)
+            parts = {
+                "rgb.png": cv2.imencode(".png", rgb)[1].tobytes(),
+                "depth.png": cv2.imencode(".png", np.where(is_sofa, 1000, 3000).astype(np.uint16))[1].tobytes(),
+                "semantic.png": cv2.imencode(".png", semantic)[1].tobytes(),
+                "json": json.dumps({}).encode(),
+            }
+            for suffix, content in parts.items():
+                entry = tarfile.TarInfo(f"v{i:03d}.{suffix}")
+                entry.size = len(content)
+                archive.addfile(entry, io.BytesIO(content))
+
+
+def rows(file: Path) -> list[dict[str, str]]:
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def options(tmp_path: Path, **changes: object) -> Args:
+    base = {"views": tmp_path / "train", "val_views": tmp_path / "val", "out": tmp_path / "out", "block_px": 1}
+    return Args(**{**base, "batch": 2, "steps": 4, "evaluate_every": 2, "device": "cpu", **changes})  # type: ignore[arg-type]
+
+
+def test_training_writes_curves_and_weights_and_goes_on_where_it_was(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 6)
+    write_views(tmp_path / "val", 2)
+    assert main(options(tmp_path)) == 0
+    first = rows(tmp_path / "out/val.csv")
+    assert [row["step"] for row in first] == ["2", "4"]
+    model, card = load_rednet(tmp_path / "out/rednet.safetensors")
+    assert model.config == COMPACT
+    assert card["block_px"] == 1
+    assert card["miou_goals"] == pytest.approx(max(float(row["miou_goals"]) for row in first), abs=1e-4)
+    assert main(options(tmp_path, steps=6)) == 0
+    assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
+
+
+def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 1)
+    write_views(tmp_path / "val", 1)
+    with pytest.raises(ConfigError, match="fewer views than one batch of 2"):
+        main(options(tmp_path))
+    with pytest.raises(ConfigError, match="--size must be one of compact, published, got 'huge'"):
+        main(options(tmp_path, size="huge"))
+    with pytest.raises(ConfigError, match="No shards"):
+        main(options(tmp_path, views=tmp_path / "nothing"))
