@@ -5,8 +5,8 @@
 The agent plays without stopping: whatever it would verify is logged with its four features, the truth, whether a STOP
 there would succeed, and the place; then it goes on as if the candidate had been rejected. The log has a line an
 episode; the same command goes on where it was, and more episodes add to what is there. What is left of an object after
-such a rejection is met again, but an agent that had stopped would never see it: of the true candidates of an episode
-within 2 m of one another only the first counts. Then one Gaussian naive Bayes is fitted for each goal category, and a
+such a rejection is met again, several times: of the true candidates of an episode within 2 m of one another only the
+first counts, and so with the false ones. Then one Gaussian naive Bayes is fitted for each goal category, and a
 pooled one for those with too few candidates of either kind, and written as JSON with counts and a table that says how
 far probabilities can be believed: cross-validated, episodes never on both sides.
 """
@@ -199,15 +199,13 @@ def _table(
 
 
 def _first_of_each(line: Mapping[str, Any]) -> list[list[float]]:
-    """Features and truth of an episode's candidates, without true ones near an earlier true one."""
-    places: list[tuple[float, float]] = []
+    """Features and truth of an episode's candidates, without those near an earlier one of the same truth."""
+    met: list[tuple[float, float, float]] = []
     kept = []
     for *features, truth, x_m, y_m in line["candidates"]:
-        if truth and any(math.hypot(x_m - x, y_m - y) <= SAME_PLACE_M for x, y in places):
-            continue
-        if truth:
-            places.append((x_m, y_m))
-        kept.append([*features, truth])
+        if not any(truth == t and math.hypot(x_m - x, y_m - y) <= SAME_PLACE_M for t, x, y in met):
+            kept.append([*features, truth])
+            met.append((truth, x_m, y_m))
     return kept
 
 

@@ -80,13 +80,13 @@ def test_calibration_counts_every_candidate_once_and_is_right_where_classes_are_
     assert all(row["from"] <= row["mean_probability"] <= row["to"] for row in calibration["by_probability"])
 
 
-def test_what_is_left_of_a_true_candidate_counts_once_and_false_ones_each_time():
+def test_what_is_left_of_a_candidate_does_not_count_again():
     strong, weak = [20.0, 18.0, 0.98, 0.3], [12.0, 1.0, 0.6, 0.9]
     here, near, far = (0.0, 0.0), (1.0, 1.0), (4.0, 0.0)
     met = [(strong, 1.0, here), (weak, 1.0, near), (weak, 0.0, near), (weak, 0.0, here), (strong, 1.0, far)]
     line = {"goal": "bed", "candidates": [[*features, truth, *place] for features, truth, place in met]}
     content = fit([line, line], 2)
-    assert content["candidates"]["bed"] == {"false": 4, "true": 4}
+    assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["pooled"]["mean"], [weak, strong])
 
 
