@@ -149,7 +149,7 @@ def glass_comb() -> Trap:
         site.pane("window", (3.0, y), (5.2, y))
     site.furniture("sofa", 8.8, 3.0, math.pi)
     return Trap(site, Sidecar(
-        start=Pose(1.2, 3.0, 0.0), goal="sofa", zone_m=(3.0, 1.0, 5.2, 6.0),
+        start=Pose(1.2, 3.0, 0.0), goal="sofa", zone_m=(2.7, 1.0, 5.2, 6.0),
         reason="Four glass pockets side by side, 2.2 m deep: whoever leaves one finds the next one on the way.",
     ))  # fmt: skip
 
