@@ -47,7 +47,7 @@ def test_views_are_taken_from_free_space_and_show_what_is_there(scene: Scene) ->
         assert space.clearance(pose["x_m"], pose["y_m"]) >= RobotConfig().model.radius_m - 0.02
         assert view.rgb.shape == (240, 320, 3)
         assert view.depth_mm.shape == view.semantic.shape == (240, 320)
-        assert not is_dull(view.semantic, view.depth_mm / np.float32(1000))
+        assert not is_dull(view.semantic, (view.depth_mm / 1000.0).astype(np.float32))
     assert {view.record["pose_kind"] for view in views} == {"path", "anywhere"}
     assert any((view.semantic == MPCAT40_ID["sofa"]).mean() > 0.05 for view in views)
 
@@ -101,7 +101,11 @@ def test_webdataset_and_our_reader_see_the_same_views(scene: Scene, tmp_path: Pa
     views = views_of(scene)
     write_shard(tmp_path, "views-000000", views, house="room", config={}, rgb_format="png")
     ours = list(read_shard(tmp_path / "views-000000.tar"))
-    theirs = list(webdataset.WebDataset(str(tmp_path / "views-000000.tar"), shardshuffle=False))
+    theirs = list(
+        webdataset.WebDataset(  # pyright: ignore[reportAttributeAccessIssue] - no stub
+            str(tmp_path / "views-000000.tar"), shardshuffle=False
+        )
+    )
     assert [view.key for view in ours] == [sample["__key__"] for sample in theirs] == [view.key for view in views]
     for view, mine, other in zip(views, ours, theirs, strict=True):
         assert np.array_equal(mine.rgb, view.rgb)
@@ -109,6 +113,7 @@ def test_webdataset_and_our_reader_see_the_same_views(scene: Scene, tmp_path: Pa
         assert np.array_equal(mine.semantic, view.semantic)
         assert mine.record == view.record == json.loads(other["json"])
         depth = cv2.imdecode(np.frombuffer(other["depth.png"], np.uint8), cv2.IMREAD_UNCHANGED)
+        assert depth is not None
         assert depth.dtype == np.uint16
         assert np.array_equal(depth, view.depth_mm)
 
