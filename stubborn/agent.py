@@ -159,9 +159,9 @@ class StubbornAgent:
 
     def _look(self, observation: Observation, pose: PlanarPose) -> Sighting:
         """Enter the frame into the map."""
-        self.mapper.add_depth(self.navmap, observation["depth"], pose)
+        exact = self.mapper.add_depth(self.navmap, observation["depth"], pose)
         scores = self.segmenter.scores(observation, self.goal)
-        return self.mapper.add_scores(self.navmap, observation["depth"], scores, pose, self.step)
+        return self.mapper.add_scores(self.navmap, observation["depth"], scores, pose, self.step, exact=exact)
 
     def _decide(self, pose: PlanarPose, sighting: Sighting) -> Action:
         """Stop at the target, else get unstuck, else approach a candidate, else explore."""

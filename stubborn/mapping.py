@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +37,8 @@ class MappingConfig:
     """Every so many pixels of depth, each way, go into the obstacle layer."""
     score_stride_px: int = 4
     """Every so many pixels, each way, go into the object layers."""
+    rim_px: int = 3
+    """How far the edges of depth may lie from those of the scores, in pixels of the image, when depth is noisy."""
     candidate_score: float = 0.5
     """A cell with a higher target score is a candidate."""
     candidate_gap_m: float = 0.15
@@ -147,8 +150,12 @@ class Mapper:
         self._score_rays: dict[int, Rays] = {}
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
 
-    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> None:
-        """Enter one depth image, (height_px, width_px) metres, into the obstacle layers."""
+    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> bool:
+        """Enter one depth image, (height_px, width_px) metres, into the obstacle layers.
+
+        Returns:
+            Whether the image is exact, that is, shows no noise.
+        """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, c = self._obstacle_rays, self.config
@@ -162,16 +169,29 @@ class Mapper:
         )
         in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
         self._occupancy.add(view, in_band, at_eye_level, sight, exact=surfaces.exact)
+        return surfaces.exact
 
     def add_scores(
-        self, navmap: NavMap, depth: NDArray[np.float32], scores: Scores, pose: PlanarPose, step: int
+        self,
+        navmap: NavMap,
+        depth: NDArray[np.float32],
+        scores: Scores,
+        pose: PlanarPose,
+        step: int,
+        *,
+        exact: bool = True,
     ) -> Sighting:
-        """Enter one frame of class scores into the object layers; returns the target points it shows."""
+        """Enter one frame of class scores into the object layers; returns the target points it shows.
+
+        With depth that is not `exact` (see `add_depth`) the rim of the target does not count.
+        """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
         target = scores.target[score_pick]
         d, confirmed = self._confirm(target, rays.sample(depth))
+        if not exact:
+            confirmed &= self._inner(scores.target)[score_pick] | (target <= self.config.candidate_score)
         points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
         if points.rows.size == 0:
             return NOTHING_SIGHTED
@@ -212,6 +232,16 @@ class Mapper:
         confirmed[box] = sure | ~found[box]
         d[box] = np.where(found[box], smooth, d[box])
         return d, confirmed
+
+    def _inner(self, target: NDArray[np.float32]) -> NDArray[np.bool_]:
+        """Target pixels with nothing but target around them, as far as a noisy camera shifts the edges of things.
+
+        Beyond the rim of something near, a noisy depth image has a seam where the target behind it looks as near.
+        """
+        found = (target > self.config.candidate_score).view(np.uint8)
+        rim = -(-self.config.rim_px * target.shape[1] // self.camera.width_px)
+        kernel = np.ones((2 * rim + 1, 2 * rim + 1), np.uint8)
+        return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
 
     def _drop_candidates(
         self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: PlanarPose

@@ -191,3 +191,30 @@ def test_scores_of_another_shape_are_refused_with_both_shapes():
             PlanarPose(0.0, 0.0, 0.0),
             0,
         )
+
+
+def test_with_noisy_depth_the_rim_of_the_target_does_not_count_and_its_inside_does():
+    """A seam of the target's left edge has the depth of the door frame before it, as a noisy camera shows it."""
+    depth = np.full((480, 640), 4.0, np.float32)
+    target = np.zeros((480, 640), np.float32)
+    target[200:280, 300:360] = 1.0
+    depth[:, :303] = 1.0  # three columns of the target lie on the frame
+    full = CameraModel()
+    layers = {}
+    for exact in (True, False):
+        navmap = NavMap.empty(FRAME)
+        mapper = Mapper(full, RobotModel(), MappingConfig(score_stride_px=1))
+        mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), PlanarPose(0.0, 0.0, 0.0), 0, exact=exact)
+        layers[exact] = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))[0]
+    assert layers[True].min() < 1.1
+    assert layers[False].min() > 3.9
+    assert layers[False].size > 0
+
+
+@pytest.mark.parametrize("noise_m", [0.0, 0.02])
+def test_a_depth_image_is_exact_as_long_as_it_shows_no_noise(noise_m: float):
+    depth, _ = GridWorld([Box((2.0, 2.1), (-3.0, 3.0))], (0.0, 0.0, 0.0), camera=CAMERA).render()
+    noise = np.random.default_rng(0).normal(0.0, noise_m, depth.shape).astype(np.float32)
+    mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
+    exact = mapper.add_depth(NavMap.empty(FRAME), np.where(depth > 0, depth + noise, 0), PlanarPose(0.0, 0.0, 0.0))
+    assert exact == (noise_m == 0.0)
