@@ -112,7 +112,10 @@ def versions_here() -> dict[str, str]:
     """Versions of what a generated house hangs on."""
     from sim.houses.generator import GENERATOR_VERSION
 
-    return {"generator": str(GENERATOR_VERSION), **{name: package_version(name) for name in ("mujoco", "numpy")}}
+    return {
+        "generator": str(GENERATOR_VERSION),
+        **{name: package_version(name) for name in ("mujoco", "numpy", "scipy", "opencv-python-headless")},
+    }
 
 
 def has_house_list(folder: Path) -> bool:

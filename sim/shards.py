@@ -49,7 +49,7 @@ class ShardNote:
     config: dict[str, Any] = field(default_factory=dict)
     """What the bytes hang on."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """Where the time went: house, render, encode, write."""
+    """Where the time went: render, encode, write."""
 
 
 def shard_name(number: int) -> str:

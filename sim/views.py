@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.errors import HouseError
+from sim.errors import EpisodeError, HouseError
 from sim.freespace import FreeSpace
 from sim.interface import FORWARD_M, MPCAT40_ID, TURN_RAD, CameraModel, wrap_angle
 from sim.pose import Pose
@@ -67,7 +67,7 @@ def sample_views(
     name = scene.world.house.name
     if len(cells) == 0:
         raise HouseError(f"House '{name}': the robot can stand nowhere, so there is no view of it.")
-    scene.world.reset(_any_pose(space, cells, rng))
+    _stand_anywhere(scene, space, cells, rng)
     poses = _poses(space, cells, rng)
     taken = tries = 0
     while taken < count:
@@ -139,6 +139,17 @@ def _poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) 
         for i in picked.tolist():
             yield along[i], "path"
             yield _any_pose(space, cells, rng), "anywhere"
+
+
+def _stand_anywhere(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
+    """Start the world: things that can be pushed come to rest; a cell's corner may be too tight for the body."""
+    for _ in range(_MAX_TRIES):
+        try:
+            scene.world.reset(_any_pose(space, cells, rng))
+        except EpisodeError:
+            continue
+        return
+    raise HouseError(f"House '{scene.world.house.name}': the robot fits at none of {_MAX_TRIES} free places.")
 
 
 def _any_pose(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Pose:

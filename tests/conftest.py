@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import tempfile
+from pathlib import Path
 
 import pytest
 
 from tests.helpers import sampling
 
+os.environ.setdefault("STUBBORN_CACHE_DIR", str(Path(tempfile.gettempdir()) / "stubborn-test-houses"))  # not the user's
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # PyTorch's threads and the workers of xdist would fight for the cores
 
 

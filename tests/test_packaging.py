@@ -42,10 +42,14 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
     subprocess.run(list(map(str, build)), cwd=tmp_path, check=True)
     (wheel,) = tmp_path.glob("*.whl")
     packed = set(zipfile.ZipFile(wheel).namelist())
-    shipped = [file for file in (ROOT / "assets/mjcf_houses").rglob("*") if file.suffix in {".xml", ".gz", ".png"}]
+    shipped = [
+        file for file in (ROOT / "assets/mjcf_houses").rglob("*") if file.suffix in {".xml", ".gz", ".png", ".json"}
+    ]
     assert shipped
     for file in shipped:
         assert f"sim/assets/{file.relative_to(ROOT / 'assets')}" in packed
+    for file in (ROOT / "stubborn/verifiers").glob("*.json"):
+        assert f"stubborn/verifiers/{file.name}" in packed
 
 
 def test_importing_the_agent_leaves_mujoco_out() -> None:

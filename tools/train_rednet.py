@@ -44,6 +44,7 @@ from stubborn.segmentation.views import (
     list_shards,
     pixel_counts,
     spread_views,
+    stored_block_px,
 )
 
 LOG_EVERY_STEPS = 20
@@ -65,8 +66,8 @@ class Args:
     """compact or published."""
     init: Path | None = None
     """Weights to start from: a file of ours, or a checkpoint of the published network."""
-    block_px: int = 2
-    """The network sees a 640 x 480 image shrunk by this."""
+    block_px: int = 1
+    """The network sees the views shrunk by this; views stored small (--shrink 2) need no more."""
     steps: int = 20_000
     """Steps of the learning-rate schedule."""
     hours: float | None = None
@@ -125,6 +126,7 @@ class Trainer:
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
         shards = list_shards(args.views)
+        self.stored_block_px = stored_block_px(shards)
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         self.data = ViewDataset(shards, Sampler(camera, args.block_px, Augmentation()), seed=args.seed)
@@ -202,7 +204,7 @@ class Trainer:
         """What the file of weights says of itself."""
         options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(self.args).items()}
         return {
-            "block_px": self.args.block_px,
+            "block_px": self.args.block_px * self.stored_block_px,
             "step": self.step,
             "hours": round(self.spent_s / 3600, 3),
             "miou_goals": round(iou.goals, 4),

@@ -143,6 +143,22 @@ def pixel_counts(shards: Sequence[Path]) -> NDArray[np.float64]:
     return counts
 
 
+def stored_block_px(shards: Sequence[Path]) -> int:
+    """How much smaller than the camera's image the views were stored, from the notes beside the shards; 1 without.
+
+    Raises:
+        ConfigError: the shards differ in it.
+    """
+    shrinks = set()
+    for shard in shards:
+        note = shard.with_suffix(".json")
+        config = json.loads(note.read_text(encoding="utf-8")).get("config", {}) if note.is_file() else {}
+        shrinks.add(int(config.get("shrink", 1)))
+    if len(shrinks) > 1:
+        raise ConfigError(f"The shards in '{shards[0].parent}' were shrunk by different factors: {sorted(shrinks)}.")
+    return shrinks.pop() if shrinks else 1
+
+
 def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
     """`count` views, as many of each shard as of the others and evenly over it; all of them when count is 0."""
     picked: list[LabelledView] = []

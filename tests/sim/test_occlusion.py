@@ -15,6 +15,7 @@ from sim.houses.house import House
 from sim.houses.labels import rendered_geoms
 from sim.houses.load import load_house
 from sim.interface import CameraModel
+from sim.paths import assets_dir
 from sim.pose import Pose
 from sim.sensors.camera import Z_NEAR_M, Camera
 from sim.sensors.occlusion import Visibility
@@ -22,7 +23,7 @@ from sim.world import World
 from tests.helpers.sampling import sample
 from tests.helpers.worlds import open_floor, room, with_box, with_movable
 
-HOUSES = sorted(Path("assets/mjcf_houses/val").glob("*.xml"))
+HOUSES = sorted((assets_dir() / "val").glob("*.xml"))
 POSES_A_HOUSE = 25
 WALL_HALF_M = (0.05, 2.0, 1.25)
 """A wall across the view, 4 m long and 2.5 m high."""

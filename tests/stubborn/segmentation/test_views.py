@@ -14,7 +14,15 @@ import torch
 from torch.utils.data import DataLoader
 
 from sim.interface import ConfigError
-from stubborn.segmentation.views import LabelledView, ViewDataset, class_weights, list_shards, read_shard, tile
+from stubborn.segmentation.views import (
+    LabelledView,
+    ViewDataset,
+    class_weights,
+    list_shards,
+    read_shard,
+    stored_block_px,
+    tile,
+)
 
 
 def write_tar(file: Path, keys: list[str], *, leave_out: str = "", category: int = 3) -> None:
@@ -108,3 +116,14 @@ def test_a_sheet_has_every_picture_in_its_place() -> None:
     assert sheet.shape == (6, 6, 3)
     assert sheet[2, 3, 0] == 3
     assert sheet[5, 5, 0] == 255
+
+
+def test_how_small_views_were_stored_is_read_from_their_notes(tmp_path: Path) -> None:
+    shards = two_shards(tmp_path)
+    assert stored_block_px(shards) == 1
+    for shard in shards:
+        shard.with_suffix(".json").write_text(json.dumps({"config": {"shrink": 2}}))
+    assert stored_block_px(shards) == 2
+    shards[0].with_suffix(".json").write_text(json.dumps({"config": {"shrink": 4}}))
+    with pytest.raises(ConfigError, match=r"different factors: \[2, 4\]"):
+        stored_block_px(shards)
