@@ -25,10 +25,26 @@ def assets_dir() -> Path:
 
 
 @functools.cache
-def code_hash() -> str:
-    """12 hex digits over the modules and parameters of `sim` and `stubborn`: the same code, the same digits."""
+def code_hash(*, parameters: bool = True) -> str:
+    """12 hex digits over the modules and parameters of `sim` and `stubborn`: the same code, the same digits.
+
+    Args:
+        parameters: False takes the modules only, for who does not use what was fitted.
+    """
+    return hash_of_packages(_PACKAGE, _PACKAGE.parent / "stubborn", parameters=parameters)
+
+
+def hash_of_packages(*packages: Path, parameters: bool = True) -> str:
+    """12 hex digits over the `.py` and `.json` files of some folders.
+
+    Their folder `assets` does not count: the shipped houses lie there in a wheel and elsewhere in a checkout, and a
+    split has a checksum of its own.
+    """
     digest = hashlib.sha256()
-    for package in (_PACKAGE, _PACKAGE.parent / "stubborn"):
-        for file in sorted(file for suffix in ("py", "json") for file in package.rglob(f"*.{suffix}")):
-            digest.update(f"{package.name}/{file.relative_to(package)}".encode() + file.read_bytes())
+    for package in packages:
+        suffixes = ("py", "json") if parameters else ("py",)
+        for file in sorted(file for suffix in suffixes for file in package.rglob(f"*.{suffix}")):
+            name = file.relative_to(package)
+            if name.parts[0] != "assets":
+                digest.update(f"{package.name}/{name}".encode() + file.read_bytes())
     return digest.hexdigest()[:12]

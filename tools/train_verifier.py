@@ -3,12 +3,13 @@
     python tools/train_verifier.py --semantics noisy --split train --episodes 2000
 
 The agent plays without stopping: whatever it would verify is logged with its four features, the truth, whether a STOP
-there would succeed, and the place; then it goes on as if the candidate had been rejected. The log has a line an
-episode; the same command goes on where it was, and more episodes add to what is there. What is left of an object after
-such a rejection is met again, several times: of the true candidates of an episode within 2 m of one another only the
-first counts, and so with the false ones. Then one Gaussian naive Bayes is fitted for each goal category, and a
-pooled one for those with too few candidates of either kind, and written as JSON with counts and a table that says how
-far probabilities can be believed: cross-validated, episodes never on both sides.
+there would succeed, and the place; then it goes on as if the candidate had been rejected. A last resort, a place too
+far away or out of sight, is left out: no STOP there tells what is true. The log has a line an episode; the same
+command goes on where it was, and more episodes add to what is there, while split, modules and rates are the same. What
+is left of an object after such a rejection is met again, several times: of the true candidates of an episode within 2 m
+of one another only the first counts, and so with the false ones. Then one Gaussian naive Bayes is fitted for each goal
+category, and a pooled one for those with too few candidates of either kind, and written as JSON with counts and a table
+that says how far probabilities can be believed: cross-validated, episodes never on both sides.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,13 +30,16 @@ from sklearn.naive_bayes import GaussianNB
 
 from sim import cli
 from sim.env import ObjectNavEnv
-from sim.episodes import Episode
+from sim.episodes import Episode, Split
 from sim.errors import EpisodeError, PhysicsError
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.paths import code_hash
 from sim.results import RunDirectory
 from sim.rollout import episode_seed
 from sim.run import SEMANTICS, make_segmenter
+from sim.semantics import NoisyConfig
 from stubborn import agents
+from stubborn.agent import StubbornAgent
 from stubborn.target import TargetConfig
 from stubborn.verification import FOLDER, UNVERIFIED, Features
 
@@ -70,17 +74,26 @@ class Args:
 
 
 class Witness:
-    """A verifier that refuses everything and writes down what it was asked, and what would have been right."""
+    """A verifier that refuses everything and writes down what it was asked, and what would have been right.
+
+    Not what it is asked from a last resort (`Approach.near_enough` is False), up to 1.6 m away: there a STOP at the
+    real thing fails too, so that real objects would be logged as false candidates.
+    """
 
     may_refuse = True
 
     def __init__(self, env: ObjectNavEnv) -> None:
         self._env = env
+        self.agent: StubbornAgent | None = None
+        """Who asks: its approach tells from where. None: whatever is asked is written down."""
         self.candidates: list[list[float]] = []
         """Features, then 1 where a STOP would have succeeded, else 0, then the robot's x and y in metres."""
 
     def accepts(self, goal: str, features: Features) -> bool:
         """False."""
+        approach = None if self.agent is None else self.agent.approach
+        if approach is not None and not approach.near_enough:
+            return False
         world, task = self._env.scene.world, self._env.scene.task
         x_m, y_m, floor_z_m = world.pose.x_m, world.pose.y_m, world.pose.floor_z_m
         truth = task.truth.succeeds_now(goal, x_m, y_m, floor_z_m)
@@ -98,12 +111,13 @@ def main(args: Args) -> int:
         truth=("geom",) if args.semantics == "noisy" else (),
         max_steps=args.max_steps,
     )
-    config = {"semantics": args.semantics, "seed": args.seed, "max_steps": args.max_steps, "version": env.split.version}
-    run = RunDirectory(log, config)
     try:
-        lines = play(args, env, run)
+        run = RunDirectory(log, log_config(args, env.split))
+        try:
+            lines = play(args, env, run)
+        finally:
+            run.close()
     finally:
-        run.close()
         env.close()
     split = {"name": env.split.name, "version": env.split.version}
     content = {"semantics": args.semantics, "command": command(args), "split": split} | fit(lines, args.least_of_either)
@@ -113,6 +127,21 @@ def main(args: Args) -> int:
     report(content)
     print(f"written: {out}")
     return 0
+
+
+def log_config(args: Args, split: Split) -> dict[str, Any]:
+    """What all lines of a log have in common: with anything else `RunDirectory` refuses to go on.
+
+    The code is that of the modules only: what is fitted here is not used while playing, and would end its own log.
+    """
+    return {
+        "semantics": args.semantics,
+        "semantics_config": asdict(NoisyConfig()) if args.semantics == "noisy" else None,
+        "seed": args.seed,
+        "max_steps": args.max_steps,
+        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "code": code_hash(parameters=False),
+    }
 
 
 def play(args: Args, env: ObjectNavEnv, run: RunDirectory) -> list[dict[str, Any]]:
@@ -126,6 +155,8 @@ def play(args: Args, env: ObjectNavEnv, run: RunDirectory) -> list[dict[str, Any
         verifier=witness,
         target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
     )
+    assert isinstance(agent, StubbornAgent)
+    witness.agent = agent
     done = {line["episode_id"] for line in run.lines}
     todo = [episode for episode in env.split.episodes[: args.episodes] if episode.episode_id not in done]
     print(f"{len(done)} episodes are there, {len(todo)} to go; log in {run.path}")

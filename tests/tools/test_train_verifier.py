@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import json
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +14,8 @@ from sim.env import ObjectNavEnv
 from sim.episodes import Episode, write_split
 from sim.interface import ConfigError
 from sim.pose import Pose
+from sim.semantics import NoisyConfig
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.verification import Features
 from tests.helpers.worlds import room, with_box
 from tools import train_verifier
@@ -27,9 +32,9 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def played(split: Path, log: Path, episodes: int) -> list[dict]:
+def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
     """The log after so many episodes; too few candidates to fit anything."""
-    args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=30, least_of_either=500, log=log)
+    args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
     with pytest.raises(ConfigError, match="500 of either are needed"):
         train_verifier.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
@@ -52,6 +57,56 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_goes_on_where_it_was(
     more = played(split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
+
+
+@pytest.mark.parametrize("change", ["split_identity", "semantics_config", "code", "seed", "max_steps"])
+def test_a_log_of_another_split_code_or_detector_is_refused_and_the_difference_named(
+    split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
+):
+    args = train_verifier.Args(split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log")
+    with pytest.raises(ConfigError, match="500 of either are needed"):
+        train_verifier.main(args)
+    if change == "split_identity":  # the same name and version, another house
+        other = tmp_path / split.name
+        shutil.copytree(split, other)
+        (other / "seats.xml").write_text((split / "seats.xml").read_text() + "\n")
+        args = replace(args, split=str(other))
+    elif change == "semantics_config":
+        monkeypatch.setattr(train_verifier, "NoisyConfig", functools.partial(NoisyConfig, flicker_rate=0.5))
+    elif change == "code":
+        monkeypatch.setattr(train_verifier, "code_hash", lambda **_: "another")
+    else:
+        args = replace(args, **{change: 4})
+    with pytest.raises(ConfigError, match=f"holds a run with {change} = "):
+        train_verifier.main(args)
+
+
+def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    folder = tmp_path / "fenced"
+    folder.mkdir()
+    house = with_box(room(7, 5), "sofa_00", centre_m=(3.0, 0.5, 0.4), half_m=(0.4, 0.8, 0.4))
+    house = with_box(house, "wall_20", centre_m=(2.0, 0.0, 0.15), half_m=(0.4, 2.5, 0.15))  # before it
+    house = with_box(house, "wall_21", centre_m=(-1.5, -0.5, 1.25), half_m=(0.05, 2.0, 1.25))
+    house = with_box(house, "sofa_01", centre_m=(-3.0, -1.5, 0.4), half_m=(0.4, 0.8, 0.4))  # next door: there is a way
+    (folder / "seats.xml").write_text(house.spec.to_xml())
+    episodes = [Episode(f"fenced_{i}", "seats", "sofa", Pose(-0.3, 0.4 * i, 0.0)) for i in range(3)]
+    write_split(folder, episodes, {"seats": {}}, version="0.0.1")
+    asked: list[tuple[bool, int]] = []
+    accepts = train_verifier.Witness.accepts
+
+    def spy(self: train_verifier.Witness, goal: str, features: Features) -> bool:
+        before = len(self.candidates)
+        answer = accepts(self, goal, features)
+        assert self.agent is not None
+        near_enough = self.agent.approach is None or self.agent.approach.near_enough
+        asked.append((near_enough, len(self.candidates) - before))
+        return answer
+
+    monkeypatch.setattr(train_verifier.Witness, "accepts", spy)
+    monkeypatch.setattr(train_verifier, "SEMANTICS", {"noisy": GroundTruthSegmenter.sensors})  # sharp outlines
+    monkeypatch.setattr(train_verifier, "make_segmenter", lambda semantics, env: GroundTruthSegmenter())
+    played(folder, tmp_path / "log", 3, max_steps=120)
+    assert set(asked) == {(True, 1), (False, 0)}
 
 
 def test_an_outing_cut_short_leaves_whole_lines(split: Path, tmp_path: Path):
