@@ -21,6 +21,8 @@ from sim.trajectory import read_trajectory, trajectory_file
 Line = Mapping[str, Any]
 Value = float | None
 UNRESOLVED = "unresolved"
+SAME_PATH_M = 0.05
+"""The same way measured by two versions of the code may differ by a cell."""
 MIN_PAIRS = 20
 """Fewer pairs resolve nothing: the bootstrap of a few values is too narrow, and of equal ones it has no width."""
 
@@ -88,17 +90,21 @@ def read_run(path: Path) -> Run:
 
 
 def code_of(run: Run, episode_id: str) -> str:
-    """Hash of the code that played an episode: its trajectory's, else what the run began with."""
+    """Hash of the code that played an episode: its trajectory's, else all that played in the run ("a1 or b2")."""
     file = trajectory_file(run.path, episode_id)
-    versions = read_trajectory(file).about.get("versions", {}) if file.is_file() else run.config.get("versions", {})
-    return str(versions.get("code", "unknown"))
+    if file.is_file():
+        return str(read_trajectory(file).about.get("versions", {}).get("code", "unknown"))
+    return " or ".join(run.config.get("codes") or [str(run.config.get("versions", {}).get("code", "unknown"))])
 
 
 def require_same_episodes(first: Run, second: Run) -> list[str]:
     """Ids of the episodes that two runs share, in the first one's order.
 
+    Episodes drawn in one house (`sim.run --house`) are called the same whatever the seed: so house, goal and shortest
+    path must be the same as well, the path to `SAME_PATH_M` and only where neither episode broke.
+
     Raises:
-        ConfigError: they were made on different splits, or share no episode.
+        ConfigError: they were made on different splits, share no episode, or only share names of episodes.
     """
     identities = [run.config.get("split_identity", {}) for run in (first, second)]
     if identities[0] != identities[1]:
@@ -107,4 +113,19 @@ def require_same_episodes(first: Run, second: Run) -> list[str]:
     common = [episode_id for episode_id in first.lines if episode_id in second.lines]
     if not common:
         raise ConfigError(f"'{first.path}' and '{second.path}' have no episode in common.")
+    for episode_id in common:
+        a, b = first.lines[episode_id], second.lines[episode_id]
+        for key in ("house", "goal", "shortest_path"):
+            if not (_same_path(a, b) if key == "shortest_path" else a.get(key) == b.get(key)):
+                raise ConfigError(
+                    f"'{first.path}' and '{second.path}' were not played on the same episodes: '{episode_id}' has "
+                    f"{key} {json.dumps(a.get(key))} and {json.dumps(b.get(key))}."
+                )
     return common
+
+
+def _same_path(first: Line, second: Line) -> bool:
+    if "error" in (first.get("end_reason"), second.get("end_reason")):  # then it may not have been measured
+        return True
+    a_m, b_m = first.get("shortest_path"), second.get("shortest_path")
+    return a_m == b_m if a_m is None or b_m is None else abs(a_m - b_m) <= SAME_PATH_M

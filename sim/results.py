@@ -22,7 +22,7 @@ from sim.interface import ConfigError
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""
 BOOTSTRAP_RESAMPLES = 10_000
-NOT_COMPARED = frozenset({"workers", "out", "versions", "episodes", "record"})
+NOT_COMPARED = frozenset({"workers", "out", "versions", "codes", "episodes", "record"})
 """Entries of the config in which a resumed run may differ; with more episodes it goes on to them."""
 
 
@@ -53,6 +53,22 @@ class RunDirectory:
         self._results.flush()
         os.fsync(self._results.fileno())
         self.lines.append(dict(line))
+
+    def played_by(self, code: str) -> list[str]:
+        """Note under `codes` in config.json that this code plays from here on.
+
+        Returns:
+            the other hashes of code that played the lines there are, the oldest first.
+        """
+        file = self.path / "config.json"
+        there = json.loads(file.read_text(encoding="utf-8"))
+        begun_by = there.get("versions", {}).get("code", "unknown")
+        codes = there.get("codes", [begun_by]) if self.lines else []
+        if code not in codes:
+            codes = [*codes, code]
+        if codes != there.get("codes"):
+            _write_json(file, there | {"codes": codes})
+        return [other for other in codes if other != code]
 
     def write_summary(self, extra: Mapping[str, Any]) -> dict[str, Any]:
         """Average all lines, write `summary.json` and return it."""

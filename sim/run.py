@@ -108,7 +108,7 @@ def play_missing(
         ConfigError: nothing can be written there, or a run with other options is there.
     """
     assert args.out is not None
-    config = _config(args, split)
+    config = config_of(args, split)
     run = RunDirectory(args.out, config)
     try:
         done = {line["episode_id"] for line in run.lines}
@@ -119,6 +119,13 @@ def play_missing(
         )
         if len(todo) < len(episodes):
             console.print(f"{len(episodes) - len(todo)} of them were there already, {len(todo)} to go.")
+        others = run.played_by(code_hash()) if todo else []
+        if others:
+            console.print(
+                f"Episodes that were there were played by other code ({', '.join(others)}) than these ({code_hash()}).",
+                highlight=False,
+                soft_wrap=True,
+            )
         spec = PlayerSpec("sim.run:EpisodePlayer", args)
         lines = run_items(spec, todo, workers=args.workers, on_death=lambda episode: _death_line(args, episode))
         for line in () if not todo else tables.with_progress(console, lines, total=len(todo)):
@@ -303,7 +310,7 @@ def _parse_start(text: str | None) -> Pose | None:
     return Pose(x_m, y_m, math.radians(yaw_deg))
 
 
-def _config(args: Args, split: dict[str, Any]) -> dict[str, Any]:
+def config_of(args: Args, split: dict[str, Any]) -> dict[str, Any]:
     """What `config.json` says: every option, the split and the versions that made the results."""
     options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(args).items()}
     del options["list_agents"]

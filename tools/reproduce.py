@@ -7,12 +7,14 @@
 Tables: failures, ablation, exploration, categories, overall, or all. Runs lie in `<out>/<agent>_<semantics>_...`, a
 folder each as `sim.run --record` leaves it, and serve every table that needs them. The agents take turns, a chunk of
 episodes each, so that whenever it is stopped they have the same first episodes; the same command goes on where it was.
-Tables go to the terminal and to `<out>/tables/<table>.md` and `.csv`; with --semantics, to `<table>_<semantics>`. What
-was played by older code stays: take another --out when an agent has changed. See docs/reproduce.md.
+Tables go to the terminal and to `<out>/tables/<table>.md` and `.csv`; --semantics, --agents, --noise, --split and
+--seed have their place in the name where they are given. What was played by older code stays: take
+another --out when an agent has changed. See docs/reproduce.md.
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import time
 from collections import Counter
@@ -32,6 +34,9 @@ from sim.interface import ConfigError
 from sim.paper_tables import TABLES, PaperTable, Player, table_named
 from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
 from sim.trajectory import read_trajectory, trajectory_file
+
+SAME_IN_ALL = ("agent", "semantics", "semantics_config", "split_identity", "seed", "noise", "noise_config")
+"""Entries of a run's config that must be what the table is of."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +76,7 @@ def main(args: Args) -> int:
     players = list(dict.fromkeys(player for needed in wanted.values() for player in needed))
     episodes, split = run.plan_episodes(_run_args(args, players[0]))
     play(args, players, episodes, split, console)
-    runs = {player: read_run(_folder(args, player)) for player in players if _has_run(args, player)}
+    runs = {player: _read(args, player, split) for player in players if _has_run(args, player)}
     status = 0
     for name, needed in wanted.items():
         common = common_episodes(runs, needed, episodes)
@@ -81,6 +86,23 @@ def main(args: Args) -> int:
             continue
         tell(args, name, table_named(name), {player: runs[player] for player in needed}, common, console)
     return status
+
+
+def _read(args: Args, player: Player, split: dict[str, Any]) -> Run:
+    """A player's run.
+
+    Raises:
+        ConfigError: the folder holds something else than the table is of.
+    """
+    read = read_run(_folder(args, player))
+    wanted = json.loads(json.dumps(run.config_of(_run_args(args, player), split)))
+    for key in SAME_IN_ALL:
+        if read.config.get(key) != wanted.get(key):
+            raise ConfigError(
+                f"'{read.path}' holds a run with {key} = {json.dumps(read.config.get(key))}, the table is of "
+                f"{json.dumps(wanted.get(key))}; take another --out, or the options of that run."
+            )
+    return read
 
 
 def play(
@@ -121,12 +143,20 @@ def tell(
     lines = {player: [with_cause(of, of.lines[i]) for i in common] for player, of in runs.items()}
     parts = table.build(lines, list(runs))
     notes = notes_of(args, name, runs, common)
-    folder, stem = args.out / "tables", name if args.semantics is None else f"{name}_{args.semantics}"
+    folder, stem = args.out / "tables", stem_of(args, name)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{stem}.md").write_text(to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n", encoding="utf-8")
     write_csv(folder / f"{stem}.csv", parts)
     _show(console, parts, notes)
     console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
+
+
+def stem_of(args: Args, name: str) -> str:
+    """Name of a table's files: the table's own, and each option that makes another table of it."""
+    agents = "+".join(_file_name(agent) for agent in args.agents)
+    noise = "" if args.noise == Args.noise else args.noise
+    split = "" if args.split == Args.split else _split_name(args)
+    return "_".join(filter(None, (name, args.semantics, agents, noise, split, _seed_name(args))))
 
 
 def with_cause(of: Run, line: Line) -> Line:
@@ -138,13 +168,14 @@ def with_cause(of: Run, line: Line) -> Line:
 def notes_of(args: Args, name: str, runs: dict[Player, Run], common: Sequence[str]) -> list[str]:
     """What must be known beside the numbers: episodes, split, errors, code, the command."""
     some = next(iter(runs.values()))
-    split, versions = some.config["split_identity"], some.config["versions"]
+    config, split, versions = some.config, some.config["split_identity"], some.config["versions"]
     errors = sum(of.lines[i]["end_reason"] == "error" for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
         f"{len(common)} episodes of {split['name']} {split['version']} ({split['sha256'][:8]}), sensor noise "
-        f"{args.noise}, seed {args.seed}, mujoco {versions['mujoco']}; mean [95 % bootstrap interval over episodes]. "
-        f"A difference is paired by episode; unresolved: its interval holds 0, or it has fewer than {MIN_PAIRS} pairs.",
+        f"{config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}; mean [95 % bootstrap interval over "
+        f"episodes]. A difference is paired by episode; unresolved: its interval holds 0, or it has fewer than "
+        f"{MIN_PAIRS} pairs.",
         "`" + " ".join(["python tools/reproduce.py", name, *_named_options(args)]) + "`",
     ]
     if errors:
@@ -187,9 +218,20 @@ def _run_args(args: Args, player: Player) -> run.Args:
 
 
 def _folder(args: Args, player: Player) -> Path:
-    split = Path(args.split).resolve().name if Path(args.split).is_dir() else args.split
-    agent = player.agent.replace(":", "_").replace("/", "_")
-    return args.out / f"{agent}_{player.semantics}_{args.noise}_{split}"
+    parts = (_file_name(player.agent), player.semantics, args.noise, _split_name(args), _seed_name(args))
+    return args.out / "_".join(filter(None, parts))
+
+
+def _file_name(agent: str) -> str:
+    return agent.replace(":", "_").replace("/", "_")
+
+
+def _split_name(args: Args) -> str:
+    return Path(args.split).resolve().name if Path(args.split).is_dir() else args.split
+
+
+def _seed_name(args: Args) -> str:
+    return f"seed{args.seed}" if args.seed else ""
 
 
 def _has_run(args: Args, player: Player) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -79,11 +80,12 @@ def test_an_interval_that_holds_zero_and_one_of_few_pairs_resolve_nothing(
     assert ("unresolved" in cell.text()) == (not resolved and low is not None)
 
 
-def run_folder(folder: Path, ids: str, *, split: str = "val") -> Path:
+def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object) -> Path:
     folder.mkdir()
     config = {"split_identity": {"name": split, "version": "1", "sha256": "abc"}, "versions": {"code": "c0de"}}
     (folder / "config.json").write_text(json.dumps(config))
-    lines = [{"episode_id": i, "success": 1.0} for i in ids]
+    about = {"house": "house_0", "goal": "bed", "shortest_path": 4.2, "end_reason": "stop"} | of_lines
+    lines = [{"episode_id": i, "success": 1.0} | about for i in ids]
     (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     return folder
 
@@ -103,6 +105,30 @@ def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) 
         require_same_episodes(first, other)
     with pytest.raises(ConfigError, match=r"val 1 \(abc\) and test 1 \(abc\)"):
         require_same_episodes(first, foreign)
+
+
+@pytest.mark.parametrize(
+    ("other", "told"),
+    [
+        ({"house": "house_1"}, 'house "house_0" and "house_1"'),
+        ({"goal": "sofa"}, 'goal "bed" and "sofa"'),
+        ({"shortest_path": 4.4}, "shortest_path 4.2 and 4.4"),
+        ({"shortest_path": None}, "shortest_path 4.2 and null"),
+    ],
+)
+def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, told: str, tmp_path: Path) -> None:
+    first, second = read_run(run_folder(tmp_path / "a", "ab")), read_run(run_folder(tmp_path / "b", "bc", **other))
+    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(told)}"):
+        require_same_episodes(first, second)
+
+
+def test_an_episode_that_broke_or_whose_way_was_measured_anew_is_still_the_same(tmp_path: Path) -> None:
+    first = read_run(run_folder(tmp_path / "a", "ab"))
+    rounded = read_run(run_folder(tmp_path / "b", "ab", shortest_path=4.21))
+    broken = read_run(run_folder(tmp_path / "c", "ab", shortest_path=None, end_reason="error"))
+    nowhere = read_run(run_folder(tmp_path / "d", "ab", shortest_path=None))
+    assert require_same_episodes(first, rounded) == require_same_episodes(first, broken) == ["a", "b"]
+    assert require_same_episodes(nowhere, nowhere) == ["a", "b"]
 
 
 def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:

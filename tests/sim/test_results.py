@@ -55,6 +55,31 @@ def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> N
     RunDirectory(tmp_path, CONFIG | {"record": True}).close()
 
 
+def test_every_code_that_played_in_a_folder_is_written_down(tmp_path: Path) -> None:
+    for code, others in (("a1", []), ("a1", []), ("b2", ["a1"]), ("b2", ["a1"]), ("c3", ["a1", "b2"])):
+        run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": code}})
+        assert run.played_by(code) == others
+        run.append(line(1))
+        run.close()
+    written = json.loads((tmp_path / "config.json").read_text())
+    assert written["codes"] == ["a1", "b2", "c3"]
+    assert written["versions"] == {"code": "a1"}
+
+
+def test_code_that_played_before_codes_were_listed_is_known_and_code_that_played_nothing_is_not(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
+    run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
+    assert run.played_by("b2") == []
+    run.append(line(1))
+    run.close()
+    config = json.loads((tmp_path / "config.json").read_text())
+    assert config.pop("codes") == ["b2"]
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    again = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
+    assert again.played_by("b2") == ["a1"]  # what the folder was begun with, where nothing better is known
+    again.close()
+
+
 def test_two_writers_in_one_folder_are_refused(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG)
     with pytest.raises(ConfigError, match="Another process"):

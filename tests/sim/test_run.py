@@ -15,6 +15,7 @@ import pytest
 from sim.episodes import Episode, write_split
 from sim.failures import cause_of_failure
 from sim.metrics import EXPLORED_SHARE
+from sim.paths import code_hash
 from sim.pose import Pose
 from sim.trajectory import read_trajectory, trajectory_file
 from tests.helpers.worlds import room, two_storeys, with_box
@@ -197,6 +198,31 @@ def test_a_wrong_option_is_one_line_and_status_2(
     assert complaint.startswith("error: ")
     assert complaint.count("\n") == 1
     assert told in complaint
+
+
+def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
+    house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from sim.run import entry
+
+    def played(episodes: int) -> tuple[str, list[str]]:
+        options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+        assert entry([*options, "--episodes", str(episodes)]) == 0
+        return capsys.readouterr().out, json.loads((tmp_path / "config.json").read_text())["codes"]
+
+    out, codes = played(1)
+    assert "by other code" not in out
+    assert codes == [code_hash()]
+    config = json.loads((tmp_path / "config.json").read_text())
+    (tmp_path / "config.json").write_text(json.dumps(config | {"codes": ["0lder"]}))
+    out, codes = played(1)
+    assert "by other code" not in out  # nothing was played
+    assert codes == ["0lder"]
+    out, codes = played(2)
+    assert [line for line in out.splitlines() if "0lder" in line] == [
+        f"Episodes that were there were played by other code (0lder) than these ({code_hash()})."
+    ]
+    assert codes == ["0lder", code_hash()]
 
 
 def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:

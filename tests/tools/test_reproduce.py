@@ -42,6 +42,11 @@ def args(split: Path, tmp_path: Path) -> reproduce.Args:
     )
 
 
+def stem(args: reproduce.Args) -> str:
+    """Of the files of the table that it asks for."""
+    return reproduce.stem_of(args, args.table)
+
+
 def test_a_table_of_two_agents_is_played_written_and_not_played_again(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -49,11 +54,11 @@ def test_a_table_of_two_agents_is_played_written_and_not_played_again(
     told = capsys.readouterr().out
     # The agents take turns.
     assert [part.split(" ")[0] for part in told.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
-    page = (args.out / "tables" / "categories_gt.md").read_text()
+    page = (args.out / "tables" / f"{stem(args)}.md").read_text()
     assert "| goal (episodes) | oracle | examples.my_agent:make | oracle - examples.my_agent:make |" in page
     assert "| all (2) | 100.0" in page
     assert "2 episodes of tiny 1" in page
-    assert (args.out / "tables" / "categories_gt.csv").is_file()
+    assert (args.out / "tables" / f"{stem(args)}.csv").is_file()
     assert len(list((args.out / ORACLE / FOLDER).glob("*.npz"))) == 2
     before = (args.out / MINE / "results.jsonl").read_bytes()
     assert reproduce.main(args) == 0
@@ -106,7 +111,66 @@ def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduc
     assert line["failure"] == "false_detection"
     results.write_text(json.dumps(line | {"failure": None}) + "\n")
     reproduce.main(replace(failing, minutes=0.0))
-    assert "| false_detection | 100.0 [100.0, 100.0] |" in (args.out / "tables" / "failures_gt.md").read_text()
+    assert "| false_detection | 100.0 [100.0, 100.0] |" in (args.out / "tables" / f"{stem(failing)}.md").read_text()
+
+
+def test_another_seed_is_another_run(args: reproduce.Args, capsys: pytest.CaptureFixture[str]) -> None:
+    reproduce.main(args)
+    capsys.readouterr()
+    assert reproduce.main(replace(args, seed=1, minutes=0.0)) == 1
+    assert "no episode that oracle, examples.my_agent:make (gt) have all played" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("seed", 1),
+        ("noise", "harsh"),
+        ("semantics", "noisy"),
+        ("agent", "random"),
+        ("noise_config", {"depth": 1.0}),
+        ("split_identity", {"name": "tiny", "version": "2", "sha256": "0"}),
+    ],
+)
+def test_a_run_with_other_options_gets_into_no_table(args: reproduce.Args, key: str, value: object) -> None:
+    reproduce.main(replace(args, episodes=1))
+    file = args.out / MINE / "config.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {key: value}))
+    before = (args.out / "tables" / f"{stem(args)}.md").read_bytes()
+    with pytest.raises(ConfigError, match=f"{MINE}' holds a run with {key} = "):
+        reproduce.main(replace(args, episodes=1, minutes=0.0))
+    assert (args.out / "tables" / f"{stem(args)}.md").read_bytes() == before
+
+
+def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
+    reproduce.main(args)
+    player, other = reproduce.Player("oracle", "gt"), replace(args, seed=7, noise="harsh")
+    told = reproduce.notes_of(other, "overall", {player: read_run(args.out / ORACLE)}, ["e0"])[0]
+    assert "sensor noise none, seed 0," in told
+
+
+def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: Path, tmp_path: Path) -> None:
+    plain = reproduce.Args(table="overall", out=tmp_path)
+    others = [
+        replace(plain, **change)
+        for change in (
+            {"table": "failures"},
+            {"semantics": "gt"},
+            {"agents": AGENTS},
+            {"agents": AGENTS[:1]},
+            {"noise": "harsh"},
+            {"split": "test"},
+            {"split": str(split)},
+            {"seed": 1},
+            {"semantics": "gt", "agents": AGENTS, "noise": "harsh", "split": "test", "seed": 1},
+        )
+    ]
+    assert stem(plain) == "overall"
+    assert stem(others[-1]) == "overall_gt_oracle+examples.my_agent_make_harsh_test_seed1"
+    assert len({stem(args) for args in (plain, *others)}) == 1 + len(others)
+    assert all("/" not in stem(args) for args in others)
+    for args in (replace(plain, episodes=7), replace(plain, workers=2), replace(plain, minutes=0.0)):
+        assert stem(args) == "overall"  # the same table, of more or fewer episodes
 
 
 @pytest.mark.parametrize(
