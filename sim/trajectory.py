@@ -6,6 +6,7 @@ episode (agent, semantics, seed, house, goal, start, versions) and its scores. N
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import urllib.parse
@@ -163,6 +164,9 @@ def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any
         part.replace(file)
     except OSError as error:
         raise ConfigError(f"Cannot write the trajectory '{file}': {error.strerror}.") from None
+    finally:  # of a write that failed; a whole one is not called that any more
+        with contextlib.suppress(OSError):
+            part.unlink()
 
 
 def read_trajectory(file: Path) -> Trajectory:

@@ -20,6 +20,7 @@ import cv2
 import numpy as np
 import tyro
 from numpy.typing import NDArray
+from rich.console import Console
 
 from sim import cli, tables
 from sim.comparison import Run, read_run
@@ -54,17 +55,21 @@ class Args:
 
 
 def main(args: Args) -> int:
-    """Draw; returns the exit status."""
+    """Draw; returns the exit status, 1 when none of the episodes has a trajectory."""
     console = tables.make_console()
     run = read_run(args.run)
     wanted = args.episodes or tuple(i for i, line in run.lines.items() if not line["success"])
     unknown = [i for i in wanted if i not in run.lines]
     if unknown:
         raise ConfigError(f"'{args.run}' has no episode '{unknown[0]}'.")
+    missing = [i for i in wanted if not trajectory_file(run.path, i).is_file()]
+    if missing:
+        why = "written with --record; an episode that broke has none"
+        _tell(console, f"No trajectory, not drawn: {' '.join(missing)} ({why})")
     split, out = split_of(run), args.out or args.run / "pictures"
     out.mkdir(parents=True, exist_ok=True)
     truth: GroundTruth | None = None
-    for episode_id in sorted(wanted, key=lambda i: (run.lines[i]["house"], i)):
+    for episode_id in sorted(set(wanted) - set(missing), key=lambda i: (run.lines[i]["house"], i)):
         line = run.lines[episode_id]
         trajectory = read_trajectory(trajectory_file(run.path, episode_id))
         if truth is None or truth.world.house.name != line["house"]:
@@ -72,8 +77,12 @@ def main(args: Args) -> int:
         words = in_words(episode_id, line["goal"], trajectory)
         file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
         cv2.imwrite(str(file), draw(truth, line["goal"], trajectory, words)[..., ::-1])
-        console.print(f"{words} -> {file}", highlight=False, markup=False, soft_wrap=True)
-    return 0
+        _tell(console, f"{words} -> {file}")
+    return int(bool(wanted) and len(missing) == len(wanted))
+
+
+def _tell(console: Console, words: str) -> None:
+    console.print(words, highlight=False, markup=False, soft_wrap=True)
 
 
 def split_of(run: Run) -> Split:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import itertools
 import os
 import statistics
 import sys
@@ -113,7 +114,7 @@ def _write_train(args: Args) -> Iterator[Made]:
     recipes = {recipe.name: recipe for recipe in map(train_recipe, range(MAX_TRAIN_SEEDS))}
     waiting = iter(recipes.values())
     while len(listed) < wanted:
-        batch = [recipe for recipe, _ in zip(waiting, range(wanted - len(listed)), strict=False)]
+        batch = list(itertools.islice(waiting, wanted - len(listed)))
         if not batch:
             raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
         for made in ordered_map(_make, batch, workers=args.workers):

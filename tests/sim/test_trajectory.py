@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import pytest
@@ -59,6 +61,29 @@ def test_no_half_written_file_is_left(tmp_path: Path) -> None:
         write_trajectory(tmp_path / "e.npz", walked(4), {"bad": float("nan")})
     assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
     assert (tmp_path / "e.npz").read_bytes() == before
+
+
+def test_a_write_that_fails_half_way_leaves_only_what_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(3), {})
+    before = (tmp_path / "e.npz").read_bytes()
+
+    def full_disk(stream: IO[bytes], **_: object) -> None:
+        stream.write(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", full_disk)
+    with pytest.raises(ConfigError, match="No space left"):
+        write_trajectory(tmp_path / "e.npz", walked(4), {})
+    assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
+    assert (tmp_path / "e.npz").read_bytes() == before
+
+
+def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigError, match="Cannot write the trajectory"):
+        write_trajectory(tmp_path / "file" / "e.npz", walked(3), {})
 
 
 def test_episodes_whose_ids_differ_have_files_that_differ() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import cv2
@@ -56,6 +57,20 @@ def test_each_failed_episode_gets_a_picture_with_the_end_of_its_way(
             column = round((place_m[0] + 3.25) / pixel_m)
             row = round(from_bottom - (place_m[1] + 2.25) / pixel_m)
             assert picture[row, column].tolist() == list(colour), place_m
+
+
+def test_an_episode_without_a_trajectory_is_skipped_and_named(
+    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(played / "run", tmp_path / "run")
+    first, second = read_run(tmp_path / "run").lines
+    trajectory_file(tmp_path / "run", first).unlink()
+    args = draw_trajectories.Args(run=tmp_path / "run", out=tmp_path / "pictures")
+    assert draw_trajectories.main(args) == 0
+    assert f"No trajectory, not drawn: {first} (" in capsys.readouterr().out
+    assert [file.stem for file in (tmp_path / "pictures").iterdir()] == [second]
+    trajectory_file(tmp_path / "run", second).unlink()
+    assert draw_trajectories.main(args) == 1  # nothing could be drawn
 
 
 def test_a_house_that_has_changed_since_is_refused(played: Path) -> None:
