@@ -4,10 +4,11 @@ The causes are those of the paper's Table I (section III), where people judged v
 recorded, so they can be wrong about intentions. The first rule that fits decides:
 
 1. `misc`: the physics broke.
-2. The agent called STOP: `false_detection`, unless an instance that it has seen is within `AT_IT_M` in plan: then it
-   stopped at the right thing, but short of it or behind a wall: `misc`. An agent that gives up, or stops at random,
-   counts as a false detection, as nothing recorded tells them apart. This comes before `stairs`, as in the paper: the
-   agent that has 7 % stairs among its failures with true segmentation has 0.4 % with its own.
+2. The agent called STOP: `false_detection`, unless some frame showed the goal's category (which instance
+   it was is not recorded) and any instance of it is within `AT_IT_M` in plan: then it is taken to have stopped at the
+   right thing, but short of it or behind a wall: `misc`. An agent that gives up, or stops at random, counts as a false
+   detection, as nothing recorded tells them apart. This comes before `stairs`, as in the paper: the agent that has 7 %
+   stairs among its failures with true segmentation has 0.4 % with its own.
 3. `stairs`: the storey of the start has no instance.
 4. `missed_detection`: the goal covered 0.8 % of a frame, and from then on, before anything of rules 5 and 6 began, the
    agent had its chance: it stood where a STOP would have succeeded and went on for `PATIENCE_STEPS`; or it never came

@@ -117,7 +117,7 @@ class FrontierExplorer:
     def _to_nearest(
         self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: PlanarPose
     ) -> Route | None:
-        """The way to the nearest frontier: a long one, else any, else one that was spent."""
+        """The way to the nearest frontier that is not spent: a long one, else any; None: there is none left."""
         assert self._spent is not None
         unspent = frontiers & ~self._spent[whole.index]
         for least_m in (self.config.least_length_m, 0.0):

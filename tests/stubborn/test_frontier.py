@@ -1,5 +1,3 @@
-import math
-
 import numpy as np
 import pytest
 
@@ -129,18 +127,20 @@ def test_a_frontier_reached_without_becoming_known_is_left_for_another():
 
 
 def test_a_short_frontier_is_left_for_last():
-    navmap = square(3.0)
-    closed_but(navmap, 3.0, [("w", 0.0)])
-    wall(navmap, (3.0, 3.05), (-3.0, 3.0))
-    unknown = area(navmap, (1.0, 1.05), (-0.05, 0.0))
-    navmap.frames_in_view[area(navmap, (0.75, 1.3), (-0.3, 0.25))] = 0  # a hole that a thing might cast
-    assert navmap.frames_in_view[unknown].max() == 0
-    goal = goal_xy(explorer(least_length_m=2.0, own_known_m=0.0), navmap)
-    small = goal_xy(explorer(least_length_m=0.05, own_known_m=0.0), navmap)
-    assert small is not None
-    assert math.hypot(*small) < 1.5
-    assert goal is not None
-    assert math.hypot(*goal) < 1.5 or goal[0] < -2.5
+    def narrow_in_the_east(*wide: tuple[str, float]) -> NavMap:
+        navmap = square(3.0)
+        closed_but(navmap, 3.0, [("e", 0.0), *wide])
+        for y_m in ((-0.5, -0.3), (0.3, 0.5)):
+            wall(navmap, (2.95, 3.05), y_m)
+        return navmap
+
+    near_east = PlanarPose(1.0, 0.0, 0.0)
+    any_length = goal_xy(explorer(least_length_m=0.05, own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
+    assert any_length == pytest.approx((3.1, 0.0), abs=0.3)
+    goal = goal_xy(explorer(own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
+    assert goal == pytest.approx((-3.1, 0.0), abs=0.3)
+    last = goal_xy(explorer(own_known_m=0.0), narrow_in_the_east(), near_east)
+    assert last == pytest.approx((3.1, 0.0), abs=0.3)
 
 
 def test_where_nothing_is_unknown_it_goes_where_it_was_least():
