@@ -1,0 +1,106 @@
+"""The tool that makes views: the same whoever makes them, goes on where it was, mends what is broken."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from sim.episodes import load_split
+from sim.interface import ConfigError
+from stubborn.segmentation.views import list_shards, read_shard
+from tests.helpers.worlds import room, with_box
+from tools import make_episodes
+from tools.generate_views import FRESH_SEEDS_FROM, Args, main, plan
+
+
+@pytest.fixture(scope="module")
+def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("splits") / "tiny"
+    folder.mkdir()
+    for name, width in (("first", 5.0), ("second", 6.0)):
+        house = with_box(room(width, 4), "bed_00", centre_m=(1.5, 0, 0.3), half_m=(0.5, 0.9, 0.3))
+        (folder / f"{name}.xml").write_text(house.spec.to_xml())
+    make_episodes.main(make_episodes.Args(split=folder, episodes=2))
+    return folder
+
+
+def options(split: Path, out: Path, **changes: object) -> Args:
+    few = Args(split=str(split), out=out, views=9, views_per_shard=3, shrink=4, profile="fast")
+    return replace(few, **changes)  # pyright: ignore[reportArgumentType]
+
+
+def sums(out: Path) -> dict[str, str]:
+    return {entry["shard"]: entry["sha256"] for entry in json.loads((out / "index.json").read_text())["shards"]}
+
+
+def test_workers_and_machines_make_the_same_shards_as_one_process(split: Path, tmp_path: Path) -> None:
+    assert main(options(split, tmp_path / "one")) == 0
+    command = [sys.executable, "tools/generate_views.py", "--split", str(split), "--out", str(tmp_path / "two")]
+    command += ["--views", "9", "--views-per-shard", "3", "--shrink", "4", "--profile", "fast", "--workers", "2"]
+    subprocess.run(command, check=True, capture_output=True)
+    main(options(split, tmp_path / "three", shard="1/2"))
+    assert list(sums(tmp_path / "three")) == ["views-000001.tar"]
+    main(options(split, tmp_path / "three", shard="0/2"))
+    assert len(sums(tmp_path / "one")) == 3
+    assert sums(tmp_path / "one") == sums(tmp_path / "two") == sums(tmp_path / "three")
+
+
+def test_what_is_whole_stays_and_what_is_broken_is_made_again(split: Path, tmp_path: Path) -> None:
+    main(options(split, tmp_path))
+    before = sums(tmp_path)
+    first, second, third = list_shards(tmp_path)
+    kept = first.stat().st_mtime_ns
+    second.write_bytes(second.read_bytes()[:1000])
+    third.unlink()
+    main(options(split, tmp_path))
+    assert first.stat().st_mtime_ns == kept
+    assert sums(tmp_path) == before
+    assert [len(list(read_shard(shard))) for shard in list_shards(tmp_path)] == [3, 3, 3]
+
+
+def test_a_flipped_byte_is_found_when_checksums_are_compared(split: Path, tmp_path: Path) -> None:
+    main(options(split, tmp_path, views=3))
+    (shard,) = list_shards(tmp_path)
+    whole = shard.read_bytes()
+    shard.write_bytes(whole[:600] + bytes([whole[600] ^ 1]) + whole[601:])
+    main(options(split, tmp_path, views=3, check=True))
+    assert shard.read_bytes() == whole
+
+
+def test_shards_of_other_options_are_never_mixed(split: Path, tmp_path: Path) -> None:
+    main(options(split, tmp_path, views=3))
+    with pytest.raises(ConfigError, match="holds shards with seed = 0, this run has 1"):
+        main(options(split, tmp_path, views=3, seed=1))
+
+
+def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
+    splits = {name: load_split(name) for name in ("train", "val")}
+    train, val = (
+        plan(Args(split=name, out=Path("x"), views=230, views_per_shard=1), split) for name, split in splits.items()
+    )
+    assert {task.house for task in train[:200]} == set(splits["train"].houses)
+    fresh = [task.fresh_seed for task in train[200:]]
+    assert len(set(fresh)) == 30
+    assert min(seed for seed in fresh if seed is not None) >= FRESH_SEEDS_FROM
+    assert {task.house for task in val[:20]} == {task.house for task in val[20:40]} == set(splits["val"].houses)
+    assert all(task.fresh_seed is None for task in val)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"views": 0}, "--views must be at least 1, got 0"),
+        ({"shrink": 7}, "--shrink must divide 640 and 480, got 7"),
+        ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
+        ({"shard": "2/2"}, '--shard must be "i/n" with 0 <= i < n, got "2/2"'),
+        ({"profile": "best"}, "Unknown rendering profile 'best'"),
+    ],
+)
+def test_a_wrong_option_is_refused(split: Path, tmp_path: Path, changes: dict, sentence: str) -> None:
+    with pytest.raises(ConfigError, match=sentence):
+        main(options(split, tmp_path, **changes))
