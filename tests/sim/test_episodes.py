@@ -125,10 +125,10 @@ def test_a_folder_without_episodes_is_refused(tmp_path):
     ("file", "content"),
     [
         ("tiny.json.gz", b"not gzip"),
-        ("tiny.json.gz", gzip.compress(b"[1, 2]")),
-        ("tiny.json.gz", gzip.compress(b'{"order": ["no_such"]}')),
-        ("content/a.json.gz", gzip.compress(b'{"episodes": [{"episode_id": "x"}]}')),
-        ("content/a.json.gz", gzip.compress(b"{")),
+        ("tiny.json.gz", gzip.compress(b"[1, 2]", mtime=0)),
+        ("tiny.json.gz", gzip.compress(b'{"order": ["no_such"]}', mtime=0)),
+        ("content/a.json.gz", gzip.compress(b'{"episodes": [{"episode_id": "x"}]}', mtime=0)),
+        ("content/a.json.gz", gzip.compress(b"{", mtime=0)),
     ],
 )
 def test_a_broken_episode_file_is_named(folder, file, content):
