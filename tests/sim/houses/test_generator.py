@@ -38,7 +38,10 @@ def test_a_fresh_seed_gives_a_house_that_keeps_the_format_and_the_check(seed: in
     assert check_house(house.spec) == []
     assert len(read_rooms(model)) == len(house.plan.rooms)
     assert len(house.spec.to_xml()) < 1000 * MAX_XML_KB
-    assert model.nlight <= 8
+    lamps = model.light_pos[model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value]
+    assert model.nlight - len(lamps) == 4  # shine everywhere; OpenGL has eight
+    for room in read_rooms(model):
+        assert any(room.contains(x, y) for x, y, _ in lamps.tolist()), room.name
 
 
 def small(seed: int) -> GeneratedHouse:
