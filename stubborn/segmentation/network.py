@@ -14,9 +14,6 @@ from stubborn.segmentation.checkpoints import load_rednet
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import RedNet
 
-SHIPPED_WEIGHTS = Path(__file__).with_name("weights") / "rednet_compact.safetensors"
-"""The compact network trained on views of this repository's train houses; see the model card beside it."""
-
 
 class RedNetSegmenter:
     """Softmax scores of a RedNet.
