@@ -1,8 +1,4 @@
-"""Ways over the map by fast marching, and the next action along one (paper: Path Planning Module).
-
-Reference of the march: Sethian (1996), "A fast marching level set method for monotonically advancing fronts", as
-implemented by scikit-fmm.
-"""
+"""Ways over the map by fast marching, and the next action along one (paper: Path Planning Module)."""
 
 from __future__ import annotations
 
@@ -11,11 +7,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import skfmm
 from numpy.typing import NDArray
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
 from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
+from stubborn.marching import march
 from stubborn.navmap import NavMap
 from stubborn.raster import connected, distance_to
 
@@ -38,8 +34,6 @@ class PlanningConfig:
     """Nearer to an obstacle than this the march slows down, so that ways keep clear where there is room."""
     wary_speed: float = 0.35
     """Speed of the march at an obstacle's edge, growing to 1 at `wary_m`; 1 switches the slowing off."""
-    first_march: float = 1.15
-    """The march is first tried up to this many times the straight distance to the goal. Saves time only."""
     unknown_speed: float = 0.4
     """Speed of the march over ground that was never in view, where the caller asks for wariness of it: a way through
     what is known is worth a detour, since the other may end at a wall."""
@@ -97,7 +91,6 @@ class Planner:
     def __init__(self, config: PlanningConfig, *, trust_visited: bool) -> None:
         self.config = config
         self.trust_visited = trust_visited
-        self._last_length_m = 0.0  # how far the next march probably has to go: saves time, changes no action
 
     def obstacles(self, view: NavMap, bumps: Bumps) -> NDArray[np.bool_]:
         """Depth obstacles, and the collision marks asked for where the body has not proved them wrong; a new array."""
@@ -144,22 +137,20 @@ class Planner:
         None when no goal cell is connected, or the way is longer than `farthest_m`.
         """
         goal = goal & free.reachable
-        rows, cols = np.nonzero(goal)
-        if rows.size == 0:
+        if not goal.any():
             return None
         here = free.frame.cell(pose.x_m, pose.y_m)
-        gap_m = float(np.hypot(rows - here[0], cols - here[1]).min()) * free.frame.cell_m
-        # A march that ends soon after reaching the robot costs half of one over the whole window.
-        expected_m = max(self.config.first_march * gap_m, self._last_length_m) + 2.0 * self.config.ring_m
-        for limit_m in (expected_m, math.inf):
-            distance_m = march(goal, free.reachable, free.speed, free.frame.cell_m, min(limit_m, farthest_m))
-            length_m = float(distance_m[here])
-            if math.isfinite(length_m):
-                self._last_length_m = length_m
-                return Plan(free.frame, goal, distance_m, length_m)
-            if limit_m >= farthest_m:
-                break
-        return None
+        distance_m = march(
+            goal,
+            free.reachable,
+            free.speed,
+            free.frame.cell_m,
+            farthest_m,
+            until=here,
+            beyond_m=2.0 * self.config.ring_m,
+        )
+        length_m = float(distance_m[here])
+        return Plan(free.frame, goal, distance_m, length_m) if math.isfinite(length_m) else None
 
     def next_action(self, plan: Plan, free: FreeSpace, pose: PlanarPose) -> Action:
         """The action along the plan: turn towards the short-term goal when it is off the heading, else forward."""
@@ -214,28 +205,6 @@ class Planner:
         c = self.config
         share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.wary_m - c.dilation_m, 1e-6))
         return np.clip(c.wary_speed + (1.0 - c.wary_speed) * share, c.wary_speed, 1.0)
-
-
-def march(
-    goal: NDArray[np.bool_],
-    passable: NDArray[np.bool_],
-    speed: NDArray[np.floating],
-    cell_m: float,
-    limit_m: float = math.inf,
-) -> NDArray[np.float32]:
-    """Travel time from every passable cell to the nearest goal cell at the given speeds (1: metres are seconds).
-
-    Infinite where there is no way, and beyond `limit_m`.
-    """
-    front = np.ma.MaskedArray(np.where(goal, -1.0, 1.0), mask=~passable)
-    if (goal | ~passable).all():
-        return np.where(goal, 0.0, np.inf).astype(np.float32)
-    narrow_m = limit_m if math.isfinite(limit_m) else 0.0  # 0: no limit
-    time = skfmm.travel_time(front, speed, dx=cell_m, order=1, narrow=narrow_m)
-    distance_m = np.ma.filled(time, np.inf).astype(np.float32)
-    distance_m[distance_m > limit_m] = np.inf
-    distance_m[goal] = 0.0
-    return distance_m
 
 
 def trace(plan: Plan, pose: PlanarPose, max_cells: int) -> list[tuple[int, int]]:

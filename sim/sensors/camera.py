@@ -82,6 +82,7 @@ class Camera:
         # Numbers must not be blended at edges and need no vertices inside a flat face, so they have their own buffer.
         self._number_context = _make_context(model, self.camera, self.profile, samples=0, quads=1)
         self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
+        self._finalizer.atexit = False  # at the end of the process OpenGL may be gone already
         self._reflects = self.profile.reflections and bool((model.mat_reflectance > 0.0).any())
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
         self._view = mujoco.MjvCamera()
