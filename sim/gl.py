@@ -41,6 +41,25 @@ def choose_backend() -> str:
     )
 
 
+_drawing_pid: int | None = None
+"""The process that made the first OpenGL context."""
+
+
+def begin_drawing() -> None:
+    """To be called before an OpenGL context is made.
+
+    Raises:
+        RenderError: this process was forked from one that had drawn; its driver's threads are gone and it would hang.
+    """
+    global _drawing_pid
+    if _drawing_pid not in (None, os.getpid()):
+        raise RenderError(
+            "OpenGL does not survive a fork, and this process was forked from one that had drawn. Start workers with "
+            'spawn; for Gymnasium: make_vec(..., vector_kwargs={"context": "spawn"}).'
+        )
+    _drawing_pid = os.getpid()
+
+
 os.environ["MUJOCO_GL"] = choose_backend()
 if os.environ["MUJOCO_GL"] in ("egl", "osmesa"):
     os.environ.setdefault("PYOPENGL_PLATFORM", os.environ["MUJOCO_GL"])
@@ -49,4 +68,4 @@ os.environ.setdefault("LP_NUM_THREADS", "1")
 
 import mujoco  # noqa: E402
 
-__all__ = ["INSTALL_HINT", "choose_backend", "mujoco"]
+__all__ = ["INSTALL_HINT", "begin_drawing", "choose_backend", "mujoco"]

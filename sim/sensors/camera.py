@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
-from sim.gl import INSTALL_HINT, mujoco
+from sim.gl import INSTALL_HINT, begin_drawing, mujoco
 from sim.houses.labels import RENDERED_GROUPS, Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.pose import Pose
@@ -225,6 +225,7 @@ def _free(gl: mujoco.GLContext, contexts: set[mujoco.MjrContext]) -> None:
 
 
 def _make_gl_context(camera: CameraModel) -> mujoco.GLContext:
+    begin_drawing()
     try:
         return mujoco.GLContext(camera.width_px, camera.height_px)
     except Exception as error:  # EGL, OSMesa and GLFW each raise their own

@@ -1,0 +1,187 @@
+"""The environment is a citizen of Gymnasium: vectors, wrappers, its checker, and an example that plays."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import types
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium import wrappers
+from gymnasium.utils.env_checker import check_env
+
+import sim.gym  # noqa: F401 - registers
+from sim.interface import Action, CameraModel
+from tests.helpers.worlds import room, with_box
+
+ROOT = Path(__file__).resolve().parents[2]
+ENV_ID = "stubborn/ObjectNav-v0"
+SMALL = CameraModel(width_px=64, height_px=48)
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A room of 6 x 6 m with a sofa."""
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    file.write_text(furnished.spec.to_xml())
+    return file
+
+
+@pytest.fixture
+def options(house: Path) -> dict[str, Any]:
+    return {"house": house, "goal": "sofa", "camera": SMALL, "render_mode": "rgb_array"}
+
+
+@pytest.fixture
+def env(options: dict[str, Any]) -> Iterator[gymnasium.Env]:
+    env = gymnasium.make(ENV_ID, **options)
+    yield env
+    env.close()
+
+
+@pytest.mark.filterwarnings("error")
+def test_gymnasiums_checker_accepts_a_shipped_house_as_it_comes() -> None:
+    env = gymnasium.make(ENV_ID, split="traps", camera=SMALL)
+    check_env(env.unwrapped)
+    env.close()
+
+
+@pytest.mark.parametrize("vectorization_mode", ["sync", "async"])
+def test_a_vector_of_two_plays_as_two_environments_alone(options: dict[str, Any], vectorization_mode: str) -> None:
+    seeds, actions = (3, 4), [(1, 2), (1, 1), (3, 1), (0, 1)]
+    of_vector = {"vector_kwargs": {"context": "spawn"}} if vectorization_mode == "async" else {}
+    envs = gymnasium.make_vec(ENV_ID, num_envs=2, vectorization_mode=vectorization_mode, **of_vector, **options)
+    seen = [envs.reset(seed=seeds[0]), *(envs.step(np.array(both)) for both in actions)]
+    envs.close()
+    for i, seed in enumerate(seeds):
+        alone = gymnasium.make(ENV_ID, **options)
+        for t, at_once in enumerate(seen):
+            own = alone.step(actions[t - 1][i]) if t else alone.reset(seed=seed)
+            for name, value in own[0].items():
+                np.testing.assert_array_equal(at_once[0][name][i], value)
+            for name, value in own[-1].items():
+                assert at_once[-1][name][i] == value
+        alone.close()
+
+
+def test_the_bare_id_makes_async_vectors_with_gymnasiums_own_context(house: Path) -> None:
+    """In a process of its own: here, other tests have drawn."""
+    code = (
+        "import gymnasium, sim.gym\n"
+        f"envs = gymnasium.make_vec('{ENV_ID}', num_envs=2, vectorization_mode='async', house=r'{house}', "
+        "goal='sofa', sensors=('depth',))\n"
+        "print(envs.reset(seed=0)[0]['depth'].shape, envs.step([1, 1])[1].tolist()); envs.close()"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert answer.stdout.strip() == "(2, 480, 640) [0.0, 0.0]", answer.stderr
+
+
+def test_a_forked_worker_of_a_process_that_drew_says_so_and_does_not_hang(house: Path) -> None:
+    code = (
+        "import gymnasium, sim.gym\n"
+        f"options = dict(house=r'{house}', goal='sofa', sensors=('depth',))\n"
+        f"gymnasium.make('{ENV_ID}', **options).reset(seed=0)\n"
+        f"envs = gymnasium.make_vec('{ENV_ID}', num_envs=1, vectorization_mode='async', "
+        "vector_kwargs={'context': 'fork'}, **options)\n"
+        "envs.reset(seed=0)"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert "RenderError: OpenGL does not survive a fork" in answer.stderr
+
+
+def test_the_time_limit_of_gymnasium_truncates_and_the_task_goes_on_counting(options: dict[str, Any]) -> None:
+    env = gymnasium.make(ENV_ID, max_episode_steps=3, **options)
+    env.reset(seed=0)
+    steps = [env.step(Action.TURN_LEFT) for _ in range(3)]
+    assert [truncated for _, _, _, truncated, _ in steps] == [False, False, True]
+    assert steps[-1][4]["num_steps"] == 3
+    assert steps[-1][4]["end_reason"] is None
+    env.close()
+
+
+def test_episode_statistics_count_reward_and_length(env: gymnasium.Env) -> None:
+    counted = wrappers.RecordEpisodeStatistics(env)
+    counted.reset(seed=0)
+    counted.step(Action.TURN_LEFT)
+    *_, info = counted.step(Action.STOP)
+    assert (info["episode"]["l"], info["episode"]["r"]) == (2, info["success"])
+
+
+def test_render_is_what_the_camera_sees_in_colour(env: gymnasium.Env) -> None:
+    observation, _ = env.reset(seed=0)
+    np.testing.assert_array_equal(env.render(), observation["rgb"])
+    observation, *_ = env.step(Action.TURN_LEFT)
+    frame = env.render()
+    np.testing.assert_array_equal(frame, observation["rgb"])
+    assert np.std(np.asarray(frame)) > 1.0
+
+
+def test_rendering_changes_no_observation(options: dict[str, Any]) -> None:
+    told = []
+    for rendering in (False, True):
+        env = gymnasium.make(ENV_ID, noise="realsense", **options)
+        frames = [env.reset(seed=4)[0]]
+        for action in (1, 2, 1, 1):
+            if rendering:
+                env.render()
+            frames.append(env.step(action)[0])
+        told.append(frames)
+        env.close()
+    for plain, rendered in zip(*told, strict=True):
+        for name, value in plain.items():
+            np.testing.assert_array_equal(value, rendered[name])
+
+
+def test_record_video_takes_every_frame(env: gymnasium.Env, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With MoviePy where it is installed, else with a stand-in for its encoder alone."""
+    given: list[tuple[int, float]] = []
+    try:
+        import moviepy  # noqa: F401 # pyright: ignore[reportMissingImports]
+    except ImportError:
+        _stand_in_for_moviepy(monkeypatch, given)
+    filmed = wrappers.RecordVideo(env, str(tmp_path / "films"), episode_trigger=lambda _: True, disable_logger=True)
+    filmed.reset(seed=0)
+    for action in (Action.TURN_LEFT, Action.MOVE_FORWARD, Action.STOP):
+        filmed.step(action)
+    filmed.close()
+    (film,) = tmp_path.glob("films/*.mp4")
+    if given:
+        assert given == [(4, env.metadata["render_fps"])]
+    assert film.stat().st_size > 0
+
+
+def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int, float]]) -> None:
+    """`moviepy` with nothing but what `RecordVideo` calls; notes how many frames came at which rate."""
+
+    class ImageSequenceClip:
+        def __init__(self, frames: list[np.ndarray], fps: float) -> None:
+            assert all(frame.shape == (48, 64, 3) and frame.dtype == np.uint8 for frame in frames)
+            given.append((len(frames), fps))
+
+        def write_videofile(self, file: str, **_: object) -> None:
+            Path(file).write_bytes(b"film")
+
+    package, clip = types.ModuleType("moviepy"), types.ModuleType("moviepy.video.io.ImageSequenceClip")
+    for module in (package, clip):
+        vars(module)["ImageSequenceClip"] = ImageSequenceClip
+    for name in ("moviepy", "moviepy.video", "moviepy.video.io"):
+        monkeypatch.setitem(sys.modules, name, package)
+    monkeypatch.setitem(sys.modules, "moviepy.video.io.ImageSequenceClip", clip)
+
+
+def test_the_example_plays_both_agents_in_one_episode() -> None:
+    from examples.gym_agents import play
+
+    ends = [play(name, max_steps=4) for name in ("random", "stubborn")]
+    assert ends[0]["episode_id"] == ends[1]["episode_id"]
+    assert [end["num_steps"] for end in ends] == [end["episode"]["l"] for end in ends] == [4, 4]
