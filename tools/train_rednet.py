@@ -1,6 +1,7 @@
 """Train a RedNet on labelled views, or finetune a published checkpoint.
 
-python tools/train_rednet.py --views runs/views --val-views runs/views_val --out runs/rednet --hours 3
+python tools/train_rednet.py --views runs/views_fast runs/views_good --val-views runs/views_val --out runs/rednet \
+    --block-px 2 --hours 3
 python tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views runs/views \
     --val-views runs/views_val --out runs/finetuned --steps 20000
 
@@ -56,10 +57,10 @@ SAVE_EVERY_S = 60.0
 class Args:
     """What to train, on what, how long."""
 
-    views: Path
-    """Folder of training shards (tools/generate_views.py)."""
-    val_views: Path
-    """Folder of shards to evaluate on."""
+    views: tuple[Path, ...]
+    """Folders of training shards (tools/generate_views.py)."""
+    val_views: tuple[Path, ...]
+    """Folders of shards to evaluate on."""
     out: Path
     """Folder of the run; one that is there goes on."""
     size: str = "compact"
@@ -125,13 +126,13 @@ class Trainer:
         self.model = _network(args).to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
-        shards = list_shards(args.views)
+        shards = _all_shards(args.views)
         self.stored_block_px = stored_block_px(shards)
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         self.data = ViewDataset(shards, Sampler(camera, args.block_px, Augmentation()), seed=args.seed)
         self.val = Views(
-            spread_views(list_shards(args.val_views), args.val_count), Sampler(camera, args.block_px, NONE)
+            spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, args.block_px, NONE)
         )
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
         self.total = args.steps
@@ -170,7 +171,8 @@ class Trainer:
             before = self.step
             yield from loader
             if self.step == before:
-                raise ConfigError(f"'{self.args.views}' holds fewer views than one batch of {self.args.batch}.")
+                folders = ", ".join(map(str, self.args.views))
+                raise ConfigError(f"{folders}: fewer views than one batch of {self.args.batch}.")
             self.data.epoch += 1
 
     def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor) -> float:
@@ -202,7 +204,10 @@ class Trainer:
 
     def _card(self, iou: Iou) -> dict[str, Any]:
         """What the file of weights says of itself."""
-        options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(self.args).items()}
+        options: dict[str, Any] = {
+            key: None if value is None else str(value) for key, value in asdict(self.args).items()
+        }
+        options |= {key: [str(folder) for folder in getattr(self.args, key)] for key in ("views", "val_views")}
         return {
             "block_px": self.args.block_px * self.stored_block_px,
             "step": self.step,
@@ -245,6 +250,10 @@ class Trainer:
         if self.args.hours is not None:
             self.total = max(progress["total"], self.step)
         print(f"goes on from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+
+
+def _all_shards(folders: Sequence[Path]) -> list[Path]:
+    return [shard for folder in folders for shard in list_shards(folder)]
 
 
 def _network(args: Args) -> RedNet:

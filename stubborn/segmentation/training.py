@@ -29,10 +29,10 @@ class Augmentation:
 
     mirror: bool = True
     """Left and right are swapped in half of the samples."""
-    brightness: float = 0.25
-    """Colour is scaled by 1 +- this, each channel by a quarter of it more."""
-    contrast: float = 0.25
-    saturation: float = 0.3
+    brightness: float = 0.3
+    """Colour is scaled by 1 +- this, each channel by half of it more: other walls and lamps."""
+    contrast: float = 0.3
+    saturation: float = 0.6
     noise_rgb: float = 4.0
     """Largest standard deviation of Gaussian noise, of 255."""
     depth_noise: float = 0.0012
@@ -84,7 +84,7 @@ def jitter_colour(rgb: NDArray[np.uint8], a: Augmentation, rng: np.random.Genera
     if max(a.brightness, a.contrast, a.saturation, a.noise_rgb) == 0.0:
         return rgb
     image = rgb.astype(np.float32)
-    gain = (1.0 + rng.uniform(-a.brightness, a.brightness)) * (1.0 + 0.25 * rng.uniform(-1, 1, 3) * a.brightness)
+    gain = (1.0 + rng.uniform(-a.brightness, a.brightness)) * (1.0 + 0.5 * rng.uniform(-1, 1, 3) * a.brightness)
     image *= gain.astype(np.float32)
     mean = image.mean()
     image = mean + (image - mean) * np.float32(1.0 + rng.uniform(-a.contrast, a.contrast))

@@ -170,12 +170,12 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
     return picked
 
 
-def class_weights(pixels: NDArray[np.float64], *, smallest: float = 1.02) -> torch.Tensor:
+def class_weights(pixels: NDArray[np.float64], *, smallest: float = 1.10) -> torch.Tensor:
     """Weights (classes,) that let rare categories count: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
 
     Args:
         pixels: (41,) pixels of each mpcat40 category, void included.
-        smallest: bounds the largest weight.
+        smallest: bounds the largest weight; ENet's 1.02 lets the rarest count 30 times the walls, 1.10 five times.
     """
     counts = np.asarray(pixels, np.float64)[1:]
     share = counts / max(counts.sum(), 1.0)

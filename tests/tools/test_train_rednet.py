@@ -46,21 +46,24 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 def options(tmp_path: Path, **changes: object) -> Args:
-    base = {"views": tmp_path / "train", "val_views": tmp_path / "val", "out": tmp_path / "out", "block_px": 1}
+    base = {"views": (tmp_path / "train",), "val_views": (tmp_path / "val",), "out": tmp_path / "out", "block_px": 1}
     return Args(**{**base, "batch": 2, "steps": 4, "evaluate_every": 2, "device": "cpu", **changes})  # type: ignore[arg-type]
 
 
 def test_training_writes_curves_and_weights_and_goes_on_where_it_was(tmp_path: Path) -> None:
-    write_views(tmp_path / "train", 6)
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "more", 3)
     write_views(tmp_path / "val", 2)
-    assert main(options(tmp_path)) == 0
+    folders = (tmp_path / "train", tmp_path / "more")
+    assert main(options(tmp_path, views=folders)) == 0
     first = rows(tmp_path / "out/val.csv")
     assert [row["step"] for row in first] == ["2", "4"]
     model, card = load_rednet(tmp_path / "out/rednet.safetensors")
     assert model.config == COMPACT
     assert card["block_px"] == 1
+    assert card["options"]["views"] == [str(folder) for folder in folders]
     assert card["miou_goals"] == pytest.approx(max(float(row["miou_goals"]) for row in first), abs=1e-4)
-    assert main(options(tmp_path, steps=6)) == 0
+    assert main(options(tmp_path, views=folders, steps=6)) == 0
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
 
 
@@ -72,4 +75,4 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
     with pytest.raises(ConfigError, match="--size must be one of compact, published, got 'huge'"):
         main(options(tmp_path, size="huge"))
     with pytest.raises(ConfigError, match="No shards"):
-        main(options(tmp_path, views=tmp_path / "nothing"))
+        main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))
