@@ -150,6 +150,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         """Start an episode; see the class."""
         super().reset(seed=seed)
         episode = self._choose(options or {})
+        self._scene = None  # the last house need not stay while the next one is made
         self._scene = self._scenes.get(episode.house)
         self._noise = self._noise_in(episode.house)
         # A child of the seed takes no number from the stream that draws episodes.

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stubborn.grid import GridFrame, Window
+
+_LAYERS: Mapping[str, type] = MappingProxyType(
+    {  # the widest first, so that each is aligned
+        **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
+        **{"frames_in_view": np.uint16, "found_step": np.int16, "obstacle_evidence": np.int8},
+        **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "bumped_wide", "bumped_narrow"), np.bool_),
+        **dict.fromkeys(("visited", "trail", "rejected", "set_aside"), np.bool_),
+    }
+)
 
 
 @dataclass
@@ -55,30 +66,18 @@ class NavMap:
 
     @classmethod
     def empty(cls, frame: GridFrame) -> NavMap:
-        """A map on which nothing is known yet."""
+        """A map on which nothing is known yet.
 
-        def layer(dtype: type) -> NDArray:
-            return np.zeros(frame.shape, dtype)
-
-        return cls(
-            frame=frame,
-            seen_obstacle=layer(np.bool_),
-            obstacle_evidence=layer(np.int8),
-            seen_at_eye_level=layer(np.bool_),
-            bumped_wide=layer(np.bool_),
-            bumped_narrow=layer(np.bool_),
-            visited=layer(np.bool_),
-            trail=layer(np.bool_),
-            frames_in_view=layer(np.uint16),
-            score_sum=layer(np.float32),
-            score_max=layer(np.float32),
-            other_max=layer(np.float32),
-            found_step=layer(np.int16),
-            shown_x=layer(np.float32),
-            shown_y=layer(np.float32),
-            rejected=layer(np.bool_),
-            set_aside=layer(np.bool_),
-        )
+        The layers of a large map lie in one block: so large a one comes from the system and goes back to it, and pages
+        that are never touched (most of the paper's 72 m) are never there.
+        """
+        cells, layers, first = frame.shape[0] * frame.shape[1], {}, 0
+        block = np.zeros(cells * sum(np.dtype(dtype).itemsize for dtype in _LAYERS.values()), np.uint8)
+        for name, dtype in _LAYERS.items():
+            last = first + cells * np.dtype(dtype).itemsize
+            layers[name] = block[first:last].view(dtype).reshape(frame.shape)
+            first = last
+        return cls(frame=frame, **layers)
 
     def view(self, window: Window) -> NavMap:
         """The part of the map in a window; its layers share memory with this map's."""

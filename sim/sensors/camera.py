@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import weakref
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -78,10 +79,12 @@ class Camera:
         self._option.sitegroup[:] = 0
         self._gl = _make_gl_context(self.camera)
         self._gl.make_current()
-        self._color_context = _make_context(model, self.camera, self.profile, self.profile.samples, self.profile.quads)
         # Numbers must not be blended at edges and need no vertices inside a flat face, so they have their own buffer.
-        self._number_context = _make_context(model, self.camera, self.profile, samples=0, quads=1)
-        self._finalizer = weakref.finalize(self, _free, self._gl, {self._color_context, self._number_context})
+        number_profile = replace(self.profile, samples=0, quads=1, shadows=False)
+        self._number_context = _make_context(model, self.camera, number_profile)
+        self._color_context: mujoco.MjrContext | None = None  # made when colour is first asked for: 10 to 30 MB
+        self._contexts = {self._number_context}
+        self._finalizer = weakref.finalize(self, _free, self._gl, self._contexts)
         self._finalizer.atexit = False  # at the end of the process OpenGL may be gone already
         self._reflects = self.profile.reflections and bool((model.mat_reflectance > 0.0).any())
         self._scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
@@ -171,9 +174,13 @@ class Camera:
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = self.profile.reflections
         flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = self.profile.skybox
         flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
-        mujoco.mjr_restoreBuffer(self._color_context)
-        mujoco.mjr_render(self._rect, self._scene, self._color_context)
-        mujoco.mjr_readPixels(self._color_buffer, None, self._rect, self._color_context)
+        context = self._color_context
+        if context is None:
+            context = self._color_context = _make_context(self._model, self.camera, self.profile)
+            self._contexts.add(context)
+        mujoco.mjr_restoreBuffer(context)
+        mujoco.mjr_render(self._rect, self._scene, context)
+        mujoco.mjr_readPixels(self._color_buffer, None, self._rect, context)
         return self._color_buffer[::-1].copy()
 
 
@@ -192,20 +199,18 @@ def describe_gl() -> str:
     return name.decode() if isinstance(name, bytes) else str(name)
 
 
-def _make_context(
-    model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile, samples: int, quads: int
-) -> mujoco.MjrContext:
+def _make_context(model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile) -> mujoco.MjrContext:
     """An offscreen frame buffer of the camera's size with the model's meshes and textures."""
     model.stat.extent = 1.0  # clipping planes are given in units of it
     model.vis.map.znear = Z_NEAR_M
     model.vis.map.zfar = Z_FAR_M
     model.vis.global_.offwidth = camera.width_px
     model.vis.global_.offheight = camera.height_px
-    model.vis.quality.offsamples = samples
-    model.vis.quality.numquads = quads
+    model.vis.quality.offsamples = profile.samples
+    model.vis.quality.numquads = profile.quads
     model.vis.quality.numslices = profile.slices
     model.vis.quality.numstacks = profile.stacks
-    model.vis.quality.shadowsize = profile.shadow_size_px
+    model.vis.quality.shadowsize = profile.shadow_size_px if profile.shadows else 0  # 2048: 18 MB, drawn or not
     context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
     mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, context)
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
