@@ -51,7 +51,7 @@ def test_a_camera_asked_for_no_colour_has_no_buffer_for_colour_or_shadows() -> N
     if "llvmpipe" not in describe_gl():
         pytest.skip("the drawing memory of a card is its driver's")
     world = World(room(5, 4))
-    cameras = []
+    cameras, grown_mb = [], 0.0
     for _ in range(4):  # the first ones start the driver
         before_mb = resident_mb()
         cameras.append(Camera(world.model, world.labels, profile="good"))
@@ -68,6 +68,7 @@ def test_maps_take_no_memory_where_nothing_was_seen() -> None:
     np.ones(
         30_000_000, np.uint8
     )  # from now on malloc keeps blocks up to this size, and clears them by hand when they are used again
+    navmap = NavMap.empty(frame)
     for _ in range(3):
         navmap = NavMap.empty(frame)
         navmap.score_sum[700:740, 700:740] = 1.0
