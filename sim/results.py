@@ -22,7 +22,9 @@ from sim.interface import ConfigError
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""
 BOOTSTRAP_RESAMPLES = 10_000
-NOT_COMPARED = frozenset({"workers", "out", "versions", "codes", "episodes", "record"})
+WATCHED = ("video", "view", "rerun", "rerun_save")
+"""Options that let somebody look on, which changes no result."""
+NOT_COMPARED = frozenset({"workers", "out", "versions", "codes", "episodes", "record", *WATCHED})
 """Entries of the config in which a resumed run may differ; with more episodes it goes on to them."""
 
 

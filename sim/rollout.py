@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from sim.episodes import Episode
 from sim.errors import PhysicsError
 from sim.interface import Action, Agent
 from sim.trajectory import trajectory_file, write_trajectory
+from sim.watching import Moment, Watcher
 
 TIMES = ("wall_time_s", "steps_per_s")
 """What differs between two runs of the same episode."""
@@ -30,20 +31,32 @@ def episode_seed(seed: int, episode_id: str) -> int:
 
 
 def play_episode(
-    env: ObjectNavEnv, agent: Agent, episode: Episode, *, seed: int, on_step: OnStep | None = None
+    env: ObjectNavEnv,
+    agent: Agent,
+    episode: Episode,
+    *,
+    seed: int,
+    on_step: OnStep | None = None,
+    watchers: Sequence[Watcher] = (),
 ) -> dict[str, Any]:
-    """Run the agent until it stops, the steps are used up or the physics break.
+    """Run the agent until it stops, the steps are used up or the physics break; the watchers look on.
 
     Returns:
         The episode's line of `results.jsonl` but for what the run knows (`agent`, `semantics`, `seed`).
     """
     observation, info = env.reset(seed=seed, options={"episode": episode})
     agent.reset(episode.goal, seed)
+    for watcher in watchers:
+        watcher.begin(env)
     began_s = time.perf_counter()
     steps, error, done = 0, None, False
     while not done:
+        action = Action(agent.act(observation))
+        moment = Moment(step=steps + 1, observation=observation, images=env.truth_images, action=action)
+        for watcher in watchers:
+            watcher.decided(moment)
         try:
-            observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
+            observation, _, terminated, truncated, info = env.step(action)
         except PhysicsError as broken:
             error = f"Step {steps + 1}: {broken}"
             break
@@ -51,10 +64,14 @@ def play_episode(
         done = terminated or truncated
         if on_step is not None:
             on_step(steps, agent, info)
+        for watcher in watchers:
+            watcher.moved(info)
     wall_time_s = time.perf_counter() - began_s
     line = {key: _plain(value) for key, value in info.items() if key != "collided"}
     if error is not None:
         line |= broken_metrics(error)
+    for watcher in watchers:
+        watcher.end(line)
     return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(steps / wall_time_s, 2) if steps else 0.0}
 
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from sim import cli, tables
+from sim import cli, tables, watchers
 from sim.env import ObjectNavEnv
 from sim.episodes import Episode
 from sim.errors import EpisodeError
@@ -33,7 +33,8 @@ from sim.semantics import NoisyConfig, NoisySegmenter
 from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
-from stubborn import agents
+from sim.watching import WATCHED_IMAGES
+from stubborn import agents, draw
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.verification import verifier_for
 
@@ -74,6 +75,14 @@ class Args:
     """Where everything goes (runs/<time>); a run that is there goes on."""
     record: bool = False
     """Leave a compact trajectory file of each episode, for `sim.trajectory.read_trajectory`."""
+    video: bool = False
+    """Leave an MP4 of each episode in <out>/videos."""
+    view: bool = False
+    """Show the episodes in MuJoCo's viewer while they are played."""
+    rerun: bool = False
+    """Stream poses, images, points and map to the Rerun viewer (extra `rerun`)."""
+    rerun_save: bool = False
+    """Leave a Rerun file of each episode in <out>/rerun (extra `rerun`)."""
     list_agents: bool = False
     """Print the agents and end."""
 
@@ -201,11 +210,12 @@ class EpisodePlayer:
             house=args.house,
             labels=args.labels,
             sensors=_sensors(args),
-            truth=("geom",) if args.semantics == "noisy" else (),
+            truth=_truth(args),
             profile=args.profile,
             noise=args.noise,
         )
         self._agent = make_agent(args, self._env)
+        self._watchers = watchers.make(args, draw.painter_of(self._agent))
         self._about = {
             "profile": args.profile,
             "noise": args.noise,
@@ -217,7 +227,7 @@ class EpisodePlayer:
         """One episode, to one result line."""
         seed = episode_seed(self._args.seed, episode.episode_id)
         try:
-            metrics = play_episode(self._env, self._agent, episode, seed=seed)
+            metrics = play_episode(self._env, self._agent, episode, seed=seed, watchers=self._watchers)
         except EpisodeError as error:
             return _error_line(self._args, episode, str(error))
         line = _identity(self._args, episode) | metrics
@@ -226,8 +236,15 @@ class EpisodePlayer:
         return line
 
     def close(self) -> None:
-        """Free the renderers."""
+        """Free the renderers; drop what watchers have not ended."""
+        for watcher in self._watchers:
+            watcher.close()
         self._env.close()
+
+
+def _truth(args: Args) -> tuple[str, ...]:
+    """Images that are rendered beside what the agent reads: for a noisy detector, and for who looks on."""
+    return ("geom",) * (args.semantics == "noisy") + WATCHED_IMAGES * watchers.any_asked(args)
 
 
 def _sensors(args: Args) -> tuple[str, ...]:
@@ -289,6 +306,7 @@ def check(args: Args) -> None:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     if args.house is None and (args.labels is not None or args.start_deg is not None):
         raise ConfigError("--labels and --start-deg go with --house.")
+    watchers.check(args)
     get_profile(args.profile)
     get_noise(args.noise)
     if args.semantics not in SEMANTICS:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interface import Action, Agent
 from stubborn.agent import StubbornAgent
 from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
@@ -38,6 +41,8 @@ LEGEND: tuple[tuple[str, Colour], ...] = (
     ("plan", PLAN),
     ("goal", GOAL),
 )
+GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
+"""What the pale colours mean, where there is room to say so."""
 
 
 def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -> NDArray[np.uint8]:
@@ -54,6 +59,106 @@ def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False
         window = agent.navmap.frame.window_at(float(x_m.mean()), float(y_m.mean()), edge_cells)
     view = agent.navmap.view(window)
     canvas = _Canvas(_paint_layers(view, agent.config.target.candidate_score), view.frame, size_px)
+    _draw_intention(canvas, agent, pose)
+    canvas.robot(pose, agent.robot.radius_m)
+    caption = f"{agent.goal}, step {agent.step}"
+    return np.hstack([canvas.image, _legend(size_px, caption)])
+
+
+class BeliefPainter:
+    """A film of what an agent believes: the picture stays where it is and grows in strides, so that it can be followed.
+
+    Called once a step by whoever shows the map; a new episode needs no word, it is noticed by the new map.
+    """
+
+    legend = (*LEGEND, *GROUND)
+    """Name and colour of all that is drawn."""
+
+    def __init__(self, agent: StubbornAgent, *, show_plan: bool = True) -> None:
+        self.agent = agent
+        self.show_plan = show_plan
+        """Whether the way ahead and its goal are drawn."""
+        self._navmap: NavMap | None = None
+        self._middle_m, self._side_m = (0.0, 0.0), _SMALLEST_SIDE_M
+
+    def paint(self, size_px: int) -> NDArray[np.uint8]:
+        """The map as it stands, uint8 RGB (size_px, size_px, 3); the start's heading is up."""
+        agent = self.agent
+        if agent.navmap is not self._navmap:
+            self._navmap, self._side_m = agent.navmap, _SMALLEST_SIDE_M
+            self._middle_m = (0.0, 0.0)
+        pose = agent.pose or PlanarPose(0.0, 0.0, 0.0)
+        self._frame_all(pose)
+        cells = round(self._side_m / agent.config.cell_m)
+        view = agent.navmap.view(agent.navmap.frame.window_at(*self._middle_m, cells))
+        canvas = _Canvas(_paint_layers(view, agent.config.target.candidate_score), view.frame, size_px)
+        if self.show_plan:
+            _draw_intention(canvas, agent, pose)
+        canvas.robot(pose, agent.robot.radius_m)
+        canvas.scale_bar()
+        return canvas.image
+
+    def words(self) -> str:
+        """What the agent is about."""
+        return describe_intention(self.agent)
+
+    def _frame_all(self, pose: PlanarPose) -> None:
+        """Widen the picture when what is known, or the robot, comes near its edge."""
+        low, high = _extent_xy_m(self.agent.navmap, pose)
+        half_m = 0.5 * self._side_m - _EDGE_M
+        if np.all(low >= np.subtract(self._middle_m, half_m)) and np.all(high <= np.add(self._middle_m, half_m)):
+            return
+        side_m = float((high - low).max()) + 2.0 * (_EDGE_M + _STRIDE_M)
+        frame = self.agent.navmap.frame
+        self._side_m = min(math.ceil(side_m / _STRIDE_M) * _STRIDE_M, min(frame.shape) * frame.cell_m)
+        middle = np.round(0.5 * (low + high))
+        self._middle_m = float(middle[0]), float(middle[1])
+
+
+def painter_of(agent: Agent) -> BeliefPainter | None:
+    """Who draws this agent's map; None for an agent that has none."""
+    return BeliefPainter(agent) if isinstance(agent, StubbornAgent) else None
+
+
+_SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
+
+
+def _extent_xy_m(navmap: NavMap, pose: PlanarPose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Smallest and largest x and y of what was seen and of the robot."""
+    view = navmap.view(navmap.known_window(margin_cells=0))
+    seen = (view.frames_in_view > 0) | view.seen_obstacle
+    rows, cols = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    if rows.size == 0:
+        return np.array(pose[:2]), np.array(pose[:2])
+    x_m, y_m = view.frame.centres(rows[[0, -1]], cols[[0, -1]])
+    low, high = np.stack([x_m, y_m], axis=1)
+    return np.minimum(low, pose[:2]), np.maximum(high, pose[:2])
+
+
+def describe_intention(agent: StubbornAgent) -> str:
+    """What the agent did last, in a few words."""
+    if agent.last_action is None:
+        return "about to start"
+    if agent.last_action is Action.STOP:
+        return "stops: the target is in reach"
+    if agent.approach is not None:
+        return "looks at a candidate" if agent.approach.route is None else "goes to a candidate"
+    if agent.route is None:
+        return "gets unstuck or looks around"
+    return (
+        "explores: to a corner" if agent.explorer.goal_xy_m(agent.route.plan.frame) else "explores: to the next place"
+    )
+
+
+def trace_xy_m(plan: Plan, pose: PlanarPose) -> NDArray[np.float64]:
+    """The way from the robot down the plan, (n, 2) metres."""
+    cells = trace(plan, pose, max_cells=plan.frame.shape[0] * 6)
+    x_m, y_m = plan.frame.centres([c[0] for c in cells], [c[1] for c in cells])
+    return np.stack([x_m, y_m], axis=1)
+
+
+def _draw_intention(canvas: _Canvas, agent: StubbornAgent, pose: PlanarPose) -> None:
+    """The way ahead, the cells that would end it, and what it is for: a corner or a candidate."""
     if agent.route is not None:
         plan = agent.route.plan
         canvas.outline(plan.goal, plan.frame, GOAL)
@@ -62,16 +167,9 @@ def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False
         goal_xy_m = agent.explorer.goal_xy_m(agent.route.plan.frame)
         if goal_xy_m is not None:
             canvas.cross(goal_xy_m, GOAL)
-    canvas.robot(pose, agent.robot.radius_m)
-    caption = f"{agent.goal}, step {agent.step}"
-    return np.hstack([canvas.image, _legend(size_px, caption)])
-
-
-def trace_xy_m(plan: Plan, pose: PlanarPose) -> NDArray[np.float64]:
-    """The way from the robot down the plan, (n, 2) metres."""
-    cells = trace(plan, pose, max_cells=plan.frame.shape[0] * 6)
-    x_m, y_m = plan.frame.centres([c[0] for c in cells], [c[1] for c in cells])
-    return np.stack([x_m, y_m], axis=1)
+    if agent.approach is not None:
+        x_m, y_m = agent.navmap.frame.centres(*agent.approach.cell)
+        canvas.ring((float(x_m), float(y_m)), CANDIDATE)
 
 
 def _paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
@@ -91,6 +189,10 @@ def _paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
     ):
         image[mask] = colour
     return image
+
+
+_MARK_PX = 12
+"""Half the size of a mark."""
 
 
 class _Canvas:
@@ -116,7 +218,22 @@ class _Canvas:
         cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, colour, width_px, cv2.LINE_AA)
 
     def cross(self, xy_m: tuple[float, float], colour: Colour) -> None:
-        cv2.drawMarker(self.image, self.pixel(*xy_m), colour, cv2.MARKER_CROSS, 18, 3, cv2.LINE_AA)
+        """A place; one beyond the picture is marked at its edge."""
+        cv2.drawMarker(self.image, self._held_inside(xy_m), colour, cv2.MARKER_CROSS, 18, 3, cv2.LINE_AA)
+
+    def ring(self, xy_m: tuple[float, float], colour: Colour) -> None:
+        cv2.circle(self.image, self._held_inside(xy_m), 11, colour, 2, cv2.LINE_AA)
+
+    def scale_bar(self) -> None:
+        """One metre, in the lower left corner."""
+        bottom, metre_px = self.image.shape[0] - 10, round(self.scale / self.frame.cell_m)
+        cv2.line(self.image, (10, bottom), (10 + metre_px, bottom), ROBOT, 2)
+        cv2.putText(self.image, "1 m", (10, bottom - 6), cv2.FONT_HERSHEY_SIMPLEX, 0.45, ROBOT, 1, cv2.LINE_AA)
+
+    def _held_inside(self, xy_m: tuple[float, float]) -> tuple[int, int]:
+        u, v = self.pixel(*xy_m)
+        edge_px = self.image.shape[0] - 1 - _MARK_PX
+        return min(max(u, _MARK_PX), edge_px), min(max(v, _MARK_PX), edge_px)
 
     def outline(self, mask: NDArray[np.bool_], frame: GridFrame, colour: Colour) -> None:
         contours, _ = cv2.findContours(mask.view(np.uint8).copy(), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
@@ -131,9 +248,8 @@ class _Canvas:
         middle = self.pixel(pose.x_m, pose.y_m)
         cv2.circle(self.image, middle, radius_px, (255, 255, 255), -1, cv2.LINE_AA)
         cv2.circle(self.image, middle, radius_px, ROBOT, 2, cv2.LINE_AA)
-        cv2.arrowedLine(
-            self.image, middle, self.pixel(*pose.ahead(2.0 * radius_m)), ROBOT, 2, cv2.LINE_AA, tipLength=0.35
-        )
+        ahead_m = max(2.0 * radius_m, 16.0 * self.frame.cell_m / self.scale)  # 16 px at least
+        cv2.arrowedLine(self.image, middle, self.pixel(*pose.ahead(ahead_m)), ROBOT, 2, cv2.LINE_AA, tipLength=0.35)
 
 
 def _legend(height_px: int, caption: str) -> NDArray[np.uint8]:
