@@ -115,6 +115,8 @@ class NaiveBayesVerifier:
             content = json.loads(file.read_text(encoding="utf-8"))
             by_category = {name: NaiveBayes.from_dict(each) for name, each in content["categories"].items()}
             return cls(by_category, NaiveBayes.from_dict(content["pooled"]))
+        except OSError as error:
+            raise ConfigError(f"Verifier file '{file}' cannot be read: {error.strerror}.") from None
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise ConfigError(f"Verifier file '{file}' is not what tools/train_verifier.py writes: {error}") from None
 
@@ -129,12 +131,18 @@ class NaiveBayesVerifier:
         return self.probability(goal, features) > self.least_probability
 
 
-def verifier_for(semantics: str) -> Verifier:
+def verifier_for(semantics: str, file: Path | None = None) -> Verifier:
     """The verifier of a kind of semantics: of ground truth the one that accepts all, else the shipped one.
 
+    Args:
+        semantics: the kind.
+        file: parameters in place of the shipped ones.
+
     Raises:
-        ConfigError: there are no parameters for this kind.
+        ConfigError: there are no parameters for this kind, or the file holds none.
     """
+    if file is not None:
+        return NaiveBayesVerifier.read(file)
     if semantics in UNVERIFIED:
         return AcceptAll()
     file = FOLDER / f"{semantics}.json"

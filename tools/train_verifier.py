@@ -16,10 +16,11 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -36,8 +37,7 @@ from sim.interface import GOAL_CATEGORIES, Action, ConfigError
 from sim.paths import code_hash
 from sim.results import RunDirectory
 from sim.rollout import episode_seed
-from sim.run import SEMANTICS, make_segmenter
-from sim.semantics import NoisyConfig
+from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.target import TargetConfig
@@ -55,6 +55,8 @@ class Args:
 
     semantics: str = "noisy"
     """Whose mistakes are learned: a kind of `sim.run` that leaves something to verify."""
+    weights: Path | None = None
+    """With --semantics rednet: your network in place of the shipped one."""
     split: str = "train"
     """A shipped split, or a folder laid out like one."""
     episodes: int = 400
@@ -108,7 +110,7 @@ def main(args: Args) -> int:
     env = ObjectNavEnv(
         split=args.split,
         sensors=("depth", *SEMANTICS[args.semantics]),
-        truth=("geom",) if args.semantics == "noisy" else (),
+        truth=truth_needed(args.semantics),
         max_steps=args.max_steps,
     )
     try:
@@ -136,7 +138,7 @@ def log_config(args: Args, split: Split) -> dict[str, Any]:
     """
     return {
         "semantics": args.semantics,
-        "semantics_config": asdict(NoisyConfig()) if args.semantics == "noisy" else None,
+        **describe_semantics(args.semantics, args.weights),
         "seed": args.seed,
         "max_steps": args.max_steps,
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
@@ -151,7 +153,7 @@ def play(args: Args, env: ObjectNavEnv, run: RunDirectory) -> list[dict[str, Any
         "stubborn",
         camera=env.camera_model,
         robot=env.robot_model,
-        segmenter=make_segmenter(args.semantics, env),
+        segmenter=make_segmenter(args.semantics, env, weights=args.weights, threads=os.cpu_count() or 1),
         verifier=witness,
         target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
     )
@@ -312,7 +314,8 @@ def report(content: Mapping[str, Any]) -> None:
 
 
 def _check(args: Args) -> None:
-    if args.semantics not in SEMANTICS or args.semantics in UNVERIFIED:
+    check_semantics(args.semantics, args.weights)
+    if args.semantics in UNVERIFIED:
         kinds = [kind for kind in SEMANTICS if kind not in UNVERIFIED]
         raise ConfigError(f"--semantics '{args.semantics}' has no verifier to fit. There is: {', '.join(kinds)}.")
     if args.episodes < 1 or args.max_steps < 1 or args.least_of_either < 2:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from sim import segmenters
 from sim.env import ObjectNavEnv
 from sim.episodes import Episode, write_split
 from sim.interface import ConfigError
@@ -72,7 +73,7 @@ def test_a_log_of_another_split_code_or_detector_is_refused_and_the_difference_n
         (other / "seats.xml").write_text((split / "seats.xml").read_text() + "\n")
         args = replace(args, split=str(other))
     elif change == "semantics_config":
-        monkeypatch.setattr(train_verifier, "NoisyConfig", functools.partial(NoisyConfig, flicker_rate=0.5))
+        monkeypatch.setattr(segmenters, "NoisyConfig", functools.partial(NoisyConfig, flicker_rate=0.5))
     elif change == "code":
         monkeypatch.setattr(train_verifier, "code_hash", lambda **_: "another")
     else:
@@ -104,7 +105,7 @@ def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Pa
 
     monkeypatch.setattr(train_verifier.Witness, "accepts", spy)
     monkeypatch.setattr(train_verifier, "SEMANTICS", {"noisy": GroundTruthSegmenter.sensors})  # sharp outlines
-    monkeypatch.setattr(train_verifier, "make_segmenter", lambda semantics, env: GroundTruthSegmenter())
+    monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
     played(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
 
@@ -121,5 +122,5 @@ def test_an_outing_cut_short_leaves_whole_lines(split: Path, tmp_path: Path):
 
 
 def test_semantics_without_anything_to_verify_are_refused():
-    with pytest.raises(ConfigError, match=r"'gt' has no verifier to fit\. There is: noisy"):
+    with pytest.raises(ConfigError, match=r"'gt' has no verifier to fit\. There is: noisy, rednet"):
         train_verifier.main(train_verifier.Args(semantics="gt"))
