@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import math
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -22,25 +23,24 @@ from sim import cli, tables, watchers
 from sim.env import ObjectNavEnv
 from sim.episodes import Episode
 from sim.errors import EpisodeError
-from sim.interface import Agent, ConfigError, Segmenter
+from sim.executors import make_executor
+from sim.interface import Agent, ConfigError
 from sim.oracle import Oracle
+from sim.parallel import Share
 from sim.paths import code_hash
 from sim.pose import Pose
 from sim.results import RunDirectory
 from sim.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.runner import PlayerSpec, run_items
-from sim.semantics import NoisyConfig, NoisySegmenter
+from sim.runner import PlayerSpec
+from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
 from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
 from sim.watching import WATCHED_IMAGES
 from stubborn import agents, draw
-from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.verification import verifier_for
 
 ALL_SENSORS = ("rgb", "depth", "semantic")
-SEMANTICS = {"gt": GroundTruthSegmenter.sensors, "noisy": NoisySegmenter.sensors}
-"""Where segmentation can come from, and the image sensors that it reads beside depth."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,11 @@ class Args:
     agent: str = "stubborn"
     """Who plays: a name of --list-agents, or your own as package.module:factory."""
     semantics: str = "gt"
-    """Where segmentation comes from: gt (ground truth) or noisy (ground truth with a network's mistakes)."""
+    """Where segmentation comes from: gt (ground truth), noisy (ground truth with a network's mistakes) or rednet."""
+    weights: Path | None = None
+    """With --semantics rednet: your network in place of the shipped one."""
+    verifier: Path | None = None
+    """Parameters of verification (tools/train_verifier.py) in place of those shipped for this segmentation."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     house: Path | None = None
@@ -66,7 +70,13 @@ class Args:
     seed: int = 0
     """Drives agents, noise and, with --house, starts and goals."""
     workers: int = 1
-    """Processes."""
+    """Processes, on this machine or over the cluster."""
+    executor: str = "local"
+    """Where: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
+    address: str | None = None
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
+    shard: str | None = None
+    """i/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see tools/merge_runs.py."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
     noise: str = "none"
@@ -97,6 +107,9 @@ def main(args: Args) -> int:
     check(args)
     episodes, split = plan_episodes(args)
     args = replace(args, out=args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
+    if args.shard is not None and args.out is not None:
+        share = Share.parse(args.shard)
+        episodes, args = share.of(episodes), replace(args, out=args.out / share.folder)
     lines, summary = play_missing(args, episodes, split, console)
     tables.print_results(console, lines, summary)
     return 1 if summary["errors"] else 0
@@ -117,6 +130,7 @@ def play_missing(
         ConfigError: nothing can be written there, or a run with other options is there.
     """
     assert args.out is not None
+    executor = make_executor(args.executor, workers=args.workers, address=args.address)
     config = config_of(args, split)
     run = RunDirectory(args.out, config)
     try:
@@ -136,7 +150,7 @@ def play_missing(
                 soft_wrap=True,
             )
         spec = PlayerSpec("sim.run:EpisodePlayer", args)
-        lines = run_items(spec, todo, workers=args.workers, on_death=lambda episode: _death_line(args, episode))
+        lines = executor.run(spec, todo, on_death=lambda episode: _death_line(args, episode))
         for line in () if not todo else tables.with_progress(console, lines, total=len(todo)):
             run.append(line)
         return run.lines, run.write_summary({"split": split})
@@ -188,16 +202,12 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     if args.agent == "oracle":
         return Oracle(env)
     robot = env.robot_model
-    segmenter = make_segmenter(args.semantics, env)
+    threads = max(1, (os.cpu_count() or 1) // args.workers)
+    segmenter = make_segmenter(args.semantics, env, weights=args.weights, threads=threads)
     if args.agent in agents.NAMES:
-        verifier = verifier_for(args.semantics)
+        verifier = verifier_for(args.semantics, args.verifier)
         return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)
     return _load_factory(args.agent)(camera=env.camera_model, robot=robot, segmenter=segmenter)
-
-
-def make_segmenter(semantics: str, env: ObjectNavEnv) -> Segmenter:
-    """The source of segmentation of that name, one of `SEMANTICS`, for this environment."""
-    return NoisySegmenter(env) if semantics == "noisy" else GroundTruthSegmenter()
 
 
 class EpisodePlayer:
@@ -244,7 +254,7 @@ class EpisodePlayer:
 
 def _truth(args: Args) -> tuple[str, ...]:
     """Images that are rendered beside what the agent reads: for a noisy detector, and for who looks on."""
-    return ("geom",) * (args.semantics == "noisy") + WATCHED_IMAGES * watchers.any_asked(args)
+    return truth_needed(args.semantics) + WATCHED_IMAGES * watchers.any_asked(args)
 
 
 def _sensors(args: Args) -> tuple[str, ...]:
@@ -307,11 +317,14 @@ def check(args: Args) -> None:
     if args.house is None and (args.labels is not None or args.start_deg is not None):
         raise ConfigError("--labels and --start-deg go with --house.")
     watchers.check(args)
+    if args.shard is not None:
+        Share.parse(args.shard)
+        if args.out is None:
+            raise ConfigError(f"--shard {args.shard} needs --out: one folder for all shards.")
     get_profile(args.profile)
     get_noise(args.noise)
-    if args.semantics not in SEMANTICS:
-        raise ConfigError(f"Unknown --semantics '{args.semantics}'. There is: {', '.join(SEMANTICS)}.")
-    verifier_for(args.semantics)
+    check_semantics(args.semantics, args.weights)
+    verifier_for(args.semantics, args.verifier)
     if args.agent not in agent_names():
         _load_factory(args.agent)
 
@@ -333,8 +346,7 @@ def config_of(args: Args, split: dict[str, Any]) -> dict[str, Any]:
     options = {key: str(value) if isinstance(value, Path) else value for key, value in asdict(args).items()}
     del options["list_agents"]
     noise: dict[str, Any] = {"noise_config": asdict(get_noise(args.noise))}
-    if args.semantics == "noisy":
-        noise["semantics_config"] = asdict(NoisyConfig())
+    noise |= describe_semantics(args.semantics, args.weights)
     return options | noise | {"split_identity": split, "versions": _versions()}
 
 
