@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: setup system-libraries run test test-all lint types clean
+.PHONY: setup system-libraries run test test-all lint types docs clean
 
 setup: system-libraries $(STAMP)
 
@@ -35,6 +35,14 @@ lint: setup
 
 types: setup
 	$(BIN)/pyright
+
+docs: setup $(VENV)/.docs-installed
+	@echo "== the documentation site: build/site/index.html"
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+$(VENV)/.docs-installed: pyproject.toml constraints.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	@touch $@
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache

@@ -116,16 +116,14 @@ class RobotModel:
 Observation = Mapping[str, NDArray]
 """What an agent sees at one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
 
-========== ============ ========= =====================================================================
-key        shape        dtype     meaning
-========== ============ ========= =====================================================================
-rgb        (h, w, 3)    uint8     colour
-depth      (h, w)       float32   metres along the optical axis; 0: none or < 0.5 m; 5.0: 5 m or farther
-semantic   (h, w)       uint8     mpcat40 id
-gps        (2,)         float32   metres forward and left of the start pose
-compass    (1,)         float32   yaw against the start heading, in (-pi, pi]
-objectgoal (1,)         int64     index into `GOAL_CATEGORIES`
-========== ============ ========= =====================================================================
+| key | shape | dtype | meaning |
+|---|---|---|---|
+| rgb | (h, w, 3) | uint8 | colour |
+| depth | (h, w) | float32 | metres along the optical axis; 0: none or < 0.5 m; 5.0: 5 m or farther |
+| semantic | (h, w) | uint8 | mpcat40 id |
+| gps | (2,) | float32 | metres forward and left of the start pose |
+| compass | (1,) | float32 | yaw against the start heading, in (-pi, pi] |
+| objectgoal | (1,) | int64 | index into `GOAL_CATEGORIES` |
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")

@@ -1,0 +1,37 @@
+"""Hooks of MkDocs (`mkdocs.yml`): what the built site must keep, told as warnings, which `--strict` makes errors.
+
+The site asks no other host for anything: whoever reads it may be offline, and nobody is told who reads it. Links that a
+reader follows are another matter.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+_LOG = logging.getLogger("mkdocs.hooks.site")
+_TAG = re.compile(r"<(script|link|img|iframe|source|video|audio|object|embed)\b[^>]*>", re.IGNORECASE)
+_ADDRESS = re.compile(r"""\b(?:src|href|data|srcset|poster)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""", re.IGNORECASE)
+_IN_STYLE = re.compile(r"""(?:url\(|@import)\s*["']?((?:https?:)?//[^"')\s]+)""", re.IGNORECASE)
+_MERMAID = re.compile(r"""<(?:pre|div)[^>]*class=["'][^"']*\bmermaid\b""")
+
+
+def fetched_from_elsewhere(page: str) -> Iterator[str]:
+    """Addresses on other hosts that a browser would fetch by itself for this text of HTML or CSS."""
+    for tag in _TAG.finditer(page):
+        if 'rel="canonical"' not in tag[0]:
+            yield from (found[1] for found in _ADDRESS.finditer(tag[0]))
+    yield from (found[1] for found in _IN_STYLE.finditer(page))
+    if _MERMAID.search(page):
+        yield "https://unpkg.com/mermaid (the theme's script draws class mermaid with it: use an SVG file)"
+
+
+def on_post_build(config: Any) -> None:
+    """Warn of every page that would ask another host."""
+    site = Path(config["site_dir"])
+    for file in sorted([*site.rglob("*.html"), *site.rglob("*.css")]):
+        for address in sorted(set(fetched_from_elsewhere(file.read_text(encoding="utf-8")))):
+            _LOG.warning("%s would fetch %s", file.relative_to(site), address)
