@@ -5,5 +5,9 @@ from setuptools import find_packages, setup
 setup(
     packages=[*find_packages(include=["sim*", "stubborn*"]), "sim.assets"],
     package_dir={"sim.assets": "assets"},
-    package_data={"sim.assets": ["mjcf_houses/**/*"], "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"]},
+    package_data={
+        "sim.assets": ["mjcf_houses/**/*"],
+        "sim.report": ["page/*"],
+        "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
+    },
 )

@@ -16,20 +16,8 @@ import tyro
 
 from sim import cli, tables
 from sim.comparison import MIN_PAIRS, Run, read_run, require_same_episodes
-from sim.paper_tables import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric
+from sim.report.figures import METRICS
 from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
-
-METRICS = (
-    SUCCESS,
-    SPL,
-    Metric("soft SPL", "soft_spl", digits=3),
-    Metric("distance to goal, m", "distance_to_goal", digits=2),
-    EXPLORED,
-    TRAPPED,
-    COLLISIONS,
-    STEPS,
-    Metric("path, m", "path_length", digits=2),
-)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from sim import cli, tables
-from sim.comparison import Run, read_run
-from sim.episodes import Split, load_split, one_house
+from sim.comparison import read_run
 from sim.failures import cause_of_failure, first_looping_step, first_trapped_step
 from sim.ground_truth import GroundTruth
 from sim.interface import ConfigError
 from sim.metrics import EXPLORED_SHARE
 from sim.planframe import PlanFrame
+from sim.report.drawings import split_of
 from sim.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.world import World
 
@@ -83,21 +83,6 @@ def main(args: Args) -> int:
 
 def _tell(console: Console, words: str) -> None:
     console.print(words, highlight=False, markup=False, soft_wrap=True)
-
-
-def split_of(run: Run) -> Split:
-    """The split or the house that a run was played in.
-
-    Raises:
-        ConfigError: it is another version now.
-    """
-    config = run.config
-    split = (
-        one_house(config["house"], labels=config.get("labels")) if config.get("house") else load_split(config["split"])
-    )
-    if split.sha256 != config["split_identity"]["sha256"]:
-        raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than is here now.")
-    return split
 
 
 def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:

@@ -1,0 +1,329 @@
+"use strict";
+// The table (sort, filter, expand) and the pictures of the episodes. All text goes in as textContent.
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const table = document.getElementById("table");
+  const body = table.tBodies[0];
+  const rows = [...body.rows];
+  const filters = document.getElementById("filters");
+  const ACTIONS = ["STOP", "forward", "turn left", "turn right"];
+  const PIECES = 14;
+  let sorted = { column: -1, down: false };
+
+  function element(namespace, name, attributes, children) {
+    const made = document.createElementNS(namespace, name);
+    for (const [key, value] of Object.entries(attributes || {})) made.setAttribute(key, value);
+    made.append(...children);
+    return made;
+  }
+  const svg = (name, attributes, ...children) => element("http://www.w3.org/2000/svg", name, attributes, children);
+  const html = (name, attributes, ...children) => element("http://www.w3.org/1999/xhtml", name, attributes, children);
+  const plain = (name) => name.replaceAll("_", " ");
+
+  // ---- the table
+  function value(row, column) {
+    const cell = row.cells[column];
+    if (cell.dataset.v === undefined) return cell.textContent.trim().toLowerCase();
+    return cell.dataset.v === "" ? null : Number(cell.dataset.v);
+  }
+
+  function compare(a, b) {
+    if (a === null || b === null) return (a === null) - (b === null);
+    return typeof a === "number" ? a - b : a.localeCompare(b, "en", { numeric: true });
+  }
+
+  function sort(column, down) {
+    sorted = { column, down };
+    const keyed = rows.map((row) => [value(row, column), row]);
+    keyed.sort(([a, rowA], [b, rowB]) => {
+      const order = compare(a, b);
+      const known = a !== null && b !== null;  // what has no value stays at the end either way
+      return (down && known ? -order : order) || rowA.dataset.index - rowB.dataset.index;
+    });
+    const fragment = document.createDocumentFragment();
+    for (const [, row] of keyed) {
+      const detail = detailOf(row);
+      fragment.append(row, ...(detail ? [detail] : []));
+    }
+    body.append(fragment);
+    [...table.tHead.rows[0].cells].forEach((cell, i) =>
+      cell.setAttribute("aria-sort", i !== column ? "none" : down ? "descending" : "ascending"));
+    filters.elements.sort.value = String(column);
+  }
+
+  function fits(row, wanted) {
+    const { goal, house, outcome, collisions } = row.dataset;
+    const words = `${row.cells[0].textContent} ${plain(goal)} ${house} ${plain(outcome)}`.toLowerCase();
+    return (!wanted.goal || wanted.goal === goal) && (!wanted.house || wanted.house === house)
+      && (!wanted.outcome || outcome.split(" ").includes(wanted.outcome))
+      && (!wanted.collided || Number(collisions) > 0)
+      && wanted.words.every((word) => words.includes(word));
+  }
+
+  function filter() {
+    const form = filters.elements;
+    const wanted = {
+      goal: form.goal.value, house: form.house.value, outcome: form.outcome.value, collided: form.collided.checked,
+      words: plain(form.text.value).toLowerCase().split(/\s+/).filter(Boolean),
+    };
+    let shown = 0;
+    for (const row of rows) {
+      row.hidden = !fits(row, wanted);
+      const detail = detailOf(row);
+      if (detail) detail.hidden = row.hidden;
+      shown += !row.hidden;
+    }
+    document.getElementById("count").textContent = `${shown} of ${rows.length} episodes`;
+    document.getElementById("none").hidden = shown > 0;
+  }
+
+  function detailOf(row) {
+    const next = row.nextElementSibling;
+    return next && next.classList.contains("detail") && next.dataset.of === row.dataset.index ? next : null;
+  }
+
+  function toggle(row, open = !detailOf(row)) {
+    const detail = detailOf(row);
+    if (open === Boolean(detail)) return;
+    if (detail) detail.remove();
+    else row.after(makeDetail(row));
+    row.querySelector(".open").setAttribute("aria-expanded", String(open));
+    const id = data.episodes[row.dataset.index].id;
+    if (open) history.replaceState(null, "", `#episode=${encodeURIComponent(id)}`);
+  }
+
+  // ---- the pictures
+  function makeDetail(row) {
+    const episode = data.episodes[row.dataset.index];
+    const sides = html("div", { class: "sides" });
+    data.runs.forEach((label, run) => sides.append(makeSide(episode, run, label)));
+    const cell = html("td", { colspan: row.cells.length }, html("div", {}, makeNumbers(row), sides));
+    return html("tr", { class: "detail", "data-of": row.dataset.index }, cell);
+  }
+
+  // What the columns hold that a narrow window has no room for.
+  function makeNumbers(row) {
+    const numbers = html("p", { class: "facts only-narrow" });
+    [...table.tHead.rows[0].cells].forEach((head, i) => {
+      if (!head.classList.contains("second")) return;
+      const key = html("span", { class: "key" }, head.textContent);
+      numbers.append(html("span", {}, key, ` ${row.cells[i].textContent}`));
+    });
+    return numbers;
+  }
+
+  function makeSide(episode, run, label) {
+    const side = html("div", { class: "way" });
+    if (label) side.append(html("h3", {}, html("span", { class: "badge" }, label), ` ${plain(episode.outcomes[run])}`));
+    const why = html("p", { class: "why" }, episode.words[run]);
+    const links = html("p", { class: "why" });
+    if (episode.videos[run]) links.append(html("a", { href: episode.videos[run] }, "Watch the video"));
+    const way = episode.ways && episode.ways[run] ? decode(episode.ways[run]) : null;
+    if (!way) {
+      side.append(html("div", {}, why, html("p", { class: "small" }, data.why_no_picture), links));
+      return side;
+    }
+    const picture = makePicture(episode, way);
+    const chart = makeChart(way);
+    const told = html("output", {});
+    const slider = html("input", { type: "range", min: 0, max: way.n, value: way.n, "aria-label": "Step of the episode" });
+    const show = (step) => {
+      slider.value = step;
+      picture.show(step);
+      chart.show(step);
+      told.textContent = tell(way, step);
+    };
+    slider.addEventListener("input", () => show(Number(slider.value)));
+    const marks = html("ol", { class: "marks" });
+    way.marks.forEach(([, step, until, words], i) => {
+      const span = until === null ? `step ${step}` : `steps ${step} to ${until}`;
+      const button = html("button", { type: "button", class: "link" }, `${i + 1}. ${span}: ${words}`);
+      button.addEventListener("click", () => show(until === null ? step : until));
+      marks.append(html("li", {}, button));
+    });
+    const scrub = html("div", { class: "scrub" }, chart.svg, slider, told);
+    side.append(html("div", {}, picture.svg, makeLegend(episode, way)), html("div", {}, why, marks, scrub, links));
+    show(way.n);
+    return side;
+  }
+
+  function decode(way) {
+    const sum = (steps) => { let total = 0; return steps.map((step) => (total += step)); };
+    const x = sum(way.x), y = sum(way.y);
+    return { ...way, x, y, a: sum(way.a), n: way.actions.length, stops: new Set(way.stopped) };
+  }
+
+  function tell(way, step) {
+    const parts = [`Step ${step} of ${way.n}`];
+    if (step > 0) {
+      const hit = way.stops.has(step - 1) ? ", stopped by a contact" : "";
+      parts.push(`${ACTIONS[way.actions[step - 1]]}${hit}`);
+    }
+    parts.push(way.d[step] === null ? "no way to the goal" : `${(way.d[step] / 10).toFixed(1)} m to go`);
+    if (way.seen.some(([first, last]) => step >= first && step <= last)) parts.push("goal in view");
+    return `${parts.join("; ")}.`;
+  }
+
+  const points = (way, from, to) => {
+    const found = [];
+    for (let i = from; i <= to; i++) found.push(`${way.x[i]},${way.y[i]}`);
+    return found.join(" ");
+  };
+
+  function makePicture(episode, way) {
+    const plan = data.plans[episode.plan];
+    const [width, height] = plan ? plan.size : episode.size;
+    const unit = Math.max(width, height) / 100;
+    const name = `Plan of the house with the way of the robot in ${episode.id}`;
+    const picture = svg("svg", { class: "plan", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": name });
+    if (plan) drawPlan(picture, plan, episode, unit);
+    if (episode.shortest && episode.shortest.length) {
+      picture.append(svg("polyline", { class: "shortest", points: episode.shortest.join(" ") }));
+    }
+    for (const [kind, step, until] of way.marks) {
+      if (until !== null) picture.append(svg("polyline", { class: `wrong ${kind}`, points: points(way, step, until) }));
+    }
+    const trail = drawTrail(picture, way);
+    for (const [step, x, y] of way.hits) drawHit(picture, x, y, unit, `stopped by a contact in step ${step + 1}`);
+    picture.append(svg("circle", { class: "start", cx: way.x[0], cy: way.y[0], r: 1.1 * unit }));
+    drawMarks(picture, way, unit);
+    const nose = svg("path", { d: `M0 0H${way.robot}` });
+    const robot = svg("g", { class: "robot" }, svg("circle", { r: way.robot }), nose);
+    picture.append(robot);
+    const show = (step) => {
+      robot.setAttribute("transform", `translate(${way.x[step]} ${way.y[step]}) rotate(${way.a[step]})`);
+      trail(step);
+    };
+    return { svg: picture, show };
+  }
+
+  function drawPlan(picture, plan, episode, unit) {
+    for (const [x, y, width, height] of plan.floor) picture.append(svg("rect", { class: "floor", x, y, width, height }));
+    const late = [];
+    for (const [category, name, d] of plan.shapes) {
+      const structure = ["wall", "door", "window", "column"].includes(category);
+      const goal = category === episode.goal;
+      const shape = svg("path", { class: goal ? "goal" : structure ? category : "thing", d });
+      shape.append(svg("title", {}, plain(name)));
+      if (goal) late.push(shape);
+      else picture.append(shape);
+    }
+    for (const [name, x, y, width] of plan.rooms) {
+      const size = Math.min(2.1 * unit, (1.75 * width) / name.length);
+      picture.append(svg("text", { class: "room", x, y, "font-size": size }, name));
+    }
+    if (data.areas[episode.area]) picture.append(svg("path", { class: "area", d: data.areas[episode.area] }));
+    picture.append(...late);
+  }
+
+  function drawTrail(picture, way) {
+    const pieces = Array.from({ length: PIECES }, (_, i) => {
+      const share = `${(100 * (i + 0.5)) / PIECES}%`;
+      const colour = `color-mix(in oklab, rgb(var(--way-end)) ${share}, rgb(var(--way-begin)))`;
+      return svg("polyline", { class: "trail", style: `stroke:${colour}` });
+    });
+    picture.append(...pieces);
+    return (step) => pieces.forEach((piece, i) => {
+      const from = Math.floor((way.n * i) / PIECES), to = Math.min(step, Math.floor((way.n * (i + 1)) / PIECES));
+      piece.setAttribute("points", to > from ? points(way, from, to) : "");
+    });
+  }
+
+  function drawHit(picture, x, y, unit, words) {
+    const r = 0.8 * unit;
+    const d = `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
+    picture.append(svg("path", { class: "hit", d }, svg("title", {}, words)));
+  }
+
+  function drawMarks(picture, way, unit) {
+    const taken = [];
+    way.marks.forEach(([kind, step, , words], i) => {
+      let x = way.x[step], y = way.y[step] - 2.6 * unit;
+      while (taken.some(([u, v]) => Math.hypot(u - x, v - y) < 3.2 * unit)) x += 3.3 * unit;
+      taken.push([x, y]);
+      const label = svg("text", { x, y: y + 0.75 * unit, "font-size": 2.1 * unit }, String(i + 1));
+      const title = svg("title", {}, words);
+      picture.append(svg("g", { class: `mark ${kind}` }, svg("circle", { cx: x, cy: y, r: 1.55 * unit }), label, title));
+    });
+  }
+
+  function makeLegend(episode, way) {
+    const legend = html("ul", { class: "legend" });
+    const add = (words, ...shapes) => {
+      const swatch = svg("svg", { viewBox: "0 0 22 12", "aria-hidden": "true" }, ...shapes);
+      legend.append(html("li", {}, swatch, words));
+    };
+    const line = (attributes) => svg("path", { d: "M1 6H21", ...attributes });
+    const late = line({ class: "trail", style: "stroke:rgb(var(--way-end))", d: "M11 6H21" });
+    add("its way, early to late", line({ class: "trail", style: "stroke:rgb(var(--way-begin))", d: "M1 6H11" }), late);
+    if (episode.shortest && episode.shortest.length) add("shortest way", line({ class: "shortest" }));
+    if (way.hits.length) add("collision", svg("path", { class: "hit", d: "M7 2l8 8m0 -8l-8 8" }));
+    if (way.marks.some(([, , until]) => until !== null)) add("loop or trapped", line({ class: "wrong" }));
+    if (episode.plan) add(plain(episode.goal), svg("rect", { class: "goal", x: 4, y: 1, width: 14, height: 10 }));
+    if (data.areas[episode.area]) add("a STOP counts", svg("rect", { class: "area", x: 4, y: 1, width: 14, height: 10 }));
+    add("start", svg("circle", { class: "start", cx: 11, cy: 6, r: 4 }));
+    return legend;
+  }
+
+  function makeChart(way) {
+    const known = way.d.filter((d) => d !== null);
+    const top = Math.max(10, ...known);
+    const words = `Distance to the goal over ${way.n} steps, from ${(top / 10).toFixed(1)} m at the top to 0`;
+    const chart = svg("svg", { class: "chart", viewBox: `0 0 ${Math.max(1, way.n)} 100`, preserveAspectRatio: "none", role: "img", "aria-label": words });
+    chart.append(svg("title", {}, words));
+    for (const [first, last] of way.seen) {
+      chart.append(svg("rect", { class: "in-view", x: first, y: 0, width: last - first + 1, height: 100 }));
+    }
+    for (const step of way.stopped) chart.append(svg("path", { class: "tick", d: `M${step + 1} 100v-12` }));
+    let piece = [];
+    const flush = () => {
+      if (piece.length > 1) chart.append(svg("polyline", { points: piece.join(" ") }));
+      piece = [];
+    };
+    way.d.forEach((d, step) => (d === null ? flush() : piece.push(`${step},${96 - (92 * d) / top}`)));
+    flush();
+    const now = svg("path", { class: "now" });
+    chart.append(now);
+    return { svg: chart, show: (step) => now.setAttribute("d", `M${step} 0V100`) };
+  }
+
+  // ---- what the reader does
+  table.tHead.addEventListener("click", (event) => {
+    const button = event.target.closest("button");
+    if (!button) return;
+    const column = Number(button.dataset.column);
+    sort(column, sorted.column === column && !sorted.down);
+  });
+  body.addEventListener("click", (event) => {
+    const row = event.target.closest("tr[data-index]");
+    if (row && !event.target.closest("a") && !String(getSelection())) toggle(row);
+  });
+  filters.addEventListener("input", (event) => {
+    if (event.target.name === "sort") sort(Number(event.target.value), false);
+    else filter();
+  });
+  filters.addEventListener("reset", () => setTimeout(filter));
+  filters.addEventListener("submit", (event) => event.preventDefault());
+  document.addEventListener("click", (event) => {
+    const button = event.target.closest("[data-filter]");
+    if (!button) return;
+    filters.reset();
+    filters.elements[button.dataset.filter].value = button.dataset.value;
+    setTimeout(() => {
+      filter();
+      document.getElementById("episodes").scrollIntoView();
+      filters.elements[button.dataset.filter].focus({ preventScroll: true });
+    });
+  });
+
+  function followHash() {
+    const wanted = new URLSearchParams(location.hash.slice(1)).get("episode");
+    const row = wanted && rows.find((row) => data.episodes[row.dataset.index].id === wanted);
+    if (!row) return;
+    toggle(row, true);
+    row.scrollIntoView();
+  }
+  addEventListener("hashchange", followHash);
+  filter();  // a form that the browser filled in again
+  followHash();
+})();

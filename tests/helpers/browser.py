@@ -1,0 +1,123 @@
+"""A headless Chromium for tests of pages, driven over the WebDriver protocol (W3C) of Debian's chromium-driver."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import shutil
+import subprocess
+import urllib.error
+import urllib.request
+from pathlib import Path
+from typing import Any
+
+BINARIES = ("chromium", "chromium-browser", "google-chrome")
+ENTER = "\ue007"
+_ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+
+
+def missing() -> str | None:
+    """What is not installed, as a reason to skip; None: all is there."""
+    if not any(map(shutil.which, BINARIES)) or not shutil.which("chromedriver"):
+        return "no headless browser: apt-get install chromium chromium-driver"
+    return None
+
+
+class Browser:
+    """One window of a fixed size without a network; close it."""
+
+    def __init__(self, profile: Path, *, width: int = 1280, height: int = 900, dark: bool = False) -> None:
+        """Start driver and browser.
+
+        Args:
+            profile: an empty folder that the browser may fill.
+            width: of the page, pixels.
+            height: of the page, pixels.
+            dark: whether pages are told to be dark.
+        """
+        binary = next(path for path in map(shutil.which, BINARIES) if path)
+        self._driver = subprocess.Popen(
+            ["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+        )
+        assert self._driver.stdout is not None
+        ports = (re.search(r"started successfully on port (\d+)", line) for line in self._driver.stdout)
+        self._root = f"http://127.0.0.1:{next(port for port in ports if port)[1]}"
+        options = [
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--disable-dev-shm-usage",
+            "--host-resolver-rules=MAP * ~NOTFOUND",  # nothing is fetched from anywhere
+            f"--user-data-dir={profile}",
+            *(["--blink-settings=preferredColorScheme=0"] if dark else []),
+        ]
+        wanted = {
+            "goog:chromeOptions": {"binary": binary, "args": options},
+            "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
+        }
+        session = self._call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})
+        self._root += f"/session/{session['sessionId']}"
+        self.resize(width, height)
+
+    def resize(self, width: int, height: int) -> None:
+        """The size of the page, narrower than a window can be, too."""
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self._devtools("Emulation.setDeviceMetricsOverride", size)
+
+    def open(self, file: Path, fragment: str = "") -> None:
+        """Open a page from disk and wait until it is there; what was complained of or fetched before is forgotten."""
+        self.complaints()
+        self.requests()
+        self._call("POST", "/url", {"url": file.resolve().as_uri() + fragment})
+
+    def run(self, script: str, *values: object) -> Any:
+        """What a function body in JavaScript returns."""
+        return self._call("POST", "/execute/sync", {"script": script, "args": list(values)})
+
+    def click(self, css: str) -> None:
+        """Click the first element that fits, as a mouse does: it must be in reach."""
+        self._call("POST", f"/element/{self._find(css)}/click", {})
+
+    def keys(self, css: str, text: str) -> None:
+        """Type into the first element that fits."""
+        self._call("POST", f"/element/{self._find(css)}/value", {"text": text})
+
+    def complaints(self) -> list[str]:
+        """Errors and warnings of the console since the last time."""
+        log = self._call("POST", "/se/log", {"type": "browser"})
+        return [entry["message"] for entry in log if entry["level"] in {"SEVERE", "WARNING"}]
+
+    def requests(self) -> list[str]:
+        """What was fetched since the last time."""
+        log = [
+            json.loads(entry["message"])["message"] for entry in self._call("POST", "/se/log", {"type": "performance"})
+        ]
+        return [entry["params"]["request"]["url"] for entry in log if entry["method"] == "Network.requestWillBeSent"]
+
+    def screenshot(self, file: Path) -> None:
+        """Write what the window shows as a PNG."""
+        file.write_bytes(base64.b64decode(self._call("GET", "/screenshot")))
+
+    def close(self) -> None:
+        """End browser and driver."""
+        try:
+            self._call("DELETE", "")
+        finally:
+            self._driver.terminate()
+            self._driver.wait()
+
+    def _find(self, css: str) -> str:
+        return self._call("POST", "/element", {"using": "css selector", "value": css})[_ELEMENT]
+
+    def _devtools(self, command: str, parameters: dict[str, Any]) -> None:
+        self._call("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def _call(self, method: str, path: str, content: dict[str, Any] | None = None) -> Any:
+        body = None if content is None else json.dumps(content).encode()
+        request = urllib.request.Request(self._root + path, body, {"Content-Type": "application/json"}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise AssertionError(json.load(error)["value"]["message"].splitlines()[0]) from None
