@@ -22,9 +22,11 @@ from sim.interface import ConfigError
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""
 BOOTSTRAP_RESAMPLES = 10_000
+PLACES = ("executor", "address", "shard")
+"""Options that say where episodes are played, which changes no result."""
 WATCHED = ("video", "view", "rerun", "rerun_save")
 """Options that let somebody look on, which changes no result."""
-NOT_COMPARED = frozenset({"workers", "out", "versions", "codes", "episodes", "record", *WATCHED})
+NOT_COMPARED = frozenset({"workers", "out", "versions", "codes", "episodes", "record", *PLACES, *WATCHED})
 """Entries of the config in which a resumed run may differ; with more episodes it goes on to them."""
 
 

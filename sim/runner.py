@@ -1,24 +1,23 @@
-"""Many episodes over one or several processes.
+"""Many items of work over workers that may die: who gets what, what is tried again, when it is over.
 
-Work is a list of items; each gives one result line. Workers are spawned, never forked (OpenGL does not survive a
-fork), and keep the house they have loaded as long as there is an episode left in it. A worker that dies costs its
-episode one more try and nothing else.
+Each item gives one result line. A worker builds its player when its first item comes, and keeps the house it has
+loaded as long as there is an item left in it. A worker that dies costs its item one more try and nothing else. Where
+the workers are (`sim.executors`) is not known here.
 """
 
 from __future__ import annotations
 
-import contextlib
 import importlib
-import multiprocessing as mp
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection, wait
 from typing import Any, Generic, Protocol, TypeVar
 
 Line = dict[str, Any]
 ItemT = TypeVar("ItemT", bound="Item")
 MAX_TRIES = 2
-"""How often an episode is started before a dying worker makes it an error."""
+"""How often an item is started before a dying worker makes it an error."""
+MAX_FAILED_STARTS = 3
+"""How many workers may die one after the other before any of them was ready for work."""
 
 
 class Item(Protocol):
@@ -33,7 +32,7 @@ class Item(Protocol):
 class Player(Protocol):
     """What a worker builds once: plays one item after the other."""
 
-    def play(self, item: Any) -> Line: ...  # noqa: D102
+    def play(self, item: Any) -> Any: ...  # noqa: D102
     def close(self) -> None: ...  # noqa: D102
 
 
@@ -50,30 +49,100 @@ class PlayerSpec:
         return getattr(importlib.import_module(module), function)(self.config)
 
 
-def run_items(
-    spec: PlayerSpec, items: Sequence[ItemT], *, workers: int, on_death: Callable[[ItemT], Line]
-) -> Iterator[Line]:
+class WorkerLost(Exception):
+    """A worker died; why, where that is known."""
+
+
+class WorkersError(RuntimeError):
+    """No worker can be started."""
+
+
+class Worker(Protocol):
+    """One worker somewhere. It says once that it is ready, then answers each item with a line or an exception."""
+
+    def send(self, item: Any) -> None:
+        """Hand it an item. One that has died meanwhile says so in `receive`."""
+        ...
+
+    def receive(self) -> Any:
+        """What it said, after `Crew.wait` has named it.
+
+        Raises:
+            WorkerLost: it died.
+            WorkersError: it cannot work here, and no other could.
+        """
+        ...
+
+
+WorkerT = TypeVar("WorkerT", bound=Worker)
+
+
+class Crew(Protocol[WorkerT]):
+    """Workers of one kind, all for the same player."""
+
+    def hire(self) -> WorkerT:
+        """Start one more; it may take its time, even for ever where there is no room."""
+        ...
+
+    def wait(self, workers: Sequence[WorkerT]) -> Sequence[WorkerT]:
+        """Those of some workers that have said something or died; blocks until there is one."""
+        ...
+
+    def dismiss(self, workers: Sequence[WorkerT]) -> None:
+        """End them, whatever they are doing."""
+        ...
+
+
+class Bench:
+    """What runs where a worker is: builds the player for the first item, plays, and never raises."""
+
+    def __init__(self, spec: PlayerSpec) -> None:
+        self._spec = spec
+        self._player: Player | None = None
+
+    def play(self, item: Any) -> Any:
+        """The item's line, or the exception that building or playing raised."""
+        try:
+            if self._player is None:
+                self._player = self._spec.build()
+            return self._player.play(item)
+        except Exception as error:
+            return error
+
+    def close(self) -> None:
+        """Close the player, if there is one."""
+        if self._player is not None:
+            self._player.close()
+
+
+def play_here(spec: PlayerSpec, items: Sequence[ItemT]) -> Iterator[Any]:
+    """Yield the result line of each item, played in this process, house by house."""
+    player = spec.build()
+    try:
+        for item in sorted(items, key=lambda item: item.house):  # stable: keeps the order within a house
+            yield player.play(item)
+    finally:
+        player.close()
+
+
+def play_with(crew: Crew[Any], items: Sequence[ItemT], *, size: int, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
     """Yield a result line for each item, in the order in which they end.
 
     Args:
-        spec: how each process builds its player.
+        crew: whom to hire.
         items: the work.
-        workers: 1 plays in this process; more are spawned.
+        size: how many workers at most.
         on_death: the line of an item whose worker died `MAX_TRIES` times.
+
+    Raises:
+        WorkersError: workers die before they are ready for work.
+        Exception: whatever a player raised.
     """
-    if workers == 1 or len(items) <= 1:
-        player = spec.build()
-        try:
-            for item in sorted(items, key=lambda item: item.house):  # stable: keeps the order within a house
-                yield player.play(item)
-        finally:
-            player.close()
-        return
-    pool = _Pool(spec, _Queue(list(items)), min(workers, len(items)))
+    shift = _Shift(crew, _Queue(list(items)), min(size, len(items)), on_death)
     try:
-        yield from pool.lines(on_death)
+        yield from shift.lines()
     finally:
-        pool.stop()
+        crew.dismiss([post.worker for post in shift.posts])
 
 
 @dataclass
@@ -98,108 +167,80 @@ class _Queue(Generic[ItemT]):
 
 
 @dataclass
-class _Worker(Generic[ItemT]):
-    process: Any
-    connection: Connection
+class _Post(Generic[ItemT]):
+    """What is known of one worker."""
+
+    worker: Any
+    ready: bool = False
     item: ItemT | None = None
     house: str | None = None
 
+    @property
+    def idle(self) -> bool:
+        return self.ready and self.item is None
+
 
 @dataclass
-class _Pool(Generic[ItemT]):
-    spec: PlayerSpec
+class _Shift(Generic[ItemT]):
+    crew: Crew[Any]
     queue: _Queue[ItemT]
     size: int
-    workers: list[_Worker[ItemT]] = field(default_factory=list)
+    on_death: Callable[[ItemT], Any]
+    posts: list[_Post[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
+    failed_starts: int = 0
 
-    def lines(self, on_death: Callable[[ItemT], Line]) -> Iterator[Line]:
-        for _ in range(self.size):
-            self._hand_out(self._spawn())
-        while busy := {worker.connection: worker for worker in self.workers if worker.item is not None}:
-            for ready in wait(list(busy)):
-                worker = busy[ready]  # pyright: ignore[reportArgumentType]
-                line = self._receive(worker, on_death)
-                if line is not None:
-                    yield line
+    def lines(self) -> Iterator[Any]:
+        while True:
+            self._staff()
+            waited_for = {id(post.worker): post for post in self.posts if not post.idle}
+            if not self.queue.items and all(post.item is None for post in waited_for.values()):
+                return
+            for worker in self.crew.wait([post.worker for post in waited_for.values()]):
+                yield from self._hear(waited_for[id(worker)])
 
-    def stop(self) -> None:
-        for worker in self.workers:
-            worker.process.terminate() if worker.item is not None else _say_goodbye(worker)
-        for worker in self.workers:
-            worker.process.join()
-            worker.connection.close()
+    def _staff(self) -> None:
+        """Give every idle worker something to do, and hire where there is more to do."""
+        for post in self.posts:
+            if post.idle:
+                self._hand_out(post)
+        starting = sum(not post.ready for post in self.posts)
+        for _ in range(min(self.size - len(self.posts), len(self.queue.items) - starting)):
+            self.posts.append(_Post(self.crew.hire()))
 
-    def _spawn(self) -> _Worker[ItemT]:
-        context = mp.get_context("spawn")
-        ours, theirs = context.Pipe()
-        process = context.Process(target=_work, args=(self.spec, theirs), daemon=True)
-        process.start()
-        theirs.close()
-        worker: _Worker[ItemT] = _Worker(process, ours)
-        self.workers.append(worker)
-        return worker
+    def _hand_out(self, post: _Post[ItemT]) -> None:
+        busy = {other.house for other in self.posts if other.item is not None and other.house is not None}
+        post.item = self.queue.take(post.house, busy)
+        if post.item is not None:
+            post.house = post.item.house
+            post.worker.send(post.item)
 
-    def _hand_out(self, worker: _Worker[ItemT]) -> None:
-        busy = {other.house for other in self.workers if other.item is not None and other.house is not None}
-        worker.item = self.queue.take(worker.house, busy)
-        if worker.item is None:
-            return
-        worker.house = worker.item.house
-        with contextlib.suppress(OSError):  # it died while idle: `_receive` finds the pipe closed
-            worker.connection.send(worker.item)
-
-    def _receive(self, worker: _Worker[ItemT], on_death: Callable[[ItemT], Line]) -> Line | None:
-        item = worker.item
-        assert item is not None
+    def _hear(self, post: _Post[ItemT]) -> Iterator[Any]:
+        """What a worker has said: that it is ready, a line, or nothing any more."""
         try:
-            outcome = worker.connection.recv()
-        except (EOFError, OSError):
-            return self._bury(worker, item, on_death)
-        worker.item = None
-        self._hand_out(worker)
-        if isinstance(outcome, BaseException):
-            raise outcome
-        return outcome
+            said = post.worker.receive()
+        except WorkerLost as loss:
+            self.posts.remove(post)
+            yield from self._bury(post, loss)
+            return
+        was_ready, post.ready, post.item = post.ready, True, None
+        self.failed_starts = 0
+        self._hand_out(post)  # before the caller does something with the line
+        if isinstance(said, BaseException):
+            raise said
+        if was_ready:
+            yield said
 
-    def _bury(self, worker: _Worker[ItemT], item: ItemT, on_death: Callable[[ItemT], Line]) -> Line | None:
-        """Replace a dead worker; its episode is tried again, or becomes an error."""
-        worker.process.join()
-        worker.connection.close()
-        self.workers.remove(worker)
+    def _bury(self, post: _Post[ItemT], loss: WorkerLost) -> Iterator[Any]:
+        """The item of a dead worker is tried again, or becomes an error."""
+        item = post.item
+        if item is None:
+            self.failed_starts += 1
+            if self.failed_starts >= MAX_FAILED_STARTS:
+                raise WorkersError(f"{self.failed_starts} workers died as they started. {loss}".strip())
+            return
         self.tries[item.episode_id] = self.tries.get(item.episode_id, 0) + 1
-        line = None
         if self.tries[item.episode_id] < MAX_TRIES:
             self.queue.items.insert(0, item)
         else:
-            line = on_death(item)
-        if self.queue.items:
-            self._hand_out(self._spawn())
-        return line
-
-
-def _say_goodbye(worker: _Worker) -> None:
-    try:
-        worker.connection.send(None)
-    except OSError:
-        worker.process.terminate()
-
-
-def _work(spec: PlayerSpec, connection: Connection) -> None:
-    """A worker's life: build the player, play what comes, end at None or when the parent is gone."""
-    try:
-        player = spec.build()
-    except Exception as error:
-        connection.recv()
-        connection.send(error)
-        return
-    try:
-        while (item := connection.recv()) is not None:
-            try:
-                connection.send(player.play(item))
-            except Exception as error:
-                connection.send(error)
-    except (EOFError, KeyboardInterrupt):
-        return
-    finally:
-        player.close()
+            yield self.on_death(item)

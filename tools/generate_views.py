@@ -11,10 +11,10 @@ may share the work with --shard 0/4, 1/4, ...; whoever ends last writes an index
 from __future__ import annotations
 
 import functools
-import re
 import shlex
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -25,10 +25,11 @@ import numpy as np
 from sim import cli
 from sim.episodes import Split, load_split
 from sim.errors import HouseError
+from sim.executors import make_executor
 from sim.houses.house import House
 from sim.houses.splits import train_recipe
 from sim.interface import CameraModel, ConfigError
-from sim.parallel import ordered_map
+from sim.parallel import Share, ordered_map
 from sim.robot.config import RobotConfig
 from sim.scene import Scene
 from sim.sensors.camera import describe_gl
@@ -54,6 +55,10 @@ class Args:
     """Processes."""
     shard: str = "0/1"
     """i/n: make every n-th shard from the i-th on."""
+    executor: str = "local"
+    """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    address: str | None = None
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     profile: str = "good"
     """Rendering quality: good or fast."""
     seed: int = 0
@@ -82,6 +87,7 @@ class ShardTask:
 def main(args: Args) -> int:
     """Make what is missing, then write the index; returns the exit status."""
     picked = _picked(args)
+    executor = make_executor(args.executor, workers=args.workers, address=args.address)
     split = load_split(args.split)
     tasks, config = plan(args, split), _config(args, split)
     args.out.mkdir(parents=True, exist_ok=True)
@@ -90,7 +96,7 @@ def main(args: Args) -> int:
     todo = [task for task in missing if picked(task.number)]
     print(f"{len(tasks)} shards, {len(tasks) - len(missing)} of them there, {len(todo)} to make here.", flush=True)
     began, made = time.perf_counter(), 0
-    for note in ordered_map(functools.partial(make_shard, args, config), todo, workers=args.workers):
+    for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
         rate = made / (time.perf_counter() - began)
         print(f"{note.shard}: {note.views} views of {note.house}, {note.size_bytes >> 20} MB, {rate:.1f} views/s")
@@ -186,7 +192,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
     }
 
 
-def _picked(args: Args) -> Any:
+def _picked(args: Args) -> Callable[[int], bool]:
     """Which shards are made here; refuses options that cannot be."""
     for name in ("views", "workers", "views_per_shard", "shrink"):
         if getattr(args, name) < 1:
@@ -198,11 +204,7 @@ def _picked(args: Args) -> Any:
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
-    match = re.fullmatch(r"(\d+)/(\d+)", args.shard)
-    if match is None or not int(match[1]) < int(match[2]):
-        raise ConfigError(f'--shard must be "i/n" with 0 <= i < n, got "{args.shard}".')
-    part, parts = int(match[1]), int(match[2])
-    return lambda number: number % parts == part
+    return Share.parse(args.shard).takes
 
 
 def _command(args: Args) -> str:

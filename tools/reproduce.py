@@ -49,6 +49,10 @@ class Args:
     """The first N episodes of the split."""
     workers: int = 1
     """Processes."""
+    executor: str = "local"
+    """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    address: str | None = None
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     out: Path = Path("runs/paper")
@@ -211,6 +215,8 @@ def _run_args(args: Args, player: Player) -> run.Args:
         episodes=args.episodes,
         seed=args.seed,
         workers=args.workers,
+        executor=args.executor,
+        address=args.address,
         noise=args.noise,
         out=_folder(args, player),
         record=True,
