@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import importlib
 import math
-import os
 import sys
 import time
 from collections.abc import Sequence
@@ -202,8 +201,7 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     if args.agent == "oracle":
         return Oracle(env)
     robot = env.robot_model
-    threads = max(1, (os.cpu_count() or 1) // args.workers)
-    segmenter = make_segmenter(args.semantics, env, weights=args.weights, threads=threads)
+    segmenter = make_segmenter(args.semantics, env, weights=args.weights)
     if args.agent in agents.NAMES:
         verifier = verifier_for(args.semantics, args.verifier)
         return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)

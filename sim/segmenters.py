@@ -25,14 +25,16 @@ SEMANTICS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """Each kind, and the image sensors that it reads beside depth."""
 
 
-def make_segmenter(semantics: str, env: ObjectNavEnv, *, weights: Path | None = None, threads: int = 1) -> Segmenter:
+def make_segmenter(semantics: str, env: ObjectNavEnv, *, weights: Path | None = None) -> Segmenter:
     """The segmenter of a kind, one of `SEMANTICS`, for this environment.
+
+    A network gets one thread of this process: with another number the last digits of its scores may differ, and so in
+    the end a run's lines.
 
     Args:
         semantics: the kind.
         env: an environment with its sensors and, for `noisy`, with the truth `geom`.
         weights: of `rednet`; the shipped ones when None.
-        threads: that the network may use.
 
     Raises:
         ConfigError: the weights are missing, broken or of another network.
@@ -43,7 +45,7 @@ def make_segmenter(semantics: str, env: ObjectNavEnv, *, weights: Path | None = 
         return GroundTruthSegmenter()
     from stubborn.segmentation.network import RedNetSegmenter
 
-    return RedNetSegmenter.from_file(weights_file(weights), camera=env.camera_model, threads=threads)
+    return RedNetSegmenter.from_file(weights_file(weights), camera=env.camera_model, threads=1)
 
 
 def truth_needed(semantics: str) -> tuple[str, ...]:

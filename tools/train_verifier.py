@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -153,7 +152,7 @@ def play(args: Args, env: ObjectNavEnv, run: RunDirectory) -> list[dict[str, Any
         "stubborn",
         camera=env.camera_model,
         robot=env.robot_model,
-        segmenter=make_segmenter(args.semantics, env, weights=args.weights, threads=os.cpu_count() or 1),
+        segmenter=make_segmenter(args.semantics, env, weights=args.weights),
         verifier=witness,
         target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
     )

@@ -1,0 +1,79 @@
+"""Names to segmenters: RedNet's weights in the run, and clear words where they are missing."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from sim import segmenters
+from sim.interface import CameraModel, ConfigError
+from sim.run import Args, check, config_of
+from stubborn.segmentation.checkpoints import save_rednet
+from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
+
+TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+class Eyes:
+    """What a segmenter reads of an environment."""
+
+    camera_model = CameraModel()
+
+
+@pytest.fixture
+def weights(tmp_path: Path) -> Path:
+    torch.manual_seed(0)
+    save_rednet(tmp_path / "tiny.safetensors", RedNet(TINY), {"block_px": 4, "temperature": 1.5})
+    return tmp_path / "tiny.safetensors"
+
+
+def test_rednet_is_made_of_the_weights_that_are_given(weights: Path) -> None:
+    segmenter = segmenters.make_segmenter("rednet", Eyes(), weights=weights)  # type: ignore[arg-type]
+    assert isinstance(segmenter, RedNetSegmenter)
+    assert (segmenter.block_px, segmenter.temperature) == (4, 1.5)
+    rng = np.random.default_rng(0)
+    rgb, depth = rng.integers(0, 255, (480, 640, 3), np.uint8), np.full((480, 640), 2.0, np.float32)
+    scores = segmenter.scores({"rgb": rgb, "depth": depth}, "chair")
+    assert scores.target.shape == scores.best_other.shape == (120, 160)
+    assert 0 < scores.target.min() <= scores.target.max() < 1
+
+
+def test_the_network_of_a_run_has_one_thread_since_others_would_change_its_last_digits(weights: Path) -> None:
+    before = torch.get_num_threads()
+    try:
+        torch.set_num_threads(2)
+        segmenters.make_segmenter("rednet", Eyes(), weights=weights)  # type: ignore[arg-type]
+        assert torch.get_num_threads() == 1
+    finally:
+        torch.set_num_threads(before)
+
+
+def test_the_checksum_of_the_weights_is_part_of_a_run(weights: Path, tmp_path: Path) -> None:
+    split = {"name": "val", "version": "1.0.0", "sha256": "0"}
+    first = config_of(Args(semantics="rednet", weights=weights), split)["semantics_config"]
+    other = tmp_path / "other.safetensors"
+    save_rednet(other, RedNet(TINY), {"block_px": 4})
+    assert first != config_of(Args(semantics="rednet", weights=other), split)["semantics_config"]
+    assert json.dumps(first)
+
+
+def test_weights_that_are_not_there_and_weights_without_rednet_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="No weights at"):
+        check(Args(semantics="rednet", weights=tmp_path / "none.safetensors"))
+    with pytest.raises(ConfigError, match="--weights go with --semantics rednet, not with 'gt'"):
+        check(Args(semantics="gt", weights=tmp_path / "none.safetensors"))
+    with pytest.raises(ConfigError, match="Unknown --semantics 'dreams'"):
+        check(Args(semantics="dreams"))
+
+
+def test_a_run_without_a_network_does_not_load_torch() -> None:
+    code = "import sys, sim.run, sim.segmenters; print('torch' in sys.modules)"
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "False"
