@@ -192,7 +192,7 @@ def _map_legend(frame: Picture, panel: MapPanel) -> None:
 def _facts(frame: Picture, info: Mapping[str, Any]) -> None:
     """How the episode stands after the action."""
     distance_m = info["distance_to_goal"]
-    to_go = "no way to the goal" if distance_m is None else f"goal {distance_m:.1f} m away (the agent is not told)"
+    to_go = "no way to the goal" if distance_m is None else f"goal {distance_m:.1f} m away (true)"
     count = info["collisions"]
     collisions = f"{count} collision" + ("" if count == 1 else "s")
     _write(frame, f"driven {info['path_length']:.1f} m, {collisions}", (_RIGHT, HEIGHT_PX - 35), _MAP_PX, 0.55, INK)

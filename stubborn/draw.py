@@ -108,10 +108,10 @@ class BeliefPainter:
         half_m = 0.5 * self._side_m - _EDGE_M
         if np.all(low >= np.subtract(self._middle_m, half_m)) and np.all(high <= np.add(self._middle_m, half_m)):
             return
-        side_m = float((high - low).max()) + 2.0 * (_EDGE_M + _STRIDE_M)
+        side_m = float((high - low).max()) + 2.0 * _EDGE_M + 0.5 * _STRIDE_M
         frame = self.agent.navmap.frame
         self._side_m = min(math.ceil(side_m / _STRIDE_M) * _STRIDE_M, min(frame.shape) * frame.cell_m)
-        middle = np.round(0.5 * (low + high))
+        middle = 0.5 * (low + high)
         self._middle_m = float(middle[0]), float(middle[1])
 
 
