@@ -1,0 +1,219 @@
+"""Code blocks of README and docs: what readers will copy, and how a test tries it without their hours.
+
+`TRIALS` has a line for every command that stands in a `sh` block. A command that is not in it fails
+`tests/tools/test_commands.py`, so whoever documents one says here how it is tried.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PYTHON = ".venv/bin/python"
+_FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
+
+
+@dataclass(frozen=True)
+class Block:
+    """One fenced block of a page."""
+
+    page: str
+    """Relative to the repository."""
+    line: int
+    language: str
+    text: str
+
+
+def pages() -> list[Path]:
+    """README, and everything in docs."""
+    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def blocks(page: Path) -> Iterator[Block]:
+    """The fenced blocks of a page, in order."""
+    open_fence, began, kept = None, 0, []
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
+        fence = _FENCE.match(line)
+        if open_fence is None:
+            if fence:
+                open_fence, began, kept = fence, number, []
+        elif fence and fence["marks"] == open_fence["marks"] and not fence["language"]:
+            name = str(page.relative_to(ROOT))
+            yield Block(name, began, open_fence["language"], "\n".join(kept) + "\n")
+            open_fence = None
+        else:
+            kept.append(line.removeprefix(open_fence["indent"]))
+    assert open_fence is None, f"{page}: the block that begins in line {began} has no end"
+
+
+def commands() -> dict[str, str]:
+    """Every command of the shell blocks, its words joined by single blanks, and where it stands first."""
+    found: dict[str, str] = {}
+    for page in pages():
+        for block in blocks(page):
+            if block.language == "sh":
+                for line in block.text.replace("\\\n", " ").splitlines():
+                    words = shlex.split(line, comments=True)
+                    if words:
+                        found.setdefault(shlex.join(words), f"{block.page}:{block.line}")
+    return found
+
+
+def inline_commands() -> dict[str, str]:
+    """Commands in running text: code between single backticks that starts Python with a tool; and where it stands."""
+    found: dict[str, str] = {}
+    for page in pages():
+        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for match in re.finditer(r"`((?:\.venv/bin/)?python (?:-m |tools/|examples/)[^`]*)`", text):
+            words = shlex.split(match[1].replace("\n", " "))
+            if "..." not in words:
+                found.setdefault(shlex.join([PYTHON, *words[1:]]), str(page.relative_to(ROOT)))
+    return found
+
+
+@dataclass(frozen=True)
+class Only:
+    """A command that is parsed but not run, and why."""
+
+    why: str
+
+
+_RUN = f"{PYTHON} -m sim.run"
+_NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
+_RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
+_HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
+_EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 3"
+_VIEWS = (
+    f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
+)
+
+TRIALS: dict[str, tuple[str, ...] | Only] = {
+    "make run": _NEEDS_SETUP,
+    "make test": _NEEDS_SETUP,
+    "make test-all": _NEEDS_SETUP,
+    "make lint": _NEEDS_SETUP,
+    "make types": _NEEDS_SETUP,
+    "make docs": _NEEDS_SETUP,
+    # README
+    _RUN: (f"{_RUN} --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --agent oracle --episodes 100 --workers 2": (
+        f"{_RUN} --agent oracle --episodes 2 --workers 2 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-iii --goal toilet --out runs/toilets": (
+        f"{_RUN} --agent stubborn-iii --goal toilet --episodes 1 --out {{tmp}}/toilets",
+    ),
+    f"{_RUN} --house my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
+        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent examples.my_agent:make": (
+        f"{_RUN} --agent examples.my_agent:make --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --noise realsense": (f"{_RUN} --noise realsense --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --semantics noisy --agent single-frame": (
+        f"{_RUN} --semantics noisy --agent single-frame --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --record --out runs/mine": (_RECORDED,),
+    f"{PYTHON} tools/draw_trajectories.py runs/mine": (
+        _RECORDED,
+        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
+    ),
+    # docs/index.md
+    f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
+    f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
+    f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
+        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --out {{tmp}}/run",
+    ),
+    # docs/agents.md
+    f"{_RUN} --agent examples.my_agent:make --episodes 5": (
+        f"{_RUN} --agent examples.my_agent:make --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --episodes 100 --workers 2 --out runs/before": (f"{_RUN} --episodes 1 --workers 1 --out {{tmp}}/before",),
+    f"{_RUN} --agent examples.my_agent:make --episodes 100 --workers 2 --out runs/after": (
+        f"{_RUN} --agent examples.my_agent:make --episodes 1 --workers 1 --out {{tmp}}/after",
+    ),
+    f"{PYTHON} tools/compare_runs.py runs/before runs/after": (
+        f"{_RUN} --agent oracle --episodes 1 --out {{tmp}}/before",
+        f"{_RUN} --agent random --episodes 1 --out {{tmp}}/after",
+        f"{PYTHON} tools/compare_runs.py {{tmp}}/before {{tmp}}/after",
+    ),
+    # docs/gymnasium.md
+    f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
+    # docs/houses.md
+    f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
+        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --house scene.xml --labels labels.json --goal chair": Only("stands for files of the reader's"),
+    f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
+    f"{PYTHON} tools/make_episodes.py --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
+    f"{_RUN} --split runs/mine/houses --episodes 4": (
+        _HOUSES,
+        _EPISODES,
+        f"{_RUN} --split {{tmp}}/houses --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    # docs/furniture.md
+    f"{PYTHON} examples/my_furniture.py runs/my_house.xml": (
+        f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
+    ),
+    f"{_RUN} --house runs/my_house.xml --goal stool --episodes 2": (
+        f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
+        f"{_RUN} --house {{tmp}}/my_house.xml --goal stool --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    f"{PYTHON} tools/gallery.py --sheet --pool train --out runs/gallery": (
+        f"{PYTHON} tools/gallery.py --sheet --pool train --out {{tmp}}/gallery",
+    ),
+    # docs/reproduce.md
+    f"{PYTHON} tools/reproduce.py ablation": (
+        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
+    ),
+    f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
+        f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+    ),
+    f"{PYTHON} tools/draw_trajectories.py runs/paper/stubborn_gt_none_val": (
+        _RECORDED,
+        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
+    ),
+    # docs/segmentation.md
+    f"{PYTHON} tools/generate_views.py --split train --views 100000 --out views --workers 2": (
+        f"{PYTHON} tools/generate_views.py --split train --views 4 --out {{tmp}}/views --workers 1",
+    ),
+    f"{PYTHON} tools/generate_views.py --split train --views 20000 --shrink 2 --profile fast --out views_small": (
+        f"{PYTHON} tools/generate_views.py --split train --views 4 --shrink 2 --profile fast --out {{tmp}}/views",
+    ),
+    f"{PYTHON} tools/generate_views.py --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
+    f"{PYTHON} tools/show_views.py --views views --out views.png": (
+        _VIEWS,
+        f"{PYTHON} tools/show_views.py --views {{tmp}}/views --out {{tmp}}/views.png",
+    ),
+    f"{PYTHON} tools/unpack_views.py --views views --out views_png": (
+        _VIEWS,
+        f"{PYTHON} tools/unpack_views.py --views {{tmp}}/views --out {{tmp}}/views_png",
+    ),
+    f"{PYTHON} tools/train_rednet.py --views views_small --val-views views_val --out runs/rednet --hours 3": (
+        _VIEWS,
+        f"{PYTHON} tools/train_rednet.py --views {{tmp}}/views --val-views {{tmp}}/views --out {{tmp}}/rednet"
+        " --hours 0.01 --steps 2 --batch 2 --val-count 2",
+    ),
+    f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
+    "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
+    # docs/traps.md
+    f"{_RUN} --split traps --episodes 19": (f"{_RUN} --split traps --episodes 1 --agent oracle --out {{tmp}}/run",),
+    f"{PYTHON} tools/trap_report.py --out runs/traps": (
+        f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
+    ),
+    # docs/verification.md
+    f"{PYTHON} tools/train_verifier.py --semantics noisy --split train --episodes 2000": Only(
+        "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
+    ),
+}
+"""Each documented command: the commands to try, the last of them the same tool with the same options, or why not.
+
+`{tmp}` is a scratch folder. Commands with `--help` need no line.
+"""
+
+STAND_INS = ("my_house.xml", "scene.xml", "labels.json", "rednet_semmap_mp3d_40.pth")
+"""Files of the reader's that the docs speak of and that are not there."""
