@@ -11,11 +11,11 @@ from typing import TypeVar
 
 import tyro
 
-from sim.errors import EpisodeError, HouseError, RenderError
+from sim.errors import EpisodeError, HouseError, RenderError, WorkersError
 from sim.interface import ConfigError
 
 ArgsT = TypeVar("ArgsT")
-USAGE_ERRORS = (ConfigError, EpisodeError, HouseError, RenderError)
+USAGE_ERRORS = (ConfigError, EpisodeError, HouseError, RenderError, WorkersError)
 """What a user can mend: told in one line, without a traceback."""
 
 

@@ -17,3 +17,7 @@ class PhysicsError(RuntimeError):
 
 class RenderError(RuntimeError):
     """No OpenGL could be had, or the frame buffer is too small."""
+
+
+class WorkersError(RuntimeError):
+    """Workers cannot start, or one piece of work kills every worker."""

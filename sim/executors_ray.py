@@ -15,9 +15,10 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
+from sim.errors import WorkersError
 from sim.interface import ConfigError
 from sim.paths import code_hash
-from sim.runner import Bench, ItemT, PlayerSpec, WorkerLost, WorkersError, play_with
+from sim.runner import Bench, ItemT, PlayerSpec, WorkerLost, play_with
 
 try:
     import ray

@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from sim.errors import WorkersError
 from sim.executors import Executor, Processes
 from sim.interface import ConfigError
-from sim.runner import PlayerSpec, WorkersError
+from sim.runner import PlayerSpec
 
 ThingT = TypeVar("ThingT")
 ResultT = TypeVar("ResultT")

@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
+from sim.errors import WorkersError
+
 Line = dict[str, Any]
 ItemT = TypeVar("ItemT", bound="Item")
 MAX_TRIES = 2
@@ -51,10 +53,6 @@ class PlayerSpec:
 
 class WorkerLost(Exception):
     """A worker died; why, where that is known."""
-
-
-class WorkersError(RuntimeError):
-    """No worker can be started."""
 
 
 class Worker(Protocol):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,24 @@ class ErrandPlayer:
 def make_player(config: None) -> ErrandPlayer:
     """Entry point `tests.helpers.players:make_player`."""
     return ErrandPlayer()
+
+
+def slow_double(milliseconds: int) -> int:
+    """Twice as much, after so long."""
+    time.sleep(milliseconds / 1000)
+    return 2 * milliseconds
+
+
+def die_the_first_time(marker: Path) -> str:
+    """Die, but leave the file `marker`, over which nobody dies again."""
+    if not marker.exists():
+        die(marker.touch())
+    return marker.name
+
+
+def die(thing: object) -> None:
+    """The process ends at once, as if killed."""
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 class Quitter:
