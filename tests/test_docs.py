@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import os
 import re
@@ -17,6 +18,7 @@ from sim.houses.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from stubborn import agent, collisions, exploration, mapping, planning, target
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
@@ -24,6 +26,8 @@ from tests.sim.houses import test_furniture as furniture_laws
 from tools.site_hooks import fetched_from_elsewhere
 
 DOCS = ROOT / "docs"
+CONFIGURED = (agent, collisions, exploration, mapping, planning, target)
+"""Modules with the configs that the page of differences names."""
 SNIPPET = re.compile(r'--8<-- "([^"]+)"')
 PYTHON_BLOCKS = [
     block
@@ -51,11 +55,11 @@ def _in_code(text: str) -> str:
 def test_every_link_and_picture_leads_somewhere() -> None:
     broken = []
     for page in documented.pages():
-        for target in re.findall(r"\]\(([^)\s]+)\)", _in_code(page.read_text(encoding="utf-8"))):
-            if not target.startswith(("http://", "https://", "#")):
-                file = (page.parent / target.split("#")[0]).resolve()
+        for link in re.findall(r"\]\(([^)\s]+)\)", _in_code(page.read_text(encoding="utf-8"))):
+            if not link.startswith(("http://", "https://", "#")):
+                file = (page.parent / link.split("#")[0]).resolve()
                 if not file.exists():
-                    broken.append(f"{page.relative_to(ROOT)}: {target}")
+                    broken.append(f"{page.relative_to(ROOT)}: {link}")
     assert not broken
 
 
@@ -74,6 +78,23 @@ def test_every_snippet_is_a_file_of_the_repository() -> None:
     named = SNIPPET.findall(text)
     assert "examples/my_agent.py" in named
     assert all((ROOT / name).is_file() for name in named)
+
+
+def test_every_config_field_that_the_differences_name_is_there() -> None:
+    """`XConfig.field` in a cell, then bare `field`s of the same class."""
+    classes = {
+        name: cls for module in CONFIGURED for name, cls in vars(module).items() if dataclasses.is_dataclass(cls)
+    }
+    seen = 0
+    for line in (DOCS / "differences.md").read_text(encoding="utf-8").splitlines():
+        owner = None
+        for span in re.findall(r"`([^`]+)`", line.rpartition(" | ")[2]) if line.endswith(" |") else ():
+            name, _, field = span.rpartition(".")
+            owner = classes.get(name) if name else owner
+            if owner is not None and dataclasses.is_dataclass(owner):
+                seen += 1
+                assert field in {each.name for each in dataclasses.fields(owner)}, span
+    assert seen >= 35
 
 
 @pytest.mark.parametrize("block", sample(PYTHON_BLOCKS, 3), ids=lambda block: f"{block.page}:{block.line}")
