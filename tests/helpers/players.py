@@ -14,7 +14,7 @@ from sim.interface import Action, Observation
 
 @dataclass(frozen=True)
 class Errand:
-    """An item of work; `kill` is a marker file that its first player dies over."""
+    """An item of work; `kill` is a file that gets a letter from each player that dies over it, the first one."""
 
     episode_id: str
     house: str
@@ -32,7 +32,8 @@ class ErrandPlayer:
 
     def play(self, item: Errand) -> dict[str, Any]:
         if item.kill is not None and (item.always or not item.kill.exists()):
-            item.kill.touch()
+            with item.kill.open("a") as marker:
+                marker.write("x")
             os.kill(os.getpid(), signal.SIGKILL)
         if item.fail:
             raise ValueError(f"errand {item.episode_id} cannot be done")

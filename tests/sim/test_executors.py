@@ -80,8 +80,16 @@ def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
 class NoRoom(executors._Processes):
     """A crew like a cluster that has room for one: the others never say anything."""
 
-    def wait(self, workers: Any) -> Any:
-        return super().wait(workers[:1])
+    first: Any = None
+
+    def hire(self) -> Any:
+        hired = super().hire()
+        self.first = self.first or hired
+        return hired
+
+    def wait(self, workers: Sequence[Any]) -> Any:
+        assert self.first in workers, "it would wait for ever"
+        return super().wait([self.first])
 
 
 def test_work_does_not_wait_for_workers_that_never_start() -> None:

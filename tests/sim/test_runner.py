@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim.executors import Processes
-from sim.runner import PlayerSpec
+from sim.runner import MAX_TRIES, PlayerSpec
 from tests.helpers.players import Errand
 
 SPEC = PlayerSpec("tests.helpers.players:make_player", None)
@@ -51,6 +51,7 @@ def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -
     lines = list(Processes(2).run(SPEC, items, on_death=lambda item: {"episode_id": item.episode_id, "dead": True}))
     assert len(lines) == 5
     assert [line["episode_id"] for line in lines if line.get("dead")] == ["deadly"]
+    assert len((tmp_path / "died").read_text()) == MAX_TRIES
 
 
 @pytest.mark.parametrize("workers", [1, 2])
