@@ -46,7 +46,7 @@ def check(options: WatchOptions) -> None:
     if options.rerun or options.rerun_save:
         from sim import rerun_log  # an extra
 
-        rerun_log.require_rerun()
+        rerun_log.require_rerun(window=options.rerun)
 
 
 def make(options: WatchOptions, painter: MapPainter | None) -> list[Watcher]:
