@@ -59,6 +59,7 @@ def test_a_vector_of_two_plays_as_two_environments_alone(options: dict[str, Any]
     envs = gymnasium.make_vec(ENV_ID, num_envs=2, vectorization_mode=vectorization_mode, **of_vector, **options)
     seen = [envs.reset(seed=seeds[0]), *(envs.step(np.array(both)) for both in actions)]
     envs.close()
+    assert not np.array_equal(*seen[0][0]["depth"]), "each has a start of its own"
     for i, seed in enumerate(seeds):
         alone = gymnasium.make(ENV_ID, **options)
         for t, at_once in enumerate(seen):
