@@ -50,6 +50,8 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
         assert f"sim/assets/{file.relative_to(ROOT / 'assets')}" in packed
     for file in (ROOT / "stubborn/verifiers").glob("*.json"):
         assert f"stubborn/verifiers/{file.name}" in packed
+    for file in (ROOT / "sim/report/page").iterdir():
+        assert f"sim/report/page/{file.name}" in packed
 
 
 def test_importing_the_agent_leaves_mujoco_out() -> None:

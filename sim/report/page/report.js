@@ -173,7 +173,7 @@
   function makePicture(episode, way) {
     const plan = data.plans[episode.plan];
     const [width, height] = plan ? plan.size : episode.size;
-    const unit = Math.max(width, height) / 100;
+    const unit = Math.max(width, height) / Math.min(100, Math.max(55, innerWidth / 7));  // of text and symbols
     const name = `Plan of the house with the way of the robot in ${episode.id}`;
     const picture = svg("svg", { class: "plan", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": name });
     if (plan) drawPlan(picture, plan, episode, unit);
