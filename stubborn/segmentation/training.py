@@ -122,8 +122,9 @@ def pyramid_loss(outputs: Sequence[Tensor], target: Tensor, weights: Tensor) -> 
     for out in outputs:
         step = target.shape[-1] // out.shape[-1]
         middle = step // 2
-        small = target[:, middle::step, middle::step]
-        loss = nn.functional.cross_entropy(out.float(), small, weight=weights, ignore_index=IGNORED)
+        small = target[:, middle::step, middle::step].reshape(-1)
+        logits = out.permute(0, 2, 3, 1).reshape(-1, out.shape[1])  # classes last: several times faster on a CPU
+        loss = nn.functional.cross_entropy(logits.float(), small, weight=weights, ignore_index=IGNORED)
         total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
     return total
 
@@ -238,9 +239,22 @@ def fit_temperature(logits: Tensor, truth: Tensor) -> float:
 
 
 def evaluate(
-    model: RedNet, batches: Iterable[tuple[Tensor, Tensor, Tensor]], *, device: torch.device, temperature: float = 1.0
+    model: RedNet,
+    batches: Iterable[tuple[Tensor, Tensor, Tensor]],
+    *,
+    device: torch.device,
+    temperature: float = 1.0,
+    into: NDArray[np.int64] | None = None,
 ) -> tuple[Iou, Reliability]:
-    """Intersection over union and reliability of a network over batches of samples."""
+    """Intersection over union and reliability of a network over batches of samples.
+
+    Args:
+        model: the network.
+        batches: of samples without augmentation.
+        device: where it computes.
+        temperature: of the softmax.
+        into: a confusion matrix that these batches' counts are added to; see `confusion`.
+    """
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
     reliability = Reliability.empty()
     model.eval()
@@ -254,4 +268,6 @@ def evaluate(
             flat = some.permute(1, 0, 2, 3).reshape(CLASSES, -1).numpy()
             counts = kept.reshape(-1) >= 0
             reliability.add(flat[:, counts], kept.reshape(-1)[counts])
+    if into is not None:
+        into += matrix
     return Iou.of(matrix), reliability

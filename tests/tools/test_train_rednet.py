@@ -32,7 +32,7 @@ def write_views(folder: Path, count: int, size_px: int = 64) -> None:
                 "rgb.png": cv2.imencode(".png", rgb)[1].tobytes(),
                 "depth.png": cv2.imencode(".png", np.where(is_sofa, 1000, 3000).astype(np.uint16))[1].tobytes(),
                 "semantic.png": cv2.imencode(".png", semantic)[1].tobytes(),
-                "json": json.dumps({}).encode(),
+                "json": json.dumps({"house": f"house_{i % 2}"}).encode(),
             }
             for suffix, content in parts.items():
                 entry = tarfile.TarInfo(f"v{i:03d}.{suffix}")

@@ -1,0 +1,61 @@
+"""The measuring tool on a handful of tiny views: figures, and the temperature that lands in the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from sim.interface import ConfigError
+from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from tests.tools.test_train_rednet import write_views
+from tools import evaluate_rednet
+from tools.evaluate_rednet import Args
+
+TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+@pytest.fixture
+def weights(tmp_path: Path) -> Path:
+    """A network that is far too sure of itself."""
+    torch.manual_seed(0)
+    model = RedNet(TINY)
+    with torch.no_grad():
+        model.final_deconv_custom.weight *= 5.0
+    save_rednet(tmp_path / "tiny.safetensors", model, {"block_px": 1, "step": 7})
+    return tmp_path / "tiny.safetensors"
+
+
+def test_a_temperature_is_fitted_written_and_makes_scores_more_honest(tmp_path: Path, weights: Path) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    card = tmp_path / "card.md"
+    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, fit_temperature=True, card=card, threads=1)
+    before = load_rednet(weights)[0].state_dict()
+    assert evaluate_rednet.main(args) == 0
+    model, metadata = load_rednet(weights)
+    assert metadata["temperature"] > 2.0
+    assert metadata["step"] == 7
+    assert all(torch.equal(before[name], tensor) for name, tensor in model.state_dict().items())
+    measured = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1), model, metadata)
+    assert measured.views == 8
+    assert measured.after.error < 0.5 * measured.before.error
+    assert 0.0 <= measured.iou.goals <= 1.0
+    text = card.read_text()
+    assert f"temperature {metadata['temperature']:.2f}" in text
+    assert "| views measured | 8 |" in text
+
+
+def test_views_stored_smaller_than_the_network_sees_are_refused(tmp_path: Path, weights: Path) -> None:
+    write_views(tmp_path / "one", 2)
+    views = [
+        view for shard in evaluate_rednet.list_shards(tmp_path / "one") for view in evaluate_rednet.read_shard(shard)
+    ]
+    with pytest.raises(ConfigError, match="sees every 1 pixels, the views are stored every 2"):
+        evaluate_rednet.loader(views, 1, 2)
+    with pytest.raises(ConfigError, match="one house"):
+        evaluate_rednet.split_by_house([(views[0], 1)])
+    with pytest.raises(ConfigError, match="--threads must be at least 1"):
+        evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=0))
