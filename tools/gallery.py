@@ -1,7 +1,7 @@
 """Pictures to look at: a cut-away top view and robot-height views of houses, and a sheet of all furniture styles.
 
 python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
-python tools/gallery.py --sheet --pool heldout --out runs/gallery
+python tools/gallery.py --sheet --pool heldout --categories chair sofa --out runs/gallery
 """
 
 from __future__ import annotations
@@ -43,6 +43,8 @@ class Args:
     """House files: a top view and a sheet of room views each."""
     sheet: bool = False
     """Draw every furniture style, one sheet a category."""
+    categories: tuple[str, ...] = ()
+    """With --sheet: only these; all if not given."""
     pool: Pool = "train"
     """Which styles the sheets show."""
     seed: int = 0
@@ -53,13 +55,16 @@ def main(args: Args) -> None:
     """Write the pictures and say where they are."""
     if not args.houses and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ... or --sheet.")
+    unknown = [category for category in args.categories if category not in CATALOGUE]
+    if unknown:
+        raise ConfigError(f"No furniture of category '{unknown[0]}'. There is: {', '.join(sorted(CATALOGUE))}.")
     args.out.mkdir(parents=True, exist_ok=True)
     for path in args.houses:
         spec = mujoco.MjSpec.from_file(str(path.resolve()))
         _save(args.out / f"{path.stem}_top.png", draw_top(spec))
         _save(args.out / f"{path.stem}_views.png", draw_views(spec))
     if args.sheet:
-        for category in CATALOGUE:
+        for category in args.categories or CATALOGUE:
             sheet = draw_sheet(category, args.pool, np.random.default_rng(args.seed))
             if sheet is not None:
                 _save(args.out / f"sheet_{args.pool}_{category}.png", sheet)

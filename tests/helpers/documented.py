@@ -70,7 +70,8 @@ def inline_commands() -> dict[str, str]:
         text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
         for match in re.finditer(r"`((?:\.venv/bin/)?python (?:-m |tools/|examples/)[^`]*)`", text):
             words = shlex.split(match[1].replace("\n", " "))
-            if "..." not in words:
+            named_only = len(words) == (3 if words[1] == "-m" else 2)
+            if not named_only and "..." not in words:
                 found.setdefault(shlex.join([PYTHON, *words[1:]]), str(page.relative_to(ROOT)))
     return found
 
@@ -83,6 +84,7 @@ class Only:
 
 
 _RUN = f"{PYTHON} -m sim.run"
+_SMALL = "--house examples/my_house.xml --goal sofa"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
@@ -107,14 +109,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-iii --goal toilet --episodes 1 --out {{tmp}}/toilets",
     ),
     f"{_RUN} --house my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
-        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
+        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --agent examples.my_agent:make": (
-        f"{_RUN} --agent examples.my_agent:make --episodes 1 --out {{tmp}}/run",
+        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --noise realsense": (f"{_RUN} --noise realsense --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --noise realsense": (f"{_RUN} --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",),
     f"{_RUN} --semantics noisy --agent single-frame": (
-        f"{_RUN} --semantics noisy --agent single-frame --episodes 1 --out {{tmp}}/run",
+        f"{_RUN} --semantics noisy --agent single-frame {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --record --out runs/mine": (_RECORDED,),
     f"{PYTHON} tools/draw_trajectories.py runs/mine": (
@@ -126,26 +128,28 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
     f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
-        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --out {{tmp}}/run",
+        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
     ),
     # docs/agents.md
     f"{_RUN} --agent examples.my_agent:make --episodes 5": (
-        f"{_RUN} --agent examples.my_agent:make --episodes 1 --out {{tmp}}/run",
+        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --episodes 100 --workers 2 --out runs/before": (f"{_RUN} --episodes 1 --workers 1 --out {{tmp}}/before",),
+    f"{_RUN} --episodes 100 --workers 2 --out runs/before": (
+        f"{_RUN} {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/before",
+    ),
     f"{_RUN} --agent examples.my_agent:make --episodes 100 --workers 2 --out runs/after": (
-        f"{_RUN} --agent examples.my_agent:make --episodes 1 --workers 1 --out {{tmp}}/after",
+        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
     ),
     f"{PYTHON} tools/compare_runs.py runs/before runs/after": (
-        f"{_RUN} --agent oracle --episodes 1 --out {{tmp}}/before",
-        f"{_RUN} --agent random --episodes 1 --out {{tmp}}/after",
+        f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
+        f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
         f"{PYTHON} tools/compare_runs.py {{tmp}}/before {{tmp}}/after",
     ),
     # docs/gymnasium.md
     f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
-        f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
+        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --house scene.xml --labels labels.json --goal chair": Only("stands for files of the reader's"),
     f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
@@ -163,8 +167,18 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
         f"{_RUN} --house {{tmp}}/my_house.xml --goal stool --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/gallery.py --sheet --pool train --out runs/gallery": (
-        f"{PYTHON} tools/gallery.py --sheet --pool train --out {{tmp}}/gallery",
+    f"{PYTHON} tools/gallery.py --sheet --categories stool --pool train --out runs/gallery": (
+        f"{PYTHON} tools/gallery.py --sheet --categories fireplace --pool train --out {{tmp}}/gallery",
+    ),
+    # docs/report.md
+    f"{_RUN} --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
+        f"{_RUN} --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record --out {{tmp}}/harsh",
+    ),
+    f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    f"{PYTHON} -m sim.report runs/before runs/after": (
+        f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
+        _RECORDED,
+        f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
     ),
     # docs/reproduce.md
     f"{PYTHON} tools/reproduce.py ablation": (
