@@ -1,4 +1,4 @@
-"""Furniture of your own: a stool made of a wooden crate, and an apartment whose stools all are such crates.
+"""Furniture of your own: a stool made of a crate, and an apartment with such stools.
 
 python examples/my_furniture.py my_house.xml
 """
@@ -26,7 +26,7 @@ def crate(w: Workbench) -> None:
     for bottom in (0.0, high - board):
         w.box(x, (y[0] + board, y[1] - board), (bottom, bottom + board), wood)
     step = (high - 2 * board) / slats
-    for i in range(slats):  # the gaps show: depth sees through them, the robot does not fit
+    for i in range(slats):  # depth sees through the gaps
         low = board + i * step
         w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (low, low + 0.7 * step), wood)
     w.top(x, y, high, kind="seat")
@@ -36,15 +36,14 @@ CRATE = Style("stool", "crate", "train", crate, uses=("low",))
 
 
 def main(file: Path, seed: int = 3) -> None:
-    """Write the apartment of this seed, with crates in place of every other stool of the pool."""
+    """Write the apartment of this seed, with a crate for each stool."""
     shipped, CATALOGUE["stool"] = CATALOGUE["stool"], {CRATE.name: CRATE}
     try:
         house = generate(seed, pool="train", kind="studio")
     finally:
-        CATALOGUE["stool"] = shipped  # the shipped seeds go on giving the shipped houses
-    textures = os.path.relpath(
-        assets_dir() / "textures", file.resolve().parent
-    )  # the file names them relative to itself
+        CATALOGUE["stool"] = shipped  # other styles would give other houses
+    # A house file names its textures relative to itself.
+    textures = os.path.relpath(assets_dir() / "textures", file.resolve().parent)
     file.write_text(house_text(house, textures))
     stools = sum(body.name.startswith("stool_") for body in house.bodies)
     print(f"{file}: {stools} crates stand where stools would")
