@@ -95,12 +95,13 @@ class BeliefPainter:
         if self.show_plan:
             _draw_intention(canvas, agent, pose)
         canvas.robot(pose, agent.robot.radius_m)
-        canvas.scale_bar()
+        if size_px >= _ROOM_FOR_WORDS_PX:
+            canvas.scale_bar()
         return canvas.image
 
     def words(self) -> str:
-        """What the agent is about."""
-        return describe_intention(self.agent)
+        """What the agent is about; "" where its plan is not shown."""
+        return describe_intention(self.agent) if self.show_plan else ""
 
     def _frame_all(self, pose: PlanarPose) -> None:
         """Widen the picture when what is known, or the robot, comes near its edge."""
@@ -121,6 +122,7 @@ def painter_of(agent: Agent) -> BeliefPainter | None:
 
 
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
+_ROOM_FOR_WORDS_PX = 240
 
 
 def _extent_xy_m(navmap: NavMap, pose: PlanarPose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -162,7 +164,7 @@ def _draw_intention(canvas: _Canvas, agent: StubbornAgent, pose: PlanarPose) -> 
     if agent.route is not None:
         plan = agent.route.plan
         canvas.outline(plan.goal, plan.frame, GOAL)
-        canvas.line(trace_xy_m(plan, pose), PLAN, 2)
+        canvas.line(trace_xy_m(plan, pose), PLAN)
     if agent.route is not None and agent.approach is None:
         goal_xy_m = agent.explorer.goal_xy_m(agent.route.plan.frame)
         if goal_xy_m is not None:
@@ -191,10 +193,6 @@ def _paint_layers(view: NavMap, candidate_score: float) -> NDArray[np.uint8]:
     return image
 
 
-_MARK_PX = 12
-"""Half the size of a mark."""
-
-
 class _Canvas:
     """The enlarged picture; takes world metres. Image up is +x, image left is +y."""
 
@@ -202,9 +200,13 @@ class _Canvas:
         self.frame, self.scale = frame, size_px / max(frame.shape)
         turned = np.ascontiguousarray(cells.transpose(1, 0, 2)[::-1, ::-1])
         size = (round(frame.shape[0] * self.scale), round(frame.shape[1] * self.scale))
-        enlarged = cv2.resize(turned, size, interpolation=cv2.INTER_NEAREST)
+        way = cv2.INTER_NEAREST if self.scale >= 1.0 else cv2.INTER_AREA  # shrunk, a wall of one cell must not be lost
+        enlarged = cv2.resize(turned, size, interpolation=way)
         self.image = np.full((size_px, size_px, 3), UNKNOWN, np.uint8)
         self.image[: size[1], : size[0]] = enlarged
+        self.mark_px = min(12, max(3, size_px // 36))
+        """Half the size of a mark."""
+        self.width_px = 2 if size_px >= _ROOM_FOR_WORDS_PX else 1
 
     def pixel(self, x_m: float, y_m: float) -> tuple[int, int]:
         """(u, v) of a world point."""
@@ -213,16 +215,18 @@ class _Canvas:
         v_cells = frame.shape[1] - (x_m - frame.origin_xy_m[0]) / frame.cell_m
         return round(u_cells * self.scale), round(v_cells * self.scale)
 
-    def line(self, points_xy_m: NDArray[np.float64], colour: Colour, width_px: int) -> None:
+    def line(self, points_xy_m: NDArray[np.float64], colour: Colour) -> None:
         points = np.array([self.pixel(float(x), float(y)) for x, y in points_xy_m], np.int32)
-        cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, colour, width_px, cv2.LINE_AA)
+        cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, colour, self.width_px, cv2.LINE_AA)
 
     def cross(self, xy_m: tuple[float, float], colour: Colour) -> None:
         """A place; one beyond the picture is marked at its edge."""
-        cv2.drawMarker(self.image, self._held_inside(xy_m), colour, cv2.MARKER_CROSS, 18, 3, cv2.LINE_AA)
+        edge_px, width_px = 3 * self.mark_px // 2, 2 * self.width_px - 1
+        place = self._held_inside(xy_m)
+        cv2.drawMarker(self.image, place, colour, cv2.MARKER_CROSS, edge_px, width_px, cv2.LINE_AA)
 
     def ring(self, xy_m: tuple[float, float], colour: Colour) -> None:
-        cv2.circle(self.image, self._held_inside(xy_m), 11, colour, 2, cv2.LINE_AA)
+        cv2.circle(self.image, self._held_inside(xy_m), self.mark_px - 1, colour, self.width_px, cv2.LINE_AA)
 
     def scale_bar(self) -> None:
         """One metre, in the lower left corner."""
@@ -232,8 +236,8 @@ class _Canvas:
 
     def _held_inside(self, xy_m: tuple[float, float]) -> tuple[int, int]:
         u, v = self.pixel(*xy_m)
-        edge_px = self.image.shape[0] - 1 - _MARK_PX
-        return min(max(u, _MARK_PX), edge_px), min(max(v, _MARK_PX), edge_px)
+        edge_px = self.image.shape[0] - 1 - self.mark_px
+        return min(max(u, self.mark_px), edge_px), min(max(v, self.mark_px), edge_px)
 
     def outline(self, mask: NDArray[np.bool_], frame: GridFrame, colour: Colour) -> None:
         contours, _ = cv2.findContours(mask.view(np.uint8).copy(), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
@@ -244,12 +248,13 @@ class _Canvas:
             cv2.polylines(self.image, [points.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
 
     def robot(self, pose: PlanarPose, radius_m: float) -> None:
-        radius_px = max(4, round(radius_m / self.frame.cell_m * self.scale))
-        middle = self.pixel(pose.x_m, pose.y_m)
+        small_px = max(2, self.image.shape[0] // 110)
+        radius_px = max(small_px, round(radius_m / self.frame.cell_m * self.scale))
+        middle, rim_px = self.pixel(pose.x_m, pose.y_m), self.width_px
         cv2.circle(self.image, middle, radius_px, (255, 255, 255), -1, cv2.LINE_AA)
-        cv2.circle(self.image, middle, radius_px, ROBOT, 2, cv2.LINE_AA)
-        ahead_m = max(2.0 * radius_m, 16.0 * self.frame.cell_m / self.scale)  # 16 px at least
-        cv2.arrowedLine(self.image, middle, self.pixel(*pose.ahead(ahead_m)), ROBOT, 2, cv2.LINE_AA, tipLength=0.35)
+        cv2.circle(self.image, middle, radius_px, ROBOT, rim_px, cv2.LINE_AA)
+        ahead = self.pixel(*pose.ahead(max(2.0 * radius_m, 4.0 * small_px * self.frame.cell_m / self.scale)))
+        cv2.arrowedLine(self.image, middle, ahead, ROBOT, rim_px, cv2.LINE_AA, tipLength=0.35)
 
 
 def _legend(height_px: int, caption: str) -> NDArray[np.uint8]:
