@@ -68,7 +68,8 @@ class LiveView:
         if env.scene is not self._scene:
             self.close()
             self._open(env.scene)
-        self._show(env.scene.world.data.qpos)
+        self._before = env.scene.world.data.qpos.copy()
+        self._show(self._before)
 
     def decided(self, moment: Moment) -> None:
         """Say what comes."""
@@ -138,7 +139,6 @@ class LiveView:
             mujoco.mj_kinematics(self._model, self._data)
             mujoco.mj_comPos(self._model, self._data)  # what the camera follows
             mujoco.mj_camlight(self._model, self._data)
-        self._before = np.array(qpos)
         self._handle.sync()
 
 
