@@ -18,7 +18,9 @@ from sim.houses.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from sim.interface import CameraModel, RobotModel
 from stubborn import agent, collisions, exploration, mapping, planning, target
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
@@ -35,6 +37,13 @@ PYTHON_BLOCKS = [
     for block in documented.blocks(page)
     if block.language == "python" and not SNIPPET.search(block.text)
 ]
+PROMISED = (
+    *(f"sim.interface.{name}" for name in ("Action", "GOAL_CATEGORIES", "MPCAT40", "CameraModel", "RobotModel")),
+    *(f"sim.interface.{name}" for name in ("Observation", "Scores", "Segmenter.scores", "Agent.act", "ConfigError")),
+    *("sim.env.ObjectNavEnv", "stubborn.agents.make", "stubborn.agent.AgentConfig", "sim.houses.generator.generate"),
+    *("sim.trajectory.read_trajectory", "sim.episodes.load_split", "sim.run.Args.agent", "sim.failures"),
+)
+"""Names on which users may rely, and others that pages speak of."""
 FURNITURE_LAWS = [
     law
     for name, law in vars(furniture_laws).items()
@@ -118,6 +127,15 @@ def test_a_python_block_runs(block: Block, tmp_path: Path) -> None:
     assert ended.returncode == 0, ended.stderr
 
 
+def test_the_variant_on_the_page_of_agents_is_an_agent_with_its_own_config() -> None:
+    (block,) = (block for block in PYTHON_BLOCKS if block.page == "docs/agents.md")
+    names: dict[str, Any] = {}
+    exec(block.text, names)
+    variant = names["make"](camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert (variant.config.planning.dilation_m, variant.config.collisions.wide_m) == (0.10, 0.35)
+    assert variant.config.untrap == agent.AgentConfig().untrap
+
+
 def test_the_example_agent_is_thirty_lines() -> None:
     code = (ROOT / "examples" / "my_agent.py").read_text(encoding="utf-8")
     body = code[code.index("class Wanderer") :]
@@ -181,4 +199,5 @@ def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
         cwd=ROOT, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ended.returncode == 0, ended.stderr
-    assert (tmp_path / "site" / "api" / "interface.html").is_file()
+    anchors = "".join(page.read_text(encoding="utf-8") for page in (tmp_path / "site" / "api").glob("*.html"))
+    assert not [name for name in PROMISED if f'id="{name}"' not in anchors]
