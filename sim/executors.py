@@ -72,7 +72,7 @@ class Processes:
         if self.workers == 1 or len(items) <= 1:
             yield from play_here(spec, items)
         else:
-            yield from play_with(_Processes(spec), items, size=self.workers, on_death=on_death)
+            yield from play_with(ProcessCrew(spec), items, size=self.workers, on_death=on_death)
 
 
 class _Process:
@@ -102,20 +102,23 @@ class _Process:
         return said
 
 
-class _Processes:
-    """See `sim.runner.Crew`."""
+class ProcessCrew:
+    """Processes of this machine as a `sim.runner.Crew`."""
 
     def __init__(self, spec: PlayerSpec) -> None:
         self._spec = spec
 
     def hire(self) -> _Process:
+        """Spawn one."""
         return _Process(self._spec)
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
+        """Those with something in their pipe, or whose pipe is closed."""
         ready = wait([worker.connection for worker in workers])
         return [worker for worker in workers if worker.connection in ready]
 
     def dismiss(self, workers: Sequence[_Process]) -> None:
+        """End the idle ones gently, for they may hold a renderer."""
         for worker in workers:
             worker.process.terminate() if worker.busy else worker.send(None)
         for worker in workers:

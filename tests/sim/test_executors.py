@@ -77,7 +77,7 @@ def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
     assert crew.hired == runner.MAX_FAILED_STARTS
 
 
-class NoRoom(executors._Processes):
+class NoRoom(executors.ProcessCrew):
     """A crew like a cluster that has room for one: the others never say anything."""
 
     first: Any = None

@@ -1,0 +1,136 @@
+"""How fast everything is, each figure against a baseline that is measured in the same run.
+
+python tools/bench.py                                             # all parts, half an hour at most
+python tools/bench.py --parts a,b,d                               # rendering, the agent's step
+python tools/bench.py --out runs/bench.json --markdown docs/performance.md
+python tools/bench.py --quick                                     # does it run? its figures mean nothing
+
+Absolute figures hang on the machine and on what else it does; ratios much less, and before each part and at the end
+three fixed pieces of work are timed, that say how steady the machine was. See docs/performance.md.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # run as a file, it does not find its sister files
+
+import cv2
+from rich.console import Console
+
+from sim import cli, tables
+from sim.house_list import write_atomically
+from sim.interface import ConfigError
+from tools.benchmarks import growth, making, rendering, report, scaling, stepping
+from tools.benchmarks.calibration import Calibration, Calibrator
+from tools.benchmarks.figures import Figure
+from tools.benchmarks.stages import QUICK, Amount, Setting
+
+PARTS: Mapping[str, Callable[[Setting], list[Figure]]] = {
+    "a": rendering.three_images,
+    "b": rendering.two_images,
+    "c": stepping.environment_step,
+    "d": stepping.agent_step,
+    "e": stepping.whole_episodes,
+    "f": making.views_to_disk,
+    "g": making.new_houses,
+    "h": scaling.two_workers,
+    "i": growth.growth,
+}
+MAX_DRIFT = 1.15
+"""A calibration that changes by more between two parts is told."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Measure, tell, write down."""
+
+    parts: str = ",".join(PARTS)
+    """Letters with commas between: a, b rendering; c the environment's step; d the agent's; e episodes; f views;
+    g houses; h workers; i growth."""
+    quick: bool = False
+    """As little as shows that everything runs."""
+    out: Path | None = None
+    """A JSON file for all of it."""
+    markdown: Path | None = None
+    """A page that gets the table between its two marks."""
+
+
+def main(args: Args) -> int:
+    """Measure the parts; returns 1 where a goal is missed (never with --quick)."""
+    os.environ["LP_NUM_THREADS"] = "1"  # for both sides; llvmpipe reads it when it starts
+    wanted = parse_parts(args.parts)
+    console = tables.make_console()
+    cv2.setNumThreads(1)
+    about, calibrations = report.machine(), {}
+    figures: list[Figure] = []
+    calibrator, tries = Calibrator(), 3 if args.quick else 20
+    for part in wanted:
+        calibrations[part] = calibrator.measure(tries)
+        figures += measured(part, Setting(QUICK if args.quick else Amount(), calibrations[part]), console)
+    calibrations["end"] = calibrator.measure(tries)
+    calibrator.close()
+    first = next(iter(calibrations.values()))
+    console.print(report.to_table(figures))
+    console.print(report.calibration_line(first), highlight=False, soft_wrap=True)
+    for warning in drifts(calibrations):
+        console.print(warning, highlight=False, soft_wrap=True)
+    if args.out is not None:
+        write_atomically(args.out, report.to_json(figures, about, calibrations).encode())
+    if args.markdown is not None:
+        report.write_between_marks(args.markdown, report.to_markdown(figures, about, first, command_of(args)))
+    return int(not args.quick and any(figure.met is False for figure in figures))
+
+
+def parse_parts(text: str) -> list[str]:
+    """The letters of `--parts`, in their order.
+
+    Raises:
+        ConfigError: one that there is not, or none.
+    """
+    wanted = [part.strip() for part in text.split(",") if part.strip()]
+    unknown = [part for part in wanted if part not in PARTS]
+    if unknown or not wanted:
+        raise ConfigError(f"--parts must be letters out of {','.join(PARTS)}, got '{text}'.")
+    return [part for part in PARTS if part in wanted]
+
+
+def measured(part: str, setting: Setting, console: Console) -> list[Figure]:
+    """The figures of a part; says how long it took."""
+    began_s = time.perf_counter()
+    figures = PARTS[part](setting)
+    console.print(f"({part}) measured in {time.perf_counter() - began_s:.0f} s", highlight=False)
+    return figures
+
+
+def drifts(calibrations: Mapping[str, Calibration]) -> list[str]:
+    """Sentences about fixed work that did not take the same time throughout: somebody else was there."""
+    told = []
+    for name in ("render_ms", "step_ms", "march_ms"):
+        values = [getattr(calibration, name) for calibration in calibrations.values()]
+        if max(values) > MAX_DRIFT * min(values):
+            told.append(
+                f"The machine was not quiet: the fixed {name.removesuffix('_ms')} took {min(values):.2f} to "
+                f"{max(values):.2f} ms in the course of this run."
+            )
+    return told
+
+
+def command_of(args: Args) -> str:
+    """What has to be said to measure the same."""
+    parts = "" if parse_parts(args.parts) == list(PARTS) else f" --parts {args.parts}"
+    return "python tools/bench.py" + parts + (" --quick" if args.quick else "")
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """The command line."""
+    return cli.run(Args, main, argv)
+
+
+if __name__ == "__main__":
+    sys.exit(entry())

@@ -1,0 +1,1 @@
+"""The parts of `tools/bench.py`: each measures something against a baseline of the same run."""

@@ -1,0 +1,76 @@
+"""Parts (f) and (g): views to disk, houses from seeds."""
+
+from __future__ import annotations
+
+import functools
+import math
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from sim.episodes import load_split
+from sim.house_list import copy_textures
+from sim.houses.generator import HouseConfig, generate_house
+from sim.houses.house import House
+from sim.houses.load import load_house
+from sim.houses.writing import house_text
+from sim.interface import CameraModel
+from sim.robot.config import RobotConfig
+from sim.scene import Scene
+from sim.shards import write_shard
+from sim.views import View, sample_views
+from sim.world import World
+from tools.benchmarks.figures import Figure, timed
+from tools.benchmarks.stages import Setting
+
+
+def views_to_disk(setting: Setting) -> list[Figure]:
+    """(f) Views as `tools/generate_views.py` writes them, against only drawing the same views."""
+    count, split = setting.amount.views, load_split("val")
+    figures = []
+    with tempfile.TemporaryDirectory() as folder:
+        for profile in ("good", "fast"):
+            scene = Scene(split.load_house(split.houses[0]), robot=RobotConfig(), camera=CameraModel(), profile=profile)
+
+            def views(scene: Scene = scene) -> Iterator[View]:
+                return sample_views(scene, np.random.default_rng(0), count, stem="v", record={})
+
+            for _ in views():  # charts the house, starts the renderer
+                break
+            drawn_ms = written_ms = math.inf
+            for _ in range(2):
+                drawn_ms = min(drawn_ms, timed(lambda views=views: list(views())))
+                to_disk = functools.partial(write_shard, Path(folder), profile, house="h", config={})
+                written_ms = min(written_ms, timed(lambda views=views, to_disk=to_disk: to_disk(views())))
+            scene.close()
+            rates = [1e3 * count / ms for ms in (written_ms, drawn_ms)]
+            figures.append(
+                Figure(part="f", what=f"views to disk, profile {profile}", value=rates[0], unit="/s",
+                       against="only drawn", baseline=rates[1], ratio=rates[0] / rates[1], count=count)
+            )  # fmt: skip
+    return figures
+
+
+def new_houses(setting: Setting) -> list[Figure]:
+    """(g) A house from its seed, checked and written, against reading and compiling the same house."""
+    made_ms, read_ms = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        copy_textures(Path(folder) / "textures")
+        for seed in range(setting.amount.made_houses):
+            file = Path(folder) / f"house_{seed}.xml"
+            made_ms.append(timed(lambda seed=seed, file=file: write_house(file, seed, HouseConfig())))
+            read_ms.append(timed(lambda file=file: World(load_house(file))))
+    value, baseline = float(np.median(made_ms)), float(np.median(read_ms))
+    return [
+        Figure(part="g", what="a new house, checked, written", value=value, unit="ms", against="to read and compile it",
+               baseline=baseline, ratio=value / baseline, count=len(made_ms))
+    ]  # fmt: skip
+
+
+def write_house(file: Path, seed: int, config: HouseConfig) -> House:
+    """Generate a house into a file whose folder has the textures."""
+    spec = generate_house(seed, config).spec
+    file.write_text(house_text(spec, "textures"), encoding="utf-8")
+    return House(file.stem, spec)

@@ -1,0 +1,128 @@
+"""The figures as a table on the terminal, as JSON, and as Markdown inside a page."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from sim.house_list import write_atomically
+from sim.interface import ConfigError
+from sim.paths import code_hash
+from sim.sensors.camera import describe_gl
+from tools.benchmarks.calibration import Calibration
+from tools.benchmarks.figures import Figure
+
+BEGIN, END = "<!-- bench: begin, written by tools/bench.py -->", "<!-- bench: end -->"
+COLUMNS = ("part", "what", "measured", "baseline", "ratio", "goal", "")
+
+
+def machine() -> dict[str, Any]:
+    """Processor, system, versions, and what else the machine was doing."""
+    packages = ("mujoco", "numpy", "opencv-python-headless", "scikit-fmm", "numba")
+    return {
+        "processor": _processor(),
+        "cores": len(os.sched_getaffinity(0)),
+        "system": f"{platform.system()} {platform.machine()}",
+        "load": round(os.getloadavg()[0], 2),
+        "gl_renderer": describe_gl(),
+        "LP_NUM_THREADS": os.environ.get("LP_NUM_THREADS"),
+        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
+        "code": code_hash(),
+    }
+
+
+def rows(figures: Sequence[Figure]) -> list[tuple[str, ...]]:
+    """The cells of each figure, by `COLUMNS`."""
+    verdict = {True: "yes", False: "no", None: ""}
+    return [
+        (
+            figure.part,
+            figure.what,
+            _quantity(figure.value, figure.unit),
+            f"{_quantity(figure.baseline, figure.unit)}: {figure.against}",
+            f"{figure.ratio:.2f}",
+            str(figure.goal or ""),
+            verdict[figure.met],
+        )
+        for figure in figures
+    ]
+
+
+def to_table(figures: Sequence[Figure]) -> Table:
+    """For the terminal."""
+    table = Table(title="Benchmarks", title_justify="left")
+    for column in COLUMNS:
+        table.add_column(column, justify="right" if column in ("measured", "ratio") else "left")
+    for row in rows(figures):
+        table.add_row(*row)
+    return table
+
+
+def calibration_line(calibration: Calibration) -> str:
+    """What the fixed pieces of work take here."""
+    return (
+        f"Calibration: the fixed render {calibration.render_ms:.2f} ms, 200 fixed mj_step "
+        f"{calibration.step_ms:.2f} ms, the fixed march {calibration.march_ms:.2f} ms."
+    )
+
+
+def to_json(figures: Sequence[Figure], about: Mapping[str, Any], calibrations: Mapping[str, Calibration]) -> str:
+    """Everything: machine, calibration before each part and after the last, figures."""
+    content = {
+        "machine": about,
+        "calibration": {when: asdict(calibration) for when, calibration in calibrations.items()},
+        "figures": [figure.to_json() for figure in figures],
+    }
+    return json.dumps(content, indent=1) + "\n"
+
+
+def to_markdown(figures: Sequence[Figure], about: Mapping[str, Any], calibration: Calibration, command: str) -> str:
+    """The table with what has to be known beside it."""
+    head = [f"| {' | '.join(COLUMNS)} |", "|---|---|--:|---|--:|---|---|"]
+    body = [f"| {' | '.join(row)} |" for row in rows(figures)]
+    versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
+    notes = [
+        f"`{command}` on {about['processor']}, {about['cores']} cores, {about['gl_renderer']}, "
+        f"LP_NUM_THREADS={about['LP_NUM_THREADS']}; load {about['load']} when it began; {versions}; "
+        f"code {about['code']}.",
+        calibration_line(calibration),
+    ]
+    return "\n".join([*head, *body, "", *("\n\n".join(notes).split("\n"))]) + "\n"
+
+
+def write_between_marks(page: Path, text: str) -> None:
+    """Put a text between the two marks of a page.
+
+    Raises:
+        ConfigError: there is no such page, or it has no marks.
+    """
+    try:
+        old = page.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ConfigError(f"--markdown '{page}' cannot be read: {error.strerror}.") from None
+    before, begin, rest = old.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ConfigError(f"--markdown '{page}' has no place for the table: two lines, {BEGIN} and {END}.")
+    write_atomically(page, f"{before}{begin}\n\n{text}\n{end}{after}".encode())
+
+
+def _quantity(value: float, unit: str) -> str:
+    digits = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 2
+    return f"{value:.{digits}f} {unit}"
+
+
+def _processor() -> str:
+    """The processor's name as Linux knows it."""
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()

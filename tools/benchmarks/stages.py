@@ -1,0 +1,108 @@
+"""What several parts need: how much to measure, poses in houses, an agent that plays step by step."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sim.env import ObjectNavEnv
+from sim.episodes import Episode
+from sim.freespace import FreeSpace
+from sim.interface import Action, Agent
+from sim.pose import Pose
+from sim.world import World
+from stubborn import agents
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tools.benchmarks.calibration import Calibration
+
+SENSORS = ("depth", "semantic")
+"""What an agent with ground-truth segmentation asks for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Amount:
+    """How much is measured."""
+
+    houses: int = 10
+    poses: int = 20
+    """In each house."""
+    repeats: int = 3
+    steps: int = 1500
+    """Of agents, for the splits of a step."""
+    episodes: int = 20
+    views: int = 60
+    made_houses: int = 6
+    pieces: int = 24
+    """Of equal work, shared by workers."""
+    piece_steps: int = 60
+    growth_steps: int = 80
+    """At each size."""
+    memory_episodes: int = 50
+
+
+QUICK = Amount(
+    houses=1, poses=2, repeats=1, steps=6, episodes=1, views=2, made_houses=1, pieces=4, piece_steps=3, growth_steps=4,
+    memory_episodes=2,
+)  # fmt: skip
+"""Enough to see that it runs; the figures mean nothing."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What each part is given."""
+
+    amount: Amount
+    calibration: Calibration
+
+
+def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]:
+    """Random places of the robot's disc with random headings."""
+    space = FreeSpace.from_world(world)
+    cells = np.argwhere(space.largest_part())
+    places = space.frame.to_metres(cells[rng.integers(len(cells), size=count)])
+    return [Pose(float(x), float(y), float(rng.uniform(-math.pi, math.pi)), 0.0) for x, y in places]
+
+
+def stubborn_agent(env: ObjectNavEnv, **options: Any) -> Agent:
+    """The agent of the paper with ground-truth segmentation."""
+    return agents.make(
+        "stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter(), **options
+    )
+
+
+class Rig:
+    """An agent that plays episodes one after the other, one step at a call."""
+
+    def __init__(self, env: ObjectNavEnv, agent: Agent, episodes: Sequence[Episode], *, stops: bool = True) -> None:
+        """`stops` False: a STOP is replaced by a turn, so that episodes last until their steps are used up."""
+        self.env, self.agent = env, agent
+        self._episodes: Iterator[Episode] = itertools.cycle(episodes)
+        self._stops = stops
+        self._observation: Any = None
+        self.over = True
+        """Whether the next step begins an episode."""
+
+    def step(self) -> tuple[float, float]:
+        """One step; milliseconds of the agent and of the environment. Resets are not timed."""
+        if self.over:
+            self._begin()
+        began_s = time.perf_counter()
+        action = self.agent.act(self._observation)
+        if not self._stops and action == Action.STOP:
+            action = Action.TURN_LEFT
+        acted_s = time.perf_counter()
+        self._observation, _, terminated, truncated, _ = self.env.step(action)
+        ended_s = time.perf_counter()
+        self.over = terminated or truncated
+        return 1e3 * (acted_s - began_s), 1e3 * (ended_s - acted_s)
+
+    def _begin(self) -> None:
+        episode = next(self._episodes)
+        self._observation, _ = self.env.reset(seed=0, options={"episode": episode})
+        self.agent.reset(episode.goal, 0)

@@ -1,0 +1,107 @@
+"""Parts (c), (d) and (e): a step of the environment, a step of the agent, whole episodes."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from sim.env import ObjectNavEnv
+from sim.rollout import play_episode
+from sim.sensors.camera import Camera
+from sim.task import Task
+from sim.world import World
+from stubborn.mapping import Mapper
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tools.benchmarks.figures import Figure, Goal, stopwatch
+from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
+
+_WORLD = {
+    "physics": [(World, "move")],
+    "rendering": [(Camera, "render")],
+    "task": [(Task, "observe")],
+}
+_AGENT = {
+    "mapping": [(Mapper, "add_depth"), (Mapper, "add_scores")],
+    "detection": [(GroundTruthSegmenter, "scores")],
+}
+
+
+def environment_step(setting: Setting) -> list[Figure]:
+    """(c) What of a step of the environment is physics, rendering and task, with the agent that plays by default."""
+    whole, parts = _split_steps(setting, of_agent=False)
+    calibration = setting.calibration
+    return [
+        _against("c", "a step of the environment", whole, calibration.render_ms, "the fixed render"),
+        *(_share("c", f"of it {name}", ms, whole, "the whole step") for name, ms in parts.items()),
+    ]
+
+
+def agent_step(setting: Setting) -> list[Figure]:
+    """(d) What of a step of the agent is mapping, planning and detection."""
+    whole, parts = _split_steps(setting, of_agent=True)
+    parts["planning"] = whole - sum(parts.values())
+    goal = Goal(of="value", sign="<=", bound=10.0)
+    return [
+        _against("d", "a step of the agent", whole, setting.calibration.march_ms, "the fixed march", goal),
+        *(_share("d", f"of it {name}", ms, whole, "the whole step") for name, ms in sorted(parts.items())),
+    ]
+
+
+def whole_episodes(setting: Setting) -> list[Figure]:
+    """(e) Episodes and steps a process plays, houses loaded on the way."""
+    env = ObjectNavEnv(split="val", sensors=SENSORS)
+    agent, steps, playing_s = stubborn_agent(env), 0, 0.0
+    episodes = sorted(env.split.episodes[: setting.amount.episodes], key=lambda episode: episode.house)
+    began_s = time.perf_counter()
+    for episode in episodes:
+        line = play_episode(env, agent, episode, seed=0)
+        steps, playing_s = steps + line["num_steps"], playing_s + line["wall_time_s"]
+    all_s = time.perf_counter() - began_s
+    env.close()
+    rate, count = steps / playing_s, len(episodes)
+    render_rate = 1e3 / setting.calibration.render_ms
+    goal = Goal(of="value", sign=">=", bound=45.0)
+    return [
+        Figure(part="e", what="steps a second, a process, semantics gt, split val", value=rate, unit="/s",
+               against="the fixed render", baseline=render_rate, ratio=rate / render_rate, goal=goal, count=count),
+        Figure(part="e", what="episodes a minute, houses loaded", value=60 * count / all_s, unit="/min",
+               against="the same, houses there", baseline=60 * count / playing_s, ratio=playing_s / all_s, count=count),
+    ]  # fmt: skip
+
+
+def _split_steps(setting: Setting, *, of_agent: bool) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Milliseconds of each step, and of its parts, over the first episodes of val."""
+    env = ObjectNavEnv(split="val", sensors=SENSORS)
+    rig = Rig(env, stubborn_agent(env), env.split.episodes)
+    whole: list[float] = []
+    with stopwatch(_AGENT if of_agent else _WORLD) as ms:
+        parts: dict[str, list[float]] = {name: [] for name in ms}
+        rig.step()
+        while len(whole) < setting.amount.steps:
+            before = dict(ms)
+            fresh = rig.over
+            agent_ms, env_ms = rig.step()
+            if fresh:  # the first step of an episode would count its reset
+                continue
+            whole.append(agent_ms if of_agent else env_ms)
+            for name, taken in ms.items():
+                parts[name].append(taken - before[name])
+    env.close()
+    return np.array(whole), {name: np.array(taken) for name, taken in parts.items()}
+
+
+def _against(part: str, what: str, ms: np.ndarray, baseline: float, against: str, goal: Goal | None = None) -> Figure:
+    median = float(np.median(ms))
+    return Figure(
+        part=part, what=what, value=median, unit="ms", against=against, baseline=baseline, ratio=median / baseline,
+        goal=goal, count=len(ms),
+    )  # fmt: skip
+
+
+def _share(part: str, what: str, ms: np.ndarray, whole: np.ndarray, against: str) -> Figure:
+    """A part of a step; means, which add up."""
+    return Figure(
+        part=part, what=what, value=float(ms.mean()), unit="ms", against=against, baseline=float(whole.mean()),
+        ratio=float(ms.mean() / whole.mean()), count=len(ms),
+    )  # fmt: skip
