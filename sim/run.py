@@ -23,6 +23,7 @@ from sim.env import ObjectNavEnv
 from sim.episodes import Episode
 from sim.errors import EpisodeError
 from sim.executors import make_executor
+from sim.houses.load import load_house
 from sim.interface import Agent, ConfigError
 from sim.oracle import Oracle
 from sim.parallel import Share
@@ -52,6 +53,8 @@ class Args:
     """Where segmentation comes from: gt (ground truth), noisy (ground truth with a network's mistakes) or rednet."""
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
+    verification: str = "naive-bayes"
+    """How candidates are verified: naive-bayes (the paper's), logistic, threshold or none."""
     verifier: Path | None = None
     """Parameters of verification (tools/train_verifier.py) in place of those shipped for this segmentation."""
     split: str = "val"
@@ -105,6 +108,7 @@ def main(args: Args) -> int:
         return 0
     check(args)
     episodes, split = plan_episodes(args)
+    tell_house(args, console)
     args = replace(args, out=args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
     if args.shard is not None and args.out is not None:
         share = Share.parse(args.shard)
@@ -157,6 +161,13 @@ def play_missing(
         run.close()
 
 
+def tell_house(args: Args, console: Console) -> None:
+    """Say what was left out of a house from elsewhere, and what has no label."""
+    if args.house is not None and args.labels is not None:
+        for note in load_house(args.house, labels_path=args.labels).notes:
+            console.print(f"House '{args.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
+
+
 def agent_names() -> list[str]:
     """Every name that --agent takes."""
     return [*agents.NAMES, "oracle"]
@@ -203,7 +214,7 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     robot = env.robot_model
     segmenter = make_segmenter(args.semantics, env, weights=args.weights)
     if args.agent in agents.NAMES:
-        verifier = verifier_for(args.semantics, args.verifier)
+        verifier = verifier_for(args.semantics, args.verifier, args.verification)
         return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)
     return _load_factory(args.agent)(camera=env.camera_model, robot=robot, segmenter=segmenter)
 
@@ -322,7 +333,7 @@ def check(args: Args) -> None:
     get_profile(args.profile)
     get_noise(args.noise)
     check_semantics(args.semantics, args.weights)
-    verifier_for(args.semantics, args.verifier)
+    verifier_for(args.semantics, args.verifier, args.verification)
     if args.agent not in agent_names():
         _load_factory(args.agent)
 

@@ -28,6 +28,8 @@ class House:
     rules: Mapping[str, str] | None = None
     """Label rules of a house from elsewhere, as `read_labels` takes them."""
     path: Path | None = None
+    notes: tuple[str, ...] = ()
+    """Sentences on what was left out of a house from elsewhere (`sim.houses.foreign`)."""
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from sim.errors import HouseError
 from sim.gl import mujoco
+from sim.houses.foreign import adopt, tell_void
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
 from sim.interface import MPCAT40_ID
@@ -27,7 +29,8 @@ def load_house(path: Path, *, labels_path: Path | None = None) -> House:
 
     Args:
         path: the MJCF file.
-        labels_path: a JSON file of label rules, `{"regex over names": "category"}`, for a house from elsewhere.
+        labels_path: a JSON file of label rules, `{"regex over names": "category"}`, for a house from elsewhere. What
+            no house holds is then left out, and told in the house's `notes`.
 
     Raises:
         HouseError: the file is missing, is no MJCF, or breaks a rule of the house format; names file, geom and rule.
@@ -38,15 +41,16 @@ def load_house(path: Path, *, labels_path: Path | None = None) -> House:
         raise HouseError(f"House '{path}': there is no such file.")
     try:
         spec = mujoco.MjSpec.from_file(str(path.resolve()))
+        notes = () if rules is None else adopt(spec)
         model = spec.compile()
     except (ValueError, OSError) as error:
         raise HouseError(f"House '{path}' is no MJCF file that MuJoCo can read: {_one_line(error)}") from None
     house = House(path.stem, spec, rules, path)
     try:
-        validate_house(house, model)
+        labels = validate_house(house, model)
     except HouseError as error:
         raise HouseError(f"House '{path}': {error}") from None
-    return house
+    return replace(house, notes=(*notes, *tell_void(model, labels)))
 
 
 def read_rules(path: Path) -> dict[str, str]:
@@ -86,7 +90,10 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
                 f"{describe_geom(model, geom)} is a {what}: a house is made of boxes, meshes and the like."
             )
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
-    _require_floor(model, labels)
+    try:
+        _require_floor(model, labels)
+    except HouseError as error:
+        raise HouseError(" ".join([str(error), *tell_void(model, labels)])) from None
     return labels
 
 

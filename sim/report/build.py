@@ -23,7 +23,7 @@ from sim.report.drawings import Ways, draw_episodes, read_ways, video_of
 from sim.report.figures import causes, groups, means, verdict
 from sim.report.words import explain, outcome
 
-NO_DEFAULT = ("agent", "split", "house", "labels", "robot", "goal", "start_deg", "episodes")
+NO_DEFAULT = ("agent", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg", "episodes")
 DEFAULTS: Mapping[str, Any] = {"semantics": "gt", "seed": 0, "profile": "fast", "noise": "none", "workers": 1}
 """Options of `sim.run` that are told as a command; those with another value than here."""
 
