@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import ConfigError
+from stubborn.classifiers import Features
 from stubborn.exploration import Route
 from stubborn.grid import PlanarPose, Window
 from stubborn.mapping import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning import Bumps, FreeSpace, Planner
 from stubborn.raster import Cells, connected, distance_to, nearest, sight_is_clear
-from stubborn.verification import Features, Verifier
+from stubborn.verification import Verifier
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,39 +1,33 @@
-"""Is a candidate what it seems? Gaussian naive Bayes over four numbers of the object layers (paper: Verification).
+"""Is a candidate what it seems? A classifier asks four numbers of the object layers (paper: Verification).
 
-Parameters belong to a kind of semantics and are shipped as `stubborn/verifiers/<kind>.json`, which also says which
-command fitted them (`tools/train_verifier.py`). A category with too few examples shares the pooled classifier.
+The paper's is Gaussian naive Bayes; others over the same numbers are `METHODS` beside it. Parameters belong to a kind
+of semantics and are shipped as `stubborn/verifiers/<kind>.json`, which also says which command fitted them
+(`tools/train_verifier.py`) and how good each method was on episodes left out. A category with too few examples shares
+the pooled classifier.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from types import MappingProxyType
+from typing import Any, Protocol
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
+from stubborn.classifiers import Classifier, Features, Logistic, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
 """Where the shipped parameters lie."""
 UNVERIFIED = ("gt",)
 """Kinds of semantics that leave nothing to verify."""
-
-
-class Features(NamedTuple):
-    """What the object layers hold at a candidate cell: the input of a verifier."""
-
-    total_view: int
-    """Frames that had the cell in view."""
-    cumulative: float
-    """Sum of the target's score over these frames."""
-    maximum: float
-    """Highest score of the target."""
-    maximum_other: float
-    """Highest score of any other category."""
+METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
+    {"naive-bayes": NaiveBayes.from_dict, "logistic": Logistic.from_dict, "threshold": Logistic.from_dict}
+)
+"""Kinds of classifiers, the paper's first; `threshold` looks at the mean score over all frames only."""
+ACCEPT_ALL = "none"
+"""The method of who does not verify."""
 
 
 class Verifier(Protocol):
@@ -58,63 +52,29 @@ class AcceptAll:
 
 
 @dataclass(frozen=True, eq=False)
-class NaiveBayes:
-    """Two classes, false (0) and true (1) candidates; within each the features are independent Gaussians."""
-
-    log_prior: NDArray[np.float64]
-    """(2,)"""
-    mean: NDArray[np.float64]
-    """(2, 4) per class and feature."""
-    variance: NDArray[np.float64]
-    """(2, 4)"""
-
-    @classmethod
-    def from_dict(cls, content: Mapping[str, Any]) -> NaiveBayes:
-        """From `prior` (2), `mean` and `variance` (2 lists of 4).
-
-        Raises:
-            ConfigError: another shape, or a prior or variance that is not positive.
-        """
-        prior, mean, variance = (np.array(content[key], np.float64) for key in ("prior", "mean", "variance"))
-        wanted = (2, len(Features._fields))
-        if prior.shape != (2,) or mean.shape != wanted or variance.shape != wanted:
-            raise ConfigError(
-                f"A naive Bayes needs prior (2,), mean and variance {wanted}, "
-                f"got {prior.shape}, {mean.shape} and {variance.shape}."
-            )
-        if not (prior > 0).all() or not (variance > 0).all():
-            raise ConfigError("A naive Bayes needs priors and variances > 0.")
-        return cls(np.log(prior), mean, variance)
-
-    def probability(self, features: Sequence[float]) -> float:
-        """That the candidate is true, in [0, 1]."""
-        off = np.asarray(features, np.float64) - self.mean
-        score = self.log_prior - 0.5 * (np.log(self.variance) + off * off / self.variance).sum(axis=1)
-        return float(0.5 * (1.0 + np.tanh(0.5 * (score[1] - score[0]))))  # the logistic, without overflow
-
-
-@dataclass(frozen=True, eq=False)
-class NaiveBayesVerifier:
+class FittedVerifier:
     """Accepts what is more probably true than `least_probability`; see the module."""
 
-    by_category: Mapping[str, NaiveBayes]
+    by_category: Mapping[str, Classifier]
     """For the goal categories with enough examples."""
-    pooled: NaiveBayes
+    pooled: Classifier
     """For all others."""
     least_probability: float = 0.5
     may_refuse = True
 
     @classmethod
-    def read(cls, file: Path) -> NaiveBayesVerifier:
+    def read(cls, file: Path, method: str = "naive-bayes") -> FittedVerifier:
         """From a file that `tools/train_verifier.py` wrote.
 
         Raises:
-            ConfigError: it holds something else.
+            ConfigError: it is not there or holds something else, or there is no such method.
         """
+        if method not in METHODS:
+            raise ConfigError(f"Unknown verification '{method}'. There is: {', '.join((*METHODS, ACCEPT_ALL))}.")
+        make = METHODS[method]
         try:
-            content = json.loads(file.read_text(encoding="utf-8"))
-            by_category = {name: NaiveBayes.from_dict(each) for name, each in content["categories"].items()}
-            return cls(by_category, NaiveBayes.from_dict(content["pooled"]))
+            content = json.loads(file.read_text(encoding="utf-8"))["methods"][method]
+            return cls({name: make(each) for name, each in content["categories"].items()}, make(content["pooled"]))
         except OSError as error:
             raise ConfigError(f"Verifier file '{file}' cannot be read: {error.strerror}.") from None
         except (KeyError, TypeError, AttributeError, ValueError) as error:
@@ -131,22 +91,21 @@ class NaiveBayesVerifier:
         return self.probability(goal, features) > self.least_probability
 
 
-def verifier_for(semantics: str, file: Path | None = None) -> Verifier:
+def verifier_for(semantics: str, file: Path | None = None, method: str = "naive-bayes") -> Verifier:
     """The verifier of a kind of semantics: of ground truth the one that accepts all, else the shipped one.
 
     Args:
         semantics: the kind.
         file: parameters in place of the shipped ones.
+        method: one of `METHODS`, or `ACCEPT_ALL`.
 
     Raises:
-        ConfigError: there are no parameters for this kind, or the file holds none.
+        ConfigError: there are no parameters for this kind, the file holds none, or there is no such method.
     """
-    if file is not None:
-        return NaiveBayesVerifier.read(file)
-    if semantics in UNVERIFIED:
+    if method == ACCEPT_ALL or (file is None and semantics in UNVERIFIED):
         return AcceptAll()
-    file = FOLDER / f"{semantics}.json"
-    if not file.is_file():
+    file = file or FOLDER / f"{semantics}.json"
+    if not file.is_file() and file.parent == FOLDER:
         known = [*UNVERIFIED, *sorted(each.stem for each in FOLDER.glob("*.json"))]
         raise ConfigError(f"No verifier for semantics '{semantics}'. There is: {', '.join(known)}.")
-    return NaiveBayesVerifier.read(file)
+    return FittedVerifier.read(file, method)

@@ -28,9 +28,8 @@ from sim.segmenters import weights_file
 from stubborn.segmentation.checkpoints import load_rednet, save_rednet
 from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.rednet import CLASSES, RedNet
-from stubborn.segmentation.training import NONE, Iou, Reliability, Sampler, evaluate, fit_temperature
+from stubborn.segmentation.training import NONE, Iou, Reliability, Sampler, Samples, evaluate, fit_temperature
 from stubborn.segmentation.views import LabelledView, list_shards, read_shard, stored_block_px
-from tools.train_rednet import Views
 
 TIMED_FRAMES = 30
 ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) that sees {width} x {height} pixels and knows mpcat40.
@@ -121,7 +120,7 @@ def loader(views: Sequence[LabelledView], block_px: int, stored_px: int) -> Data
     """
     if block_px % stored_px:
         raise ConfigError(f"The network sees every {block_px} pixels, the views are stored every {stored_px}.")
-    return DataLoader(Views(views, Sampler(CameraModel(), block_px // stored_px, NONE)), batch_size=8)
+    return DataLoader(Samples(views, Sampler(CameraModel(), block_px // stored_px, NONE)), batch_size=8)
 
 
 def split_by_house(views: Sequence[tuple[LabelledView, int]]) -> tuple[list, list]:

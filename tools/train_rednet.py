@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor
-from torch.utils.data import DataLoader, Dataset
+from torch.utils.data import DataLoader
 
 from sim import cli
 from sim.interface import CameraModel, ConfigError
@@ -34,12 +34,12 @@ from stubborn.segmentation.training import (
     Augmentation,
     Iou,
     Sampler,
+    Samples,
     evaluate,
     learning_rate,
     pyramid_loss,
 )
 from stubborn.segmentation.views import (
-    LabelledView,
     ViewDataset,
     class_weights,
     list_shards,
@@ -100,19 +100,6 @@ def main(args: Args) -> int:
     return 0
 
 
-class Views(Dataset):
-    """Views in memory, as samples without augmentation."""
-
-    def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
-        self._views, self._sampler = views, sampler
-
-    def __len__(self) -> int:
-        return len(self._views)
-
-    def __getitem__(self, i: int) -> tuple[Tensor, Tensor, Tensor]:
-        return self._sampler(self._views[i], np.random.default_rng(0))
-
-
 class Trainer:
     """Network, optimiser and data of one run, and where it stands."""
 
@@ -131,7 +118,7 @@ class Trainer:
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         self.data = ViewDataset(shards, Sampler(camera, args.block_px, Augmentation()), seed=args.seed)
-        self.val = Views(
+        self.val = Samples(
             spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, args.block_px, NONE)
         )
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf

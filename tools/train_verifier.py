@@ -1,21 +1,22 @@
 """Fit the verifier of a kind of semantics, on candidates that the agent meets in houses of the train split.
 
-    python tools/train_verifier.py --semantics noisy --split train --episodes 2000
+    python tools/train_verifier.py --semantics noisy --split train --episodes 2000 --workers 2
+    python tools/train_verifier.py --semantics noisy --split val --episodes 200 --judge
 
 The agent plays without stopping: whatever it would verify is logged with its four features, the truth, whether a STOP
 there would succeed, and the place; then it goes on as if the candidate had been rejected. A last resort, a place too
 far away or out of sight, is left out: no STOP there tells what is true. The log has a line an episode; the same
-command goes on where it was, and more episodes add to what is there, while split, modules and rates are the same. What
-is left of an object after such a rejection is met again, several times: of the true candidates of an episode within 2 m
-of one another only the first counts, and so with the false ones. Then one Gaussian naive Bayes is fitted for each goal
-category, and a pooled one for those with too few candidates of either kind, and written as JSON with counts and a table
-that says how far probabilities can be believed: cross-validated, episodes never on both sides.
+command goes on where it was, and more episodes add to what is there, while split, modules and rates are the same;
+--minutes 0 plays nothing and fits what is there, whatever code played it. What is left of an object after such a
+rejection is met again, several times: of the true candidates of an episode within 2 m of one another only the first
+counts, and so with the false ones. Then each method of verification is fitted for each goal category, and pooled for
+those with too few candidates of either kind, and written as JSON with counts and with what it is worth on episodes left
+out (`stubborn/verifier_fit.py`). Houses of val and test are for --judge only.
 """
 
 from __future__ import annotations
 
 import json
-import math
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -23,29 +24,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-from sklearn.model_selection import GroupKFold
-from sklearn.naive_bayes import GaussianNB
-
 from sim import cli
 from sim.env import ObjectNavEnv
-from sim.episodes import Episode, Split
+from sim.episodes import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
-from sim.interface import GOAL_CATEGORIES, Action, ConfigError
+from sim.executors import make_executor
+from sim.interface import Action, ConfigError
 from sim.paths import code_hash
 from sim.results import RunDirectory
 from sim.rollout import episode_seed
+from sim.runner import PlayerSpec
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
 from stubborn import agents
 from stubborn.agent import StubbornAgent
+from stubborn.classifiers import Features
 from stubborn.target import TargetConfig
-from stubborn.verification import FOLDER, UNVERIFIED, Features
+from stubborn.verification import FOLDER, METHODS, UNVERIFIED, FittedVerifier
+from stubborn.verifier_fit import fit, judge_by_category
 
 NEVER = 1_000_000
 """A step that no episode reaches."""
-FOLDS = 5
-SAME_PLACE_M = 2.0
+BATCH = 100
 
 
 @dataclass(frozen=True)
@@ -60,8 +59,12 @@ class Args:
     """A shipped split, or a folder laid out like one."""
     episodes: int = 400
     """The first N of the split."""
+    workers: int = 1
+    """Processes."""
     minutes: float | None = None
-    """Play no longer than this; what is there is fitted."""
+    """Play no longer than this; 0 plays nothing."""
+    judge: bool = False
+    """Fit nothing: judge the parameters that are there (--out) on these candidates, by category."""
     max_steps: int = 200
     """Of an episode: what is first found after step 200 is never verified."""
     least_of_either: int = 20
@@ -69,7 +72,7 @@ class Args:
     seed: int = 0
     """Of the episodes."""
     log: Path | None = None
-    """Folder of the log; runs/verifier-<semantics> when not given."""
+    """Folder of the log; runs/verifier-<semantics>-<split> when not given."""
     out: Path | None = None
     """File of the parameters; stubborn/verifiers/<semantics>.json when not given."""
 
@@ -103,31 +106,38 @@ class Witness:
 
 
 def main(args: Args) -> int:
-    """Play, fit, write."""
+    """Play, then fit and write, or judge."""
     _check(args)
-    log = args.log or Path("runs") / f"verifier-{args.semantics}"
-    env = ObjectNavEnv(
-        split=args.split,
-        sensors=("depth", *SEMANTICS[args.semantics]),
-        truth=truth_needed(args.semantics),
-        max_steps=args.max_steps,
-    )
-    try:
-        run = RunDirectory(log, log_config(args, env.split))
+    split = load_split(args.split)
+    lines = candidates_of(args, split)
+    file = args.out or FOLDER / f"{args.semantics}.json"
+    if args.judge:
+        print(judgement(lines, file))
+        return 0
+    about = {"name": split.name, "version": split.version}
+    content = {"semantics": args.semantics, "command": command(args), "split": about} | fit(lines, args.least_of_either)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    report(content)
+    print(f"written: {file}")
+    return 0
+
+
+def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
+    """The lines of the log's first `args.episodes` episodes, those that were there and those played now."""
+    log = args.log or Path("runs") / f"verifier-{args.semantics}-{split.name}"
+    if args.minutes == 0:
+        text = (log / "results.jsonl").read_text(encoding="utf-8") if (log / "results.jsonl").is_file() else ""
+        lines = [json.loads(line) for line in text.splitlines()]
+    else:
+        run = RunDirectory(log, log_config(args, split))
         try:
-            lines = play(args, env, run)
+            play(args, split, run)
+            lines = run.lines
         finally:
             run.close()
-    finally:
-        env.close()
-    split = {"name": env.split.name, "version": env.split.version}
-    content = {"semantics": args.semantics, "command": command(args), "split": split} | fit(lines, args.least_of_either)
-    out = args.out or FOLDER / f"{args.semantics}.json"
-    out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    report(content)
-    print(f"written: {out}")
-    return 0
+    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
+    return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
 
 
 def log_config(args: Args, split: Split) -> dict[str, Any]:
@@ -145,152 +155,72 @@ def log_config(args: Args, split: Split) -> dict[str, Any]:
     }
 
 
-def play(args: Args, env: ObjectNavEnv, run: RunDirectory) -> list[dict[str, Any]]:
-    """The lines of all episodes, those that were there and those played now."""
-    witness = Witness(env)
-    agent = agents.make(
-        "stubborn",
-        camera=env.camera_model,
-        robot=env.robot_model,
-        segmenter=make_segmenter(args.semantics, env, weights=args.weights),
-        verifier=witness,
-        target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
-    )
-    assert isinstance(agent, StubbornAgent)
-    witness.agent = agent
+def play(args: Args, split: Split, run: RunDirectory) -> None:
+    """Play what is not in the log yet, until the time is up."""
     done = {line["episode_id"] for line in run.lines}
-    todo = [episode for episode in env.split.episodes[: args.episodes] if episode.episode_id not in done]
-    print(f"{len(done)} episodes are there, {len(todo)} to go; log in {run.path}")
+    todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
+    print(f"{len(done)} episodes are there, {len(todo)} to go; log in {run.path}", flush=True)
     until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
-    # House by house in small batches: a house is loaded once in a batch, and a run cut short is still balanced.
-    for batch in (todo[first : first + 40] for first in range(0, len(todo), 40)):
-        for episode in sorted(batch, key=lambda episode: episode.house):
+    executor = make_executor("local", workers=args.workers)
+    spec = PlayerSpec(f"{__name__}:{Outing.__name__}", args)  # a script is `__main__` to its workers too
+    # In batches: a house is loaded once in a batch, and a run cut short is still balanced.
+    for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
+        for line in executor.run(spec, batch, on_death=lambda episode: line_of(episode, 0, [])):
+            run.append(line)
             if time.monotonic() > until_s:
-                return run.lines
-            witness.candidates = []
-            steps = _one_episode(env, agent, episode, args.seed)
-            run.append(
-                {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house, "steps": steps}
-                | {"candidates": witness.candidates}
-            )
-    return run.lines
+                return
 
 
-def _one_episode(env: ObjectNavEnv, agent: Any, episode: Episode, seed: int) -> int:
-    """Play to the last step; returns how many. An episode that breaks ends there."""
-    seed = episode_seed(seed, episode.episode_id)
-    try:
-        observation, _ = env.reset(seed=seed, options={"episode": episode})
-        agent.reset(episode.goal, seed)
-        for step in range(env.scene.task.max_steps):
-            action = agent.act(observation)
-            if action == Action.STOP:  # cannot be: everything is refused
-                return step
-            observation, _, _, truncated, _ = env.step(action)
-            if truncated:
-                break
-        return env.scene.task.num_steps
-    except (EpisodeError, PhysicsError):
-        return 0
+def line_of(episode: Episode, steps: int, candidates: list[list[float]]) -> dict[str, Any]:
+    """A line of the log."""
+    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
+    return about | {"steps": steps, "candidates": candidates}
 
 
-def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, Any]:
-    """Parameters of the pooled classifier and of each category with enough candidates, counts and calibration.
+class Outing:
+    """One process's environment, agent and witness; see `sim.runner`."""
 
-    Raises:
-        ConfigError: there are fewer than `least_of_either` true or false candidates in all.
-    """
-    goals, groups, features, truth = _table(lines)
-    if min(truth.sum(), (~truth).sum()) < least_of_either:
-        raise ConfigError(
-            f"The log holds {truth.sum()} true and {(~truth).sum()} false candidates; {least_of_either} of either are "
-            "needed: play more episodes."
+    def __init__(self, args: Args) -> None:
+        self._seed = args.seed
+        self._env = ObjectNavEnv(
+            split=args.split,
+            sensors=("depth", *SEMANTICS[args.semantics]),
+            truth=truth_needed(args.semantics),
+            max_steps=args.max_steps,
         )
-    counts = {goal: [int((~truth[goals == goal]).sum()), int(truth[goals == goal].sum())] for goal in GOAL_CATEGORIES}
-    own = [goal for goal, pair in counts.items() if min(pair) >= least_of_either]
-    return {
-        "features": list(Features._fields),
-        "episodes": len(lines),
-        "least_of_either": least_of_either,
-        "candidates": {goal: {"false": pair[0], "true": pair[1]} for goal, pair in counts.items()},
-        "calibration": _calibration(goals, groups, features, truth, own),
-        "pooled": _parameters(features, truth),
-        "categories": {goal: _parameters(features[goals == goal], truth[goals == goal]) for goal in own},
-    }
+        self.witness = Witness(self._env)
+        agent = agents.make(
+            "stubborn",
+            camera=self._env.camera_model,
+            robot=self._env.robot_model,
+            segmenter=make_segmenter(args.semantics, self._env, weights=args.weights),
+            verifier=self.witness,
+            target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
+        )
+        assert isinstance(agent, StubbornAgent)
+        self._agent = self.witness.agent = agent
 
+    def play(self, episode: Episode) -> dict[str, Any]:
+        """One episode to its last step; one that breaks ends there."""
+        self.witness.candidates = []
+        seed = episode_seed(self._seed, episode.episode_id)
+        try:
+            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
+            self._agent.reset(episode.goal, seed)
+            truncated = False
+            while not truncated:
+                action = self._agent.act(observation)
+                if action == Action.STOP:  # cannot be: everything is refused
+                    break
+                observation, _, _, truncated, _ = self._env.step(action)
+            steps = self._env.scene.task.num_steps
+        except (EpisodeError, PhysicsError):
+            steps = 0
+        return line_of(episode, steps, self.witness.candidates)
 
-def _table(
-    lines: Sequence[Mapping[str, Any]],
-) -> tuple[NDArray[np.str_], NDArray[np.intp], NDArray[np.float64], NDArray[np.bool_]]:
-    """Goal, number of the episode, features (n, 4) and truth of all candidates."""
-    rows = [(line["goal"], number, *each) for number, line in enumerate(lines) for each in _first_of_each(line)]
-    goals = np.array([row[0] for row in rows], np.str_)
-    groups = np.array([row[1] for row in rows], np.intp)
-    values = np.array([row[2:] for row in rows], np.float64).reshape(-1, len(Features._fields) + 1)
-    return goals, groups, values[:, :-1], values[:, -1] > 0.5
-
-
-def _first_of_each(line: Mapping[str, Any]) -> list[list[float]]:
-    """Features and truth of an episode's candidates, without those near an earlier one of the same truth."""
-    met: list[tuple[float, float, float]] = []
-    kept = []
-    for *features, truth, x_m, y_m in line["candidates"]:
-        if not any(truth == t and math.hypot(x_m - x, y_m - y) <= SAME_PLACE_M for t, x, y in met):
-            kept.append([*features, truth])
-            met.append((truth, x_m, y_m))
-    return kept
-
-
-def _parameters(features: NDArray[np.float64], truth: NDArray[np.bool_]) -> dict[str, Any]:
-    """Of one Gaussian naive Bayes; class 0 is false, class 1 true."""
-    model = GaussianNB().fit(features, truth)
-    return {
-        "prior": [round(float(value), 6) for value in model.class_prior_],
-        "mean": np.round(model.theta_, 6).tolist(),
-        "variance": [[float(f"{value:.6g}") for value in row] for row in model.var_],
-    }
-
-
-def _calibration(
-    goals: NDArray[np.str_],
-    groups: NDArray[np.intp],
-    features: NDArray[np.float64],
-    truth: NDArray[np.bool_],
-    own: Sequence[str],
-) -> dict[str, Any]:
-    """How good probabilities are on episodes that were not fitted: accuracy, and the true share by probability."""
-    classifier = np.where(np.isin(goals, own), goals, "")  # "": the pooled one, which is fitted to all
-    probability = np.full(len(truth), np.nan)
-    for train, test in GroupKFold(n_splits=min(FOLDS, len(np.unique(groups)))).split(features, truth, groups):
-        for name in np.unique(classifier[test]):
-            fitted = train if name == "" else train[goals[train] == name]
-            asked = test[classifier[test] == name]
-            if 0 < truth[fitted].sum() < len(fitted):
-                model = GaussianNB().fit(features[fitted], truth[fitted])
-                probability[asked] = model.predict_proba(features[asked])[:, 1]
-    known = np.isfinite(probability)
-    right = (probability > 0.5) == truth
-    bins = np.clip(np.floor(np.nan_to_num(probability) * 5.0), 0, 4)
-    return {
-        "accuracy": _share(right[known]),
-        "true_accepted": _share(right[known & truth]),
-        "false_rejected": _share(right[known & ~truth]),
-        "by_probability": [
-            {
-                "from": round(0.2 * number, 1),
-                "to": round(0.2 * (number + 1), 1),
-                "candidates": int((known & (bins == number)).sum()),
-                "mean_probability": _share(probability[known & (bins == number)]),
-                "true_share": _share(truth[known & (bins == number)]),
-            }
-            for number in range(5)
-            if (known & (bins == number)).any()
-        ],
-    }
-
-
-def _share(values: NDArray) -> float | None:
-    return round(float(values.mean()), 4) if len(values) else None
+    def close(self) -> None:
+        """Free the renderers."""
+        self._env.close()
 
 
 def command(args: Args) -> str:
@@ -300,16 +230,31 @@ def command(args: Args) -> str:
 
 
 def report(content: Mapping[str, Any]) -> None:
-    """Print counts and calibration."""
+    """Print counts, and what each method is worth on episodes left out."""
     print(f"{content['episodes']} episodes")
+    own = content["methods"]["naive-bayes"]["categories"]
     for goal, pair in content["candidates"].items():
-        pooled = "" if goal in content["categories"] else "  (pooled)"
+        pooled = "" if goal in own else "  (pooled)"
         print(f"  {goal:18s} {pair['true']:5d} true {pair['false']:5d} false{pooled}")
-    calibration = dict(content["calibration"])
-    rows = calibration.pop("by_probability")
-    print("on episodes left out: " + ", ".join(f"{key} {value}" for key, value in calibration.items()))
-    for row in rows:
-        print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
+    for method, fitted in content["methods"].items():
+        left_out = dict(fitted["left_out"])
+        rows = left_out.pop("by_probability")
+        print(f"{method}, on episodes left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
+        for row in rows:
+            print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
+
+
+def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
+    """A Markdown table: candidates of each category before and after verification by the parameters of a file."""
+    rows = ["| method | goal | true | false | precision before | precision after | true accepted | false rejected |"]
+    rows.append("|---|---|---|---|---|---|---|---|")
+    for method in METHODS:
+        for goal, found in judge_by_category(lines, FittedVerifier.read(file, method)).items():
+            true = round(found["precision_before"] * found["candidates"])
+            shares = [found[key] for key in ("precision_before", "precision", "true_accepted", "false_rejected")]
+            told = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
+            rows.append(f"| {method} | {goal} | {true} | {found['candidates'] - true} | {told} |")
+    return "\n".join(rows)
 
 
 def _check(args: Args) -> None:
@@ -317,6 +262,12 @@ def _check(args: Args) -> None:
     if args.semantics in UNVERIFIED:
         kinds = [kind for kind in SEMANTICS if kind not in UNVERIFIED]
         raise ConfigError(f"--semantics '{args.semantics}' has no verifier to fit. There is: {', '.join(kinds)}.")
+    if args.split in ("val", "test") and not args.judge:
+        raise ConfigError(f"Verifiers are never fitted on '{args.split}'; --judge judges one there.")
+    if args.workers < 1:
+        raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
+    if args.minutes is not None and not args.minutes >= 0.0:
+        raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
     if args.episodes < 1 or args.max_steps < 1 or args.least_of_either < 2:
         raise ConfigError("--episodes and --max-steps must be at least 1, --least-of-either at least 2.")
 

@@ -13,6 +13,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
+from torch.utils.data import Dataset
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, CameraModel
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
@@ -69,6 +70,20 @@ class Sampler:
             torch.from_numpy(normalise_depth(depth_m, self.camera)),
             torch.from_numpy(labels(semantic)),
         )
+
+
+class Samples(Dataset):
+    """Views in memory, as samples without chance."""
+
+    def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
+        """The sampler must not augment."""
+        self._views, self._sampler = views, sampler
+
+    def __len__(self) -> int:
+        return len(self._views)
+
+    def __getitem__(self, i: int) -> tuple[Tensor, Tensor, Tensor]:
+        return self._sampler(self._views[i], np.random.default_rng(0))
 
 
 def labels(semantic: NDArray[np.uint8]) -> NDArray[np.int64]:

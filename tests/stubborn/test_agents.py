@@ -11,10 +11,10 @@ from examples import my_agent
 from sim.interface import Action, Agent, ConfigError, Observation, RobotModel, Scores
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.classifiers import Features
 from stubborn.exploration import CornerExplorer
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.untrap import UntrapConfig
-from stubborn.verification import Features
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
 PLAN = """

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from sim.interface import ConfigError
+from stubborn.classifiers import Features
 from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning import Planner, PlanningConfig
 from stubborn.raster import distance_to, nearest, sight_is_clear
 from stubborn.target import TargetConfig, TargetSeeker
-from stubborn.verification import AcceptAll, Features
+from stubborn.verification import AcceptAll
 from tests.helpers.asciimap import map_of
 
 PLANNER = Planner(PlanningConfig(), trust_visited=True)

@@ -12,12 +12,12 @@ import pytest
 
 from sim import segmenters
 from sim.env import ObjectNavEnv
-from sim.episodes import Episode, write_split
+from sim.episodes import Episode, load_split, write_split
 from sim.interface import ConfigError
 from sim.pose import Pose
 from sim.semantics import NoisyConfig
+from stubborn.classifiers import Features
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.verification import Features
 from tests.helpers.worlds import room, with_box
 from tools import train_verifier
 
@@ -110,15 +110,29 @@ def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Pa
     assert set(asked) == {(True, 1), (False, 0)}
 
 
-def test_an_outing_cut_short_leaves_whole_lines(split: Path, tmp_path: Path):
-    env = ObjectNavEnv(split=split, sensors=("depth",), truth=("geom",), max_steps=30)
-    try:
-        args = train_verifier.Args(split=str(split), episodes=3, minutes=0.0)
-        run = train_verifier.RunDirectory(tmp_path, {})
-        assert train_verifier.play(args, env, run) == []
-        run.close()
-    finally:
-        env.close()
+def test_two_workers_log_what_one_does(split: Path, tmp_path: Path):
+    one = played(split, tmp_path / "one", 3)
+    args = train_verifier.Args(
+        split=str(split), episodes=3, max_steps=30, least_of_either=500, log=tmp_path / "two", workers=2
+    )
+    with pytest.raises(ConfigError, match="500 of either are needed"):
+        train_verifier.main(args)
+    two = [json.loads(line) for line in (tmp_path / "two/results.jsonl").read_text().splitlines()]
+    assert sorted(two, key=lambda line: line["episode_id"]) == one
+
+
+def test_time_that_is_up_leaves_whole_lines_and_none_plays_nothing(split: Path, tmp_path: Path):
+    args = train_verifier.Args(split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log")
+    there = load_split(str(split))
+    assert len(train_verifier.candidates_of(args, there)) == 1
+    assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), there)) == 1
+    assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), there) == []
+
+
+def test_val_and_test_are_only_judged():
+    for split in ("val", "test"):
+        with pytest.raises(ConfigError, match=f"never fitted on '{split}'; --judge"):
+            train_verifier.main(train_verifier.Args(split=split))
 
 
 def test_semantics_without_anything_to_verify_are_refused():
