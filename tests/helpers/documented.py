@@ -219,6 +219,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/trap_report.py --out runs/traps": (
         f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
     ),
+    # docs/watching.md
+    f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
+    f"{_RUN} --video --noise harsh --split traps --episodes 2": (
+        f"{_RUN} --video --noise harsh --split traps --episodes 1 --agent oracle --out {{tmp}}/traps",
+    ),
+    f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
+    f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
+    f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
+    f"{PYTHON} -m sim.teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
+    f"{PYTHON} -m sim.teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
     # docs/verification.md
     f"{PYTHON} tools/train_verifier.py --semantics noisy --split train --episodes 2000": Only(
         "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
