@@ -92,6 +92,7 @@ _EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 
 _VIEWS = (
     f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
 )
+_SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
 
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
@@ -180,6 +181,18 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
     ),
+    # docs/performance.md
+    f"{PYTHON} tools/bench.py --out runs/bench.json": (
+        f"{PYTHON} tools/bench.py --quick --parts c --out {{tmp}}/bench.json",
+    ),
+    f"{PYTHON} tools/bench.py --parts a,b,d": (f"{PYTHON} tools/bench.py --quick --parts a,b,d",),
+    # docs/scale.md
+    f"{_RUN} --episodes 200 --workers 2 --out runs/two": (
+        f"{_RUN} {_SMALL} --agent oracle --episodes 2 --workers 2 --out {{tmp}}/two",
+    ),
+    f"{_RUN} --episodes 1000 --shard 0/4 --out runs/big": (_SHARDS[0],),
+    f"{_RUN} --episodes 1000 --shard 1/4 --out runs/big": (_SHARDS[1],),
+    f"{PYTHON} tools/merge_runs.py runs/big": (*_SHARDS, f"{PYTHON} tools/merge_runs.py {{tmp}}/big"),
     # docs/reproduce.md
     f"{PYTHON} tools/reproduce.py ablation": (
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
