@@ -18,6 +18,7 @@ from sim.episodes import Episode
 from sim.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.pose import Pose
 from sim.rollout import TIMES, play_episode
+from sim.scene import SceneCache
 from sim.watching import WATCHED_IMAGES, Watcher
 from tests.helpers.worlds import room, with_box, with_movable
 
@@ -125,12 +126,23 @@ def test_the_viewer_has_a_world_of_its_own_without_ceiling_and_with_the_robot(
     assert np.array_equal(env.scene.world.data.qpos, before)
 
 
-def test_a_window_that_was_closed_stays_closed_and_the_run_goes_on(env: ObjectNavEnv, windows: list[Handle]) -> None:
+def test_each_house_has_its_window_but_one_that_was_closed_stays_closed_and_the_run_goes_on(
+    env: ObjectNavEnv, windows: list[Handle], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def next_house() -> None:
+        monkeypatch.setattr(env, "_scenes", SceneCache(env._scenes._make))
+
     view = live.LiveView()
     plain = played(env, view)
-    windows[0].close()
-    assert played(env, view) == plain
+    played(env, view)
     assert len(windows) == 1
+    next_house()
+    played(env, view)
+    assert [window.open for window in windows] == [False, True]
+    windows[1].close()
+    next_house()
+    assert played(env, view) == plain
+    assert len(windows) == 2
 
 
 def test_without_a_display_view_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
