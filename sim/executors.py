@@ -97,7 +97,7 @@ class _Process:
         except (EOFError, OSError):
             self.process.join()
             self.connection.close()
-            raise WorkerLost(f"The last one ended with status {self.process.exitcode}.") from None
+            raise WorkerLost(f"its process ended with status {self.process.exitcode}") from None
         self.busy = False
         return said
 

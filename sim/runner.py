@@ -8,12 +8,14 @@ the workers are (`sim.executors`) is not known here.
 from __future__ import annotations
 
 import importlib
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
 from sim.errors import WorkersError
 
+_log = logging.getLogger(__name__)
 Line = dict[str, Any]
 ItemT = TypeVar("ItemT", bound="Item")
 MAX_TRIES = 2
@@ -235,9 +237,10 @@ class _Shift(Generic[ItemT]):
         if item is None:
             self.failed_starts += 1
             if self.failed_starts >= MAX_FAILED_STARTS:
-                raise WorkersError(f"{self.failed_starts} workers died as they started. {loss}".strip())
+                raise WorkersError(f"{self.failed_starts} workers died as they started ({loss}).")
             return
         self.tries[item.episode_id] = self.tries.get(item.episode_id, 0) + 1
+        _log.warning("A worker was lost over '%s' (%s).", item.episode_id, loss)
         if self.tries[item.episode_id] < MAX_TRIES:
             self.queue.items.insert(0, item)
         else:

@@ -61,7 +61,7 @@ class Stillborn:
         return workers[:1]
 
     def receive(self) -> None:
-        raise WorkerLost("No such library.")
+        raise WorkerLost("No such library")
 
     def send(self, item: object) -> None:
         raise AssertionError("nobody was ready")
@@ -72,7 +72,7 @@ class Stillborn:
 
 def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
     crew = Stillborn()
-    with pytest.raises(WorkersError, match=r"3 workers died as they started\. No such library"):
+    with pytest.raises(WorkersError, match=r"3 workers died as they started \(No such library\)"):
         list(play_with(crew, errands(10), size=1, on_death=never))
     assert crew.hired == runner.MAX_FAILED_STARTS
 
