@@ -63,13 +63,16 @@ def commands() -> dict[str, str]:
     return found
 
 
-def inline_commands() -> dict[str, str]:
-    """Commands in running text: code between single backticks that starts Python with a tool; and where it stands."""
+def unmarked_commands() -> dict[str, str]:
+    """Commands that start Python with a tool outside of `sh` blocks: in running text and in blocks of `text`."""
     found: dict[str, str] = {}
     for page in pages():
-        text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
-        for match in re.finditer(r"`((?:\.venv/bin/)?python (?:-m |tools/|examples/)[^`]*)`", text):
-            words = shlex.split(match[1].replace("\n", " "))
+        lines = [line for block in blocks(page) if block.language == "text" for line in block.text.splitlines()]
+        prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for code in [*lines, *re.findall(r"`([^`]+)`", prose)]:
+            if not re.match(r"(?:\.venv/bin/)?python (?:-m (?:sim|tools|stubborn)\b|tools/|examples/)", code):
+                continue
+            words = shlex.split(code.replace("\n", " "), comments=True)
             named_only = len(words) == (3 if words[1] == "-m" else 2)
             if not named_only and "..." not in words:
                 found.setdefault(shlex.join([PYTHON, *words[1:]]), str(page.relative_to(ROOT)))

@@ -111,7 +111,7 @@ def test_a_trial_is_the_documented_command_with_less_to_do(command: str) -> None
 
 
 def test_documented_commands_and_their_trials_are_such_as_their_tools_take() -> None:
-    places = documented.commands() | documented.inline_commands()
+    places = documented.commands() | documented.unmarked_commands()
     trials = {step: "tests/helpers/documented.py" for name in TRIED for step in _steps(name, Path("scratch"))}
     refused = []
     for command, where in {**trials, **places}.items():
