@@ -21,9 +21,10 @@ from sim.results import WATCHED
 from sim.rollout import play_episode
 from sim.run import entry
 from sim.topview import TopView
-from sim.video import END_FRAMES, VideoWatcher, VideoWriter, video_file
+from sim.video import END_FRAMES, FRAMES_PER_S, VideoWatcher, VideoWriter, video_file
 from sim.watching import WATCHED_IMAGES, Moment
 from stubborn.draw import BeliefPainter
+from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
 
 TIMES = ("wall_time_s", "steps_per_s")
@@ -108,6 +109,37 @@ def test_a_video_is_vp9_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(
     assert {frame.shape for frame in frames} == {(720, 1280, 3)}
     stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-END_FRAMES - 1, -1))
     assert np.abs(stop - outcome).mean() > 3.0  # the outcome stands where the step stood
+
+
+def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
+    if browser.missing():
+        pytest.skip(str(browser.missing()))
+    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    page = tmp_path / "page.html"
+    page.write_text("<video muted src='videos/sofa room%252F0.mp4'></video>")
+    window = browser.Browser(tmp_path / "profile")
+    try:
+        window.open(page)
+        seen = window.run("""
+            const video = document.querySelector("video");
+            const wait = (event) => new Promise((done, fail) => {
+                video.addEventListener(event, done, {once: true});
+                video.addEventListener("error", () => fail(video.error.message), {once: true});
+            });
+            return (async () => {
+                if (video.readyState < 3) await wait("canplay");
+                video.currentTime = 1.0;
+                await wait("seeked");
+                video.playbackRate = 4;
+                const ended = wait("ended");
+                await video.play();
+                await ended;
+                return [video.videoWidth, video.videoHeight, video.duration];
+            })();
+        """)
+    finally:
+        window.close()
+    assert seen == [1280, 720, pytest.approx((4 + END_FRAMES) / FRAMES_PER_S, abs=0.05)]
 
 
 def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path: Path) -> None:
