@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
 from pathlib import Path
 
@@ -75,3 +77,11 @@ def test_maps_take_no_memory_where_nothing_was_seen() -> None:
     grown_mb = resident_mb() - before_mb
     assert not navmap.visited.any()
     assert grown_mb < 16, grown_mb  # all layers have 68
+
+
+def test_a_worker_imports_no_library_that_it_does_not_need() -> None:
+    player = "from sim.run import Args, EpisodePlayer; player = EpisodePlayer(Args()); player.close()"
+    heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
+    told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
+    ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
+    assert ended.stdout.split() == []
