@@ -29,10 +29,10 @@ SENSORS = ("depth", "semantic")
 class Amount:
     """How much is measured."""
 
-    houses: int = 10
-    poses: int = 20
+    houses: int = 8
+    poses: int = 10
     """In each house."""
-    repeats: int = 3
+    repeats: int = 2
     steps: int = 1500
     """Of agents, for the splits of a step."""
     episodes: int = 20
