@@ -7,6 +7,7 @@ to the folder in which the run was started, where their machine has it, so that 
 from __future__ import annotations
 
 import contextlib
+import importlib
 import logging
 import os
 import socket
@@ -21,10 +22,10 @@ from sim.paths import code_hash
 from sim.runner import Bench, ItemT, PlayerSpec, WorkerLost, play_with
 
 try:
-    import ray
-    from ray.exceptions import RayError, RayTaskError
+    ray: Any = importlib.import_module("ray")  # by its name: who type-checks this need not have it
 except ModuleNotFoundError:
     raise ConfigError("--executor ray needs the extra `ray`: pip install 'stubborn-objectnav[ray]'.") from None
+RayError, RayTaskError = ray.exceptions.RayError, ray.exceptions.RayTaskError
 
 KNOCK_S = 5.0
 NO_ROOM_TOLD_AFTER_S = 30.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import sys
@@ -144,11 +145,9 @@ def cluster() -> Iterator[Any]:
     """Two machines of one processor each, and a death that is noticed within two seconds."""
     ray = pytest.importorskip("ray")
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
-    from ray.cluster_utils import Cluster
-
     noticed = {f"health_check_{name}": value for name, value in HEALTH.items()}
     head = {"num_cpus": 1, "object_store_memory": 80_000_000, "_system_config": noticed}
-    two = Cluster(initialize_head=True, head_node_args=head)
+    two = importlib.import_module("ray.cluster_utils").Cluster(initialize_head=True, head_node_args=head)
     try:
         yield two
     finally:
