@@ -16,8 +16,9 @@ from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
 from sim.houses.labels import Instance, Labels, read_labels
 from sim.interface import MPCAT40_ID
-from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK, robot_spec
+from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK
 from sim.robot.config import RobotConfig
+from sim.robot.mounting import any_robot_spec
 
 _FLOOR = MPCAT40_ID["floor"]
 
@@ -41,7 +42,7 @@ def compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, 
     names = _name_geoms(spec, labels)
     _set_masks(spec, bare, labels)
     _set_options(spec, config)
-    spec.attach(robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
+    spec.attach(any_robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
     spec.compiler.fusestatic = True
     try:
         model = spec.compile()

@@ -30,6 +30,7 @@ from sim.parallel import Share
 from sim.paths import code_hash
 from sim.pose import Pose
 from sim.results import RunDirectory
+from sim.robot.foreign import load_robot, robot_sha256
 from sim.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.runner import PlayerSpec
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
@@ -63,6 +64,8 @@ class Args:
     """One MJCF file in place of a split."""
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for houses from elsewhere."""
+    robot: Path | None = None
+    """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None
@@ -181,7 +184,14 @@ def plan_episodes(args: Args) -> tuple[list[Episode], dict[str, Any]]:
     """
     start = _parse_start(args.start_deg)
     env = ObjectNavEnv(
-        split=args.split, house=args.house, labels=args.labels, goal=args.goal, start=start, sensors=(), profile="fast"
+        split=args.split,
+        house=args.house,
+        labels=args.labels,
+        goal=args.goal,
+        start=start,
+        sensors=(),
+        profile="fast",
+        **_body(args),
     )
     try:
         split = env.split
@@ -232,6 +242,7 @@ class EpisodePlayer:
             truth=_truth(args),
             profile=args.profile,
             noise=args.noise,
+            **_body(args),
         )
         self._agent = make_agent(args, self._env)
         self._watchers = watchers.make(args, draw.painter_of(self._agent))
@@ -264,6 +275,14 @@ class EpisodePlayer:
 def _truth(args: Args) -> tuple[str, ...]:
     """Images that are rendered beside what the agent reads: for a noisy detector, and for who looks on."""
     return truth_needed(args.semantics) + WATCHED_IMAGES * watchers.any_asked(args)
+
+
+def _body(args: Args) -> dict[str, Any]:
+    """Robot and camera of --robot, as the environment takes them; nothing for ours."""
+    if args.robot is None:
+        return {}
+    robot, camera = load_robot(args.robot)
+    return {"robot": robot, "camera": camera}
 
 
 def _sensors(args: Args) -> tuple[str, ...]:
@@ -356,6 +375,8 @@ def config_of(args: Args, split: dict[str, Any]) -> dict[str, Any]:
     del options["list_agents"]
     noise: dict[str, Any] = {"noise_config": asdict(get_noise(args.noise))}
     noise |= describe_semantics(args.semantics, args.weights)
+    if args.robot is not None:
+        noise["robot_sha256"] = robot_sha256(args.robot)
     return options | noise | {"split_identity": split, "versions": _versions()}
 
 

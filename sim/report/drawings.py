@@ -18,6 +18,8 @@ from sim.interface import ConfigError, RobotModel
 from sim.metrics import EXPLORED_SHARE
 from sim.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_way
 from sim.report.words import marks
+from sim.robot.config import RobotConfig
+from sim.robot.foreign import load_robot
 from sim.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.world import World
 
@@ -75,16 +77,19 @@ class Drawings:
         if truth is None:
             sheet = sheet_around(np.vstack([trajectory.positions_m for trajectory in there]))
             episode: dict[str, Any] = {"size": sheet.size_px}
+            radius_m = RobotModel().radius_m
         else:
             line, floor_z_m = runs[0].lines[episode_id], float(there[0].poses[0, 3])
             sheet = Sheet(truth.space(floor_z_m).frame)
             plan = f"{line['house']}@{floor_z_m:g}"
             if plan not in self.plans:
                 self.plans[plan] = draw_plan(truth, floor_z_m)
-            start_m = there[0].positions_m[0].tolist()
+            start_m, radius_m = there[0].positions_m[0].tolist(), truth.world.robot.radius_m
             episode = {"plan": plan, **self._target(truth, plan, str(line["goal"]), floor_z_m, start_m)}
         episode["ways"] = [
-            None if trajectory is None else way(sheet, trajectory) | {"marks": _marks(run, episode_id, trajectory)}
+            None
+            if trajectory is None
+            else way(sheet, trajectory, radius_m=radius_m) | {"marks": _marks(run, episode_id, trajectory)}
             for run, trajectory in zip(runs, ways, strict=True)
         ]
         self.episodes[episode_id] = episode
@@ -114,9 +119,9 @@ def draw_episodes(runs: Sequence[Run], ways: Ways) -> tuple[Drawings, list[str]]
     drawn = [i for i, of_runs in ways.items() if any(way is not None for way in of_runs)]
     if not drawn:
         return drawings, regrets
-    split: Split | None = None
+    split, robot = None, None
     try:
-        split = split_of(runs[0])
+        split, robot = split_of(runs[0]), _robot_of(runs[0])
     except (ConfigError, HouseError, KeyError) as error:
         regrets.append(f"The houses are not drawn: {error}")
     truth: Truth = None
@@ -124,7 +129,7 @@ def draw_episodes(runs: Sequence[Run], ways: Ways) -> tuple[Drawings, list[str]]
     for episode_id in sorted(drawn, key=lambda i: str(runs[0].lines[i]["house"])):
         if house != (house := str(runs[0].lines[episode_id]["house"])) and split is not None:
             try:
-                truth = GroundTruth(World(split.load_house(house)))
+                truth = GroundTruth(World(split.load_house(house), robot=robot))
             except (ConfigError, HouseError) as error:
                 truth = None
                 regrets.append(f"House '{house}' is not drawn: {error}")
@@ -132,8 +137,13 @@ def draw_episodes(runs: Sequence[Run], ways: Ways) -> tuple[Drawings, list[str]]
     return drawings, regrets
 
 
-def way(sheet: Sheet, trajectory: Trajectory) -> dict[str, Any]:
-    """A trajectory over a sheet.
+def _robot_of(run: Run) -> RobotConfig | None:
+    """The robot from elsewhere that played; None for ours."""
+    return load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else None
+
+
+def way(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, Any]:
+    """A trajectory over a sheet, of a robot of this radius.
 
     `x`, `y` (page units) and `a` (degrees, clockwise as on the page) are the first value and then differences; `d` is
     decimetres to go, null where there is no way; `actions` a digit an action; `hits` step, x and y of each contact
@@ -152,7 +162,7 @@ def way(sheet: Sheet, trajectory: Trajectory) -> dict[str, Any]:
         "hits": np.unique(hits, axis=0).tolist(),
         "stopped": np.flatnonzero(trajectory.collided).tolist(),
         "seen": list(_spans(trajectory.goal_share >= EXPLORED_SHARE)),
-        "robot": round(RobotModel().radius_m * PX_M),
+        "robot": round(radius_m * PX_M),
     }
 
 

@@ -18,12 +18,14 @@ hull                4 / 3        floor, static, movables
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
+from sim.houses.labels import geoms_of
 from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
@@ -40,30 +42,31 @@ HULL_MASK = (4, 3)
 
 _CASTER_PRIORITY = 1000
 """Casters are frictionless on every floor: their friction wins over the floor's."""
-_HULL_PRIORITY = 1000
+HULL_PRIORITY = 1000
 """The hull's friction and stiffness win over those of what it touches."""
 _NET_FORCE = 3
 """`reduce` of a contact sensor: one wrench for all contacts, in the world frame."""
 
 
 def robot_spec(config: RobotConfig) -> mujoco.MjSpec:
-    """The robot alone, to be attached with the prefix `PREFIX` to the world body."""
+    """Our robot alone, to be attached with the prefix `PREFIX` to the world body."""
     spec = mujoco.MjSpec()
     spec.modelname = "robot"
     base = spec.worldbody.add_body(name="base", fuse=0)
-    _add_joints(base, config)
+    add_joints(base, config)
     _set_inertia(base, config)
     for name, side in (("left", 1.0), ("right", -1.0)):
         _add_wheel(base, name, side, config)
-        _add_motor(spec, name, config)
+        add_motor(spec, name, f"{name}_wheel", config)
     for name, end in (("front", 1.0), ("rear", -1.0)):
         _add_caster(base, name, end, config)
     _add_hull(base, config)
-    _add_touch(spec)
+    add_touch(spec, "touch", mujoco.mjtObj.mjOBJ_BODY, "hull")
     return spec
 
 
-def _add_joints(base: mujoco.MjsBody, config: RobotConfig) -> None:
+def add_joints(base: mujoco.MjsBody, config: RobotConfig) -> None:
+    """What lets the base move through the house."""
     if config.base == "free":
         base.add_freejoint(name="free")
         return
@@ -94,11 +97,17 @@ def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig
     spin = 0.5 * wheels.mass_kg * radius**2
     wheel.mass, wheel.ipos, wheel.inertia = wheels.mass_kg, (0.0, 0.0, 0.0), (0.5 * spin, spin, 0.5 * spin)
     wheel.explicitinertial = True
-    # The wheel brings no friction of its own: the pair takes the larger value, which is then the floor's.
+    add_tyre(wheel, name, radius)
+
+
+def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
+    """What of a wheel touches the floor. Its friction is 0: the pair takes the larger value, which is the floor's."""
     wheel.add_geom(
         name=f"{name}_tyre",
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
-        size=(radius, 0, 0),
+        size=(radius_m, 0, 0),
+        pos=centre_m,
+        mass=0.0,
         friction=(0.0, 0.0, 0.0),
         condim=3,
         contype=WHEEL_MASK[0],
@@ -108,13 +117,13 @@ def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig
     )
 
 
-def _add_motor(spec: mujoco.MjSpec, name: str, config: RobotConfig) -> None:
+def add_motor(spec: mujoco.MjSpec, name: str, joint: str, config: RobotConfig) -> mujoco.MjsActuator:
+    """A motor `<name>_motor` that turns a wheel's joint at the commanded speed as far as its torque goes."""
     wheels = config.wheels
-    motor = spec.add_actuator(
-        name=f"{name}_motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target=f"{name}_wheel", forcelimited=1
-    )
+    motor = spec.add_actuator(name=f"{name}_motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint, forcelimited=1)
     motor.set_to_velocity(kv=wheels.motor_gain_nm_s)
     motor.forcerange = (-wheels.max_torque_nm, wheels.max_torque_nm)
+    return motor
 
 
 def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig) -> None:
@@ -147,7 +156,7 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
             pos=(0.0, 0.0, 0.5 * (top + bottom)),
             mass=0.0,
             friction=(body.friction, 0.0, 0.0),
-            priority=_HULL_PRIORITY,
+            priority=HULL_PRIORITY,
             solref=(body.contact_time_s, 1.0),
             contype=HULL_MASK[0],
             conaffinity=HULL_MASK[1],
@@ -156,13 +165,14 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
         )
 
 
-def _add_touch(spec: mujoco.MjSpec) -> None:
+def add_touch(spec: mujoco.MjSpec, name: str, of: mujoco.mjtObj, part: str) -> None:
+    """A sensor of all contacts of one body or geom; sensors whose names begin with `touch` make the sense of touch."""
     fields = (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND)) | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE))
     spec.add_sensor(
-        name="touch",
+        name=name,
         type=mujoco.mjtSensor.mjSENS_CONTACT,
-        objtype=mujoco.mjtObj.mjOBJ_BODY,
-        objname="hull",
+        objtype=of,
+        objname=part,
         intprm=[fields, _NET_FORCE, 1],
     )
 
@@ -175,10 +185,10 @@ class Body:
     qpos: NDArray[np.float64]  # (4,) x, y, z, yaw or (7,) position and quaternion
     qvel: NDArray[np.float64]  # (4,) or (6,): a free joint's angular part is in the body's frame
     ctrl: NDArray[np.float64]  # (2,) left and right wheel, commanded rad/s
-    touch: NDArray[np.float64]  # (4,) number of hull contacts; net force of the hull on what it touches, world, N
+    touches: NDArray[np.float64]  # (parts, 4) of each part of the hull what `touch` says of all of it
     hull_geoms: tuple[int, ...]
     wheel_geoms: tuple[int, ...]
-    """Tyres and casters."""
+    """Tyres and casters; of a body from elsewhere also what collides with nothing."""
 
     @staticmethod
     def find(model: mujoco.MjModel, data: mujoco.MjData) -> Body:
@@ -188,18 +198,24 @@ class Body:
         planar = model.body_jntnum[base] == 4
         q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
         motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in ("left", "right")]
-        sensor = model.sensor_adr[model.sensor(PREFIX + "touch").id]
+        sensors = [i for i in range(model.nsensor) if model.sensor(i).name.startswith(PREFIX + "touch")]
+        touch = int(model.sensor_adr[sensors[0]])  # they were added one after the other
+        geoms = np.flatnonzero(geoms_of(model, PREFIX)).tolist()
+        hull = tuple(geom for geom in geoms if model.geom_contype[geom] == HULL_MASK[0])
         return Body(
             planar=bool(planar),
             qpos=data.qpos[q : q + (4 if planar else 7)],
             qvel=data.qvel[v : v + (4 if planar else 6)],
             ctrl=data.ctrl[motors[0] : motors[0] + 2],
-            touch=data.sensordata[sensor : sensor + 4],
-            hull_geoms=tuple(model.geom(f"{PREFIX}{name}_hull").id for name in ("lower", "upper")),
-            wheel_geoms=tuple(
-                model.geom(PREFIX + name).id for name in ("left_tyre", "right_tyre", "front_caster", "rear_caster")
-            ),
+            touches=data.sensordata[touch : touch + 4 * len(sensors)].reshape(-1, 4),
+            hull_geoms=hull,
+            wheel_geoms=tuple(geom for geom in geoms if geom not in hull),
         )
+
+    @property
+    def touch(self) -> NDArray[np.float64]:
+        """(4,) number of hull contacts; net force of the hull on what it touches, world, N."""
+        return self.touches[0] if len(self.touches) == 1 else self.touches.sum(axis=0)
 
     def place(self, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
         """Write a pose into the state; the caller runs `mj_forward`."""

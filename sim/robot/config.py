@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Literal, get_args
 
 from sim.interface import FORWARD_M, TURN_RAD, ConfigError, RobotModel
@@ -177,6 +178,18 @@ class PhysicsConfig:
         _require_positive(self, *(f.name for f in fields(self)))
 
 
+@dataclass(frozen=True)
+class RobotFile:
+    """A body from elsewhere in place of ours (`sim.robot.foreign`)."""
+
+    path: Path
+    """The MJCF file."""
+    wheel_joints: tuple[str, str]
+    """Names of the left and the right wheel's hinge."""
+    casters: tuple[str, ...] = ()
+    """Names of geoms or bodies that slide on the floor."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class RobotConfig:
     """The robot, whole."""
@@ -186,6 +199,8 @@ class RobotConfig:
     wheels: WheelConfig = field(default_factory=WheelConfig)
     drive: DriveConfig = field(default_factory=DriveConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
+    file: RobotFile | None = None
+    """A body from elsewhere, which the numbers of `body` and `wheels` then describe; None: ours is made from them."""
 
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):

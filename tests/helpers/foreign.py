@@ -118,3 +118,64 @@ def write_scene(folder: Path, *, scene: str = SCENE, labels: dict[str, str] | No
     (folder / "flat.xml").write_text(scene)
     (folder / "labels.json").write_text(json.dumps(LABELS if labels is None else labels))
     return folder / "flat.xml", folder / "labels.json"
+
+
+ROBOT = """
+<mujoco model="carrier">
+  <compiler angle="degree" meshdir="parts" eulerseq="zyx"/>
+  <option timestep="0.001"/>
+  <asset><mesh name="deck" file="cube.obj" scale="0.14 0.12 0.05"/></asset>
+  <default>
+    <default class="wheel">
+      <geom type="cylinder" size="0.075 0.02" euler="0 0 0" mass="0.5" friction="1.5 0.01 0.01" rgba="0.1 0.1 0.1 1"/>
+      <joint type="hinge" axis="0 0 1" damping="0.02"/>
+    </default>
+  </default>
+  <worldbody>
+    <light pos="0 0 3"/>
+    <geom name="ground" type="plane" size="3 3 0.1"/>
+    <body name="chassis" pos="0.4 0.1 0.075">
+      <freejoint name="root"/>
+      <geom name="deck" type="mesh" mesh="deck" pos="0.02 0 0.06" mass="9"/>
+      <camera name="front" pos="0.1 0 0.1"/>
+      <body name="wheel_l" pos="0 0.15 0" euler="0 0 -90">
+        <joint name="hub_l" class="wheel"/><geom class="wheel"/>
+      </body>
+      <body name="wheel_r" pos="0 -0.15 0" euler="0 0 90">
+        <joint name="hub_r" class="wheel"/><geom class="wheel"/>
+      </body>
+      <geom name="castor" type="sphere" size="0.03" pos="-0.12 0 -0.045" mass="0.1"/>
+      <body name="mast" pos="0 0 0.1">
+        <geom type="capsule" fromto="0 0 0 0 0 0.6" size="0.03" mass="1.5"/>
+        <body name="head" pos="0 0 0.65"><joint name="pan" type="hinge" axis="0 0 1" range="-90 90"/>
+          <geom type="box" size="0.05 0.08 0.05" mass="0.8"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="ml" joint="hub_l"/><motor name="mr" joint="hub_r"/><position name="look" joint="pan"/>
+  </actuator>
+  <keyframe><key qpos="0.4 0.1 0.075 1 0 0 0 0 0 0"/></keyframe>
+</mujoco>
+"""
+HOLLOW = """</default>
+    <geom contype="0" conaffinity="0"/>
+  </default>"""
+"""In place of the end of the robot's defaults: nothing of it collides."""
+SIDECAR = {
+    "wheel_joints": ["hub_l", "hub_r"],
+    "wheel_radius_m": 0.075,
+    "casters": ["castor"],
+    "camera_height_m": 0.82,
+}
+
+
+def write_robot(folder: Path, *, robot: str = ROBOT, **sidecar: object) -> Path:
+    """The robot's file with its parts and its sidecar beside it; a value of None leaves the sidecar's out."""
+    (folder / "parts").mkdir(parents=True)
+    (folder / "parts" / "cube.obj").write_text(CUBE)
+    (folder / "carrier.xml").write_text(robot)
+    content = {key: value for key, value in {**SIDECAR, **sidecar}.items() if value is not None}
+    (folder / "carrier.json").write_text(json.dumps(content))
+    return folder / "carrier.xml"

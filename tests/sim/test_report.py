@@ -187,7 +187,7 @@ def test_a_hundred_long_episodes_fit_into_five_megabytes() -> None:
         success=False,
         end_reason="max_steps",
     )
-    drawn = json.dumps(way(sheet_around(walk), trajectory), separators=(",", ":"))
+    drawn = json.dumps(way(sheet_around(walk), trajectory, radius_m=0.18), separators=(",", ":"))
     assert 100 * len(drawn) < 4_000_000  # 20 houses take 0.3 MB
 
 
