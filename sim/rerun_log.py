@@ -70,15 +70,16 @@ def rerun_file(run: Path, episode_id: str) -> Path:
 
 
 def points_in_world(
-    depth: NDArray[np.float32], camera: CameraModel, pose: Pose, *, stride_px: int
+    depth: NDArray[np.float32], camera: CameraModel, pose: Pose, *, stride_px: int, forward_m: float = 0.0
 ) -> tuple[NDArray[np.float32], NDArray[np.intp], NDArray[np.intp]]:
     """Points (n, 3) in the world of every so many pixels that have a distance, and their rows and columns.
 
     Args:
         depth: (h, w) metres; 0 and the farthest value are no points.
         camera: that took it.
-        pose: of the robot; the camera stands on its axis.
+        pose: of the robot.
         stride_px: every so many pixels, each way.
+        forward_m: how far the camera stands before the robot's axis.
     """
     rows, cols = np.mgrid[stride_px // 2 : depth.shape[0] : stride_px, stride_px // 2 : depth.shape[1] : stride_px]
     d = depth[rows, cols]
@@ -86,8 +87,9 @@ def points_in_world(
     rows, cols, d = rows[there], cols[there], d[there]
     left = d * (0.5 * camera.width_px - 0.5 - cols) / camera.focal_px
     up = d * (0.5 * camera.height_px - 0.5 - rows) / camera.focal_px
-    cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
-    points = [pose.x_m + cos * d - sin * left, pose.y_m + sin * d + cos * left, pose.floor_z_m + camera.height_m + up]
+    cos, sin, ahead = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), d + forward_m
+    x_m, y_m = pose.x_m + cos * ahead - sin * left, pose.y_m + sin * ahead + cos * left
+    points = [x_m, y_m, pose.floor_z_m + camera.height_m + up]
     return np.stack(points, axis=1).astype(np.float32), rows, cols
 
 
@@ -151,6 +153,8 @@ class RerunLog:
         self._part = file.with_name(f".{file.stem}.part-{os.getpid()}.rrd")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
+            for left_over in file.parent.glob(f".{file.stem}.part-*.rrd"):  # of a process that was killed
+                left_over.unlink()
             self._part.touch()
         except OSError as error:
             raise ConfigError(f"Cannot write the recording '{file}': {error.strerror}.") from None
@@ -193,7 +197,8 @@ class RerunLog:
             camera_xyz=rr.ViewCoordinates.FLU,
             image_plane_distance=0.5,
         )
-        self._stream.log("world/robot/camera", rr.Transform3D(translation=(0.0, 0.0, camera.height_m)), static=True)
+        mount = (self._env.robot_model.camera_forward_m, 0.0, camera.height_m)
+        self._stream.log("world/robot/camera", rr.Transform3D(translation=mount), static=True)
         self._stream.log("world/robot/camera", pinhole, static=True)
 
     def _log_images(self, moment: Moment) -> None:
@@ -211,7 +216,13 @@ class RerunLog:
         here = (pose.x_m, pose.y_m, pose.floor_z_m)
         turned = rr.Quaternion(xyzw=(0.0, 0.0, math.sin(half), math.cos(half)))
         self._stream.log("world/robot", rr.Transform3D(translation=here, quaternion=turned))
-        points, rows, cols = points_in_world(moment.seen("depth"), env.camera_model, pose, stride_px=POINT_STRIDE_PX)
+        points, rows, cols = points_in_world(
+            moment.seen("depth"),
+            env.camera_model,
+            pose,
+            stride_px=POINT_STRIDE_PX,
+            forward_m=env.robot_model.camera_forward_m,
+        )
         self._stream.log(
             f"world/points/{moment.step:03d}", rr.Points3D(points, colors=moment.seen("rgb")[rows, cols], radii=0.01)
         )

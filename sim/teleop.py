@@ -10,11 +10,13 @@ nothing.
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -43,7 +45,7 @@ KEYS: dict[str, Action] = {
     "right": Action.TURN_RIGHT,
     "x": Action.STOP,
 }
-HELP = "w/up forward  a/left d/right turn  x stop here  g distance  c camera  m layout  p plan  q quit"
+HELP = "arrows or wad drive  x STOP  g distance  c camera  m layout  p plan  q quit"
 CAMERAS = ("rgb", "semantic", "depth")
 LAYOUTS = ("both", "camera", "map")
 _STRUCTURE = frozenset(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -156,10 +158,10 @@ class Human:
     def _screen(self, observation: Observation, message: str) -> list[str]:
         """The lines of the whole screen."""
         columns, lines = self._cockpit.size
-        room = max(4, lines - 4)
         step = self._env.scene.task.num_steps + 1
-        head = f"Look for: {in_words(self.mapper.goal).upper()}   step {step}   {message}"
-        sight = f"in sight: {_names_in_sight(observation['semantic'])}"
+        head = wrap(f"Look for: {in_words(self.mapper.goal).upper()}, step {step}. {message}", columns)
+        foot = [*wrap(f"in sight: {_names_in_sight(observation['semantic'])}", columns), *wrap(HELP, columns)]
+        room = max(2, lines - len(head) - len(foot))
         blocks, widths = [], []
         share = columns if self.layout != "both" else (columns - 2) // 2
         if self.layout != "map":
@@ -167,10 +169,10 @@ class Human:
             blocks.append(half_blocks(picture, self._cockpit.colours))
             widths.append(picture.shape[1])
         if self.layout != "camera":
-            size = max(8, min(share, 2 * room) // 2 * 2)
+            size = max(4, min(share, 2 * room) // 2 * 2)
             blocks.append(half_blocks(self.painter.paint(size), self._cockpit.colours))
             widths.append(size)
-        return [head[:columns], *beside(blocks, widths), sight[:columns], HELP[:columns]]
+        return [*head, *beside(blocks, widths), *foot][:lines]
 
     def _picture(self, observation: Observation) -> NDArray[np.uint8]:
         if self.camera == "semantic":
@@ -213,15 +215,29 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
     options = run_options(args)
     assert options.out is not None
     episodes, split = plan(args, options)
+    begun_here = not (options.out / "config.json").exists()
     record = RunDirectory(options.out, run.config_of(options, split))
     try:
         episode = choose(args, episodes, {line["episode_id"] for line in record.lines})
         line = play(args, options.out, episode, cockpit, run.config_of(options, split))
         record.append(line)
         record.write_summary({"split": split})
+    except (Quit, KeyboardInterrupt):
+        if begun_here:
+            _leave_nothing(options.out)
+        raise
     finally:
         record.close()
     return options.out, line
+
+
+def _leave_nothing(out: Path) -> None:
+    """Take back a folder in which nothing was recorded, so that the next start there may have other options."""
+    for name in ("config.json", "results.jsonl", ".lock"):
+        (out / name).unlink(missing_ok=True)
+    for folder in (out / "videos", out):
+        with contextlib.suppress(OSError):  # not there, or somebody keeps something in it
+            folder.rmdir()
 
 
 def run_options(args: Args) -> run.Args:

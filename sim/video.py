@@ -68,6 +68,8 @@ class VideoWriter:
         self._part = file.with_name(f".{file.stem}.part-{os.getpid()}.mp4")
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
+            for left_over in file.parent.glob(f".{file.stem}.part-*.mp4"):  # of a process that was killed
+                left_over.unlink()
             self._part.touch()
         except OSError as error:
             raise ConfigError(f"Cannot write the video '{file}': {error.strerror}.") from None

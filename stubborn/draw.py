@@ -248,7 +248,7 @@ class _Canvas:
             cv2.polylines(self.image, [points.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
 
     def robot(self, pose: PlanarPose, radius_m: float) -> None:
-        small_px = max(2, self.image.shape[0] // 110)
+        small_px = max(1, self.image.shape[0] // 110)
         radius_px = max(small_px, round(radius_m / self.frame.cell_m * self.scale))
         middle, rim_px = self.pixel(pose.x_m, pose.y_m), self.width_px
         cv2.circle(self.image, middle, radius_px, (255, 255, 255), -1, cv2.LINE_AA)

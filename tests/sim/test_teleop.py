@@ -89,11 +89,18 @@ def test_a_drive_is_recorded_like_an_agents_episode_and_the_next_start_takes_the
         teleop.drive(args, Script(["x"]))
 
 
+def test_leaving_before_the_first_record_leaves_no_folder(split: Path, tmp_path: Path) -> None:
+    for goal in (None, "sofa"):  # another goal in a folder that was begun would be refused
+        with pytest.raises(teleop.Quit):
+            teleop.drive(teleop.Args(split=str(split), goal=goal, out=tmp_path / "out", video=True), Script(["w", "q"]))
+        assert not (tmp_path / "out").exists()
+
+
 def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request_only(env: ObjectNavEnv) -> None:
     cockpit = Script(["g", "c", "m", "p", "p", "?", "x"])
     line = play_episode(env, teleop.Human(env, cockpit), env.split.episodes[0], seed=0)
     assert line["num_steps"] == 1
-    told = [screen[0] for screen in cockpit.screens]
+    told = [" ".join(screen[:2]) for screen in cockpit.screens]
     assert [f"{line['shortest_path']:.1f} m" in head for head in told] == [False, True] + [False] * 5
     assert "the agent would" in told[4]
 
@@ -103,14 +110,14 @@ def test_the_map_learns_collisions_from_what_was_driven_not_from_what_it_would_h
     human = teleop.Human(env, cockpit)
     with pytest.raises(teleop.Quit):
         play_episode(env, human, env.split.episodes[0], seed=0)
-    assert "COLLISION" in cockpit.screens[-1][0]
+    assert "COLLISION" in " ".join(cockpit.screens[-1][:2])
     marked = np.argwhere(human.mapper.navmap.bumped_narrow)
     assert len(marked) > 0
     x_m, _ = human.mapper.navmap.frame.centres(marked[:, 0], marked[:, 1])
     assert 1.9 < float(x_m.min()) < float(x_m.max()) < 2.6  # the sofa begins at 2.1 m
 
 
-@pytest.mark.parametrize("size", [(20, 10), (80, 24), (81, 25), (200, 60)])
+@pytest.mark.parametrize("size", [(30, 16), (80, 24), (81, 25), (200, 60)])
 def test_no_line_is_wider_and_no_screen_higher_than_the_terminal(env: ObjectNavEnv, size: tuple[int, int]) -> None:
     cockpit = Script(["m", "m", "c", "w"], size)
     with pytest.raises(teleop.Quit):
@@ -120,6 +127,9 @@ def test_no_line_is_wider_and_no_screen_higher_than_the_terminal(env: ObjectNavE
         assert len(screen) <= size[1]
         assert max(map(len, screen)) <= size[0]
         assert any(HALF_BLOCK in line for line in screen)
+        words = " ".join(line for line in screen if HALF_BLOCK not in line)
+        assert "Look for: SOFA, step" in words
+        assert words.split()[-len(teleop.HELP.split()) :] == teleop.HELP.split()
 
 
 def read_back(lines: Sequence[str]) -> NDArray[np.int64]:

@@ -160,6 +160,16 @@ def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path
     assert list((tmp_path / "videos").iterdir()) == []
 
 
+def test_what_a_killed_process_left_behind_goes_when_its_episode_is_filmed_again(
+    env: ObjectNavEnv, tmp_path: Path
+) -> None:
+    (tmp_path / "videos").mkdir()
+    left_over = tmp_path / "videos" / f".{video_file(tmp_path, EPISODE.episode_id).stem}.part-99999.mp4"
+    left_over.touch()
+    play_episode(env, Script([Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    assert list((tmp_path / "videos").iterdir()) == [video_file(tmp_path, EPISODE.episode_id)]
+
+
 def test_a_folder_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "videos").write_text("a file where the folder should be")
     with pytest.raises(ConfigError, match="Cannot write the video"):
