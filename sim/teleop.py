@@ -29,6 +29,7 @@ from sim.interface import MPCAT40, MPCAT40_ID, Action, ConfigError, Observation
 from sim.overlay import ACTION_WORDS, colour_depth, in_words
 from sim.palette import colour_segmentation
 from sim.results import RunDirectory
+from sim.robot.foreign import load_robot
 from sim.rollout import episode_seed, play_episode, record_episode
 from sim.terminal import Colours, Terminal, beside, fitted, half_blocks
 from sim.video import VideoWatcher
@@ -67,6 +68,8 @@ class Args:
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
+    robot: Path | None = None
+    """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
     seed: int = 0
     """Drives noise and, with --house, start and goal."""
     profile: str = "fast"
@@ -250,6 +253,7 @@ def run_options(args: Args) -> run.Args:
         goal=args.goal,
         start_deg=args.start_deg,
         episodes=1,
+        robot=args.robot,
         seed=args.seed,
         profile=args.profile,
         noise=args.noise,
@@ -293,6 +297,7 @@ def choose(args: Args, episodes: Sequence[Episode], done: set[str]) -> Episode:
 
 def play(args: Args, out: Path, episode: Episode, cockpit: Cockpit, config: dict[str, Any]) -> dict[str, Any]:
     """Let somebody drive through an episode; its result line, once the trajectory is written."""
+    robot, camera = (None, None) if args.robot is None else load_robot(args.robot)
     env = ObjectNavEnv(
         split=args.split,
         house=args.house,
@@ -301,6 +306,8 @@ def play(args: Args, out: Path, episode: Episode, cockpit: Cockpit, config: dict
         truth=run.ALL_SENSORS,
         profile=args.profile,
         noise=args.noise,
+        robot=robot,
+        camera=camera,
     )
     human = Human(env, cockpit)
     watchers = [VideoWatcher(out, BeliefPainter(human.mapper, show_plan=False))] if args.video else []

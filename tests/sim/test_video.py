@@ -235,6 +235,22 @@ def test_no_text_leaves_the_frame_or_lies_on_another(
     assert all(right <= overlay.WIDTH_PX for _, (_, _, right, _) in written)
 
 
+@pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
+def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int]) -> None:
+    images = {
+        "rgb": np.full((*shape, 3), 9, np.uint8),
+        "semantic": np.zeros(shape, np.uint8),
+        "depth": np.zeros(shape, np.float32),
+    }
+    moment = Moment(step=1, observation={}, images=images, action=Action.STOP)
+    map_image = np.full((overlay.MAP_PX, overlay.MAP_PX, 3), 50, np.uint8)
+    panel = overlay.MapPanel(image=map_image, legend=(), title="", words="")
+    camera = CameraModel(width_px=shape[1], height_px=shape[0])
+    frame = overlay.compose(moment, "bed", camera, panel)
+    rows, cols = np.nonzero((frame == 9).all(axis=2))
+    assert np.ptp(cols) / np.ptp(rows) == pytest.approx(shape[1] / shape[0], rel=0.02)
+
+
 def test_what_the_agent_saw_is_shown_and_the_truth_where_it_saw_nothing() -> None:
     truth = {"rgb": np.zeros((2, 2, 3), np.uint8), "depth": np.ones((2, 2), np.float32)}
     noisy = np.full((2, 2), 2.0, np.float32)
