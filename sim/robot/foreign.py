@@ -101,6 +101,8 @@ def foreign_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
         spec = mujoco.MjSpec.from_file(str(file.path))
     except (ValueError, OSError) as error:
         raise ConfigError(f"it is no MJCF file that MuJoCo can read: {' '.join(str(error).split())}") from None
+    for number, body in enumerate(spec.bodies):
+        body.name = body.name or f"body_{number}"  # below, a name is a body
     folder = file.path.parent
     for assets, where in ((spec.meshes, spec.meshdir), (spec.textures, spec.texturedir)):
         for asset in assets:
@@ -136,7 +138,7 @@ def parts_of(root: mujoco.MjsBody, file: RobotFile) -> tuple[list[Any], list[Any
     wheels, casters, hull = [], [], []
     bodies = [root, *root.find_all("body")]
     turning = [body for body in bodies if any(joint.name in file.wheel_joints for joint in body.joints)]
-    wheel_bodies = {body.id for top in turning for body in (top, *top.find_all("body"))}
+    wheel_bodies = {body.name for top in turning for body in (top, *top.find_all("body"))}
     found = set()
     for body in bodies:
         for geom in body.geoms:
@@ -144,7 +146,7 @@ def parts_of(root: mujoco.MjsBody, file: RobotFile) -> tuple[list[Any], list[Any
                 found |= {geom.name, body.name}
                 casters.append(geom)
             elif geom.contype or geom.conaffinity:
-                (wheels if body.id in wheel_bodies else hull).append(geom)
+                (wheels if body.name in wheel_bodies else hull).append(geom)
     missing = [name for name in file.casters if name not in found]
     if missing:
         raise ConfigError(f"it has no geom and no body '{missing[0]}', which the sidecar names in casters.")

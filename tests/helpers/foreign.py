@@ -72,7 +72,8 @@ SCENE = """
       <geom type="cylinder" size="0.17 0.02" pos="0 0 0.2"/><geom type="cylinder" size="0.03 0.2"/>
     </body>
     <body name="Ball_3" pos="1 -1.2 0.11"><freejoint/><geom type="sphere" size="0.1" mass="0.4"/></body>
-    <body name="Gadget" pos="2.8 -1.6 0.2"><geom name="Gadget.box" type="box" size="0.1 0.1 0.2"/></body>
+    <body name="Gadget" pos="2.8 -1.6 0.2"><geom name="Gadget.box" type="box" size="0.1 0.1 0.2"/>
+      <geom name="Gadget.hit" class="collision" size="0.1"/></body>
     <body name="Widget" pos="2.8 -1.2 0.2"><geom type="capsule" size="0.05 0.1"/></body>
   </worldbody>
   <actuator><motor name="open" joint="sideboard_hinge"/></actuator>
@@ -158,6 +159,12 @@ ROBOT = """
   </actuator>
   <keyframe><key qpos="0.4 0.1 0.075 1 0 0 0 0 0 0"/></keyframe>
 </mujoco>
+"""
+TWO_BODIES = """
+<mujoco><worldbody>
+  <body pos="0 0.1 0.1"><joint name="hub_l" axis="0 1 0"/><geom size="0.05"/></body>
+  <body pos="0 -0.1 0.1"><joint name="hub_r" axis="0 1 0"/><geom size="0.05"/></body>
+</worldbody></mujoco>
 """
 HOLLOW = """</default>
     <geom contype="0" conaffinity="0"/>

@@ -16,9 +16,10 @@ from sim.ground_truth import GroundTruth
 from sim.houses.load import load_house
 from sim.interface import MPCAT40_ID, Action, ConfigError
 from sim.pose import Pose
+from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.world import World
-from tests.helpers.foreign import HOLLOW, LABELS, ROBOT, SCENE, write_robot, write_scene
+from tests.helpers.foreign import HOLLOW, LABELS, ROBOT, SCENE, TWO_BODIES, write_robot, write_scene
 from tests.helpers.worlds import open_floor, room, with_box
 
 
@@ -140,7 +141,27 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
     assert world.model.body_subtreemass[base] == pytest.approx(9 + 2 * 0.5 + 0.1 + 1.5 + 0.8)
     np.testing.assert_allclose(world.data.geom("robot/file/deck").xpos, (1.0, 2.02, 0.135), atol=1e-3)
     np.testing.assert_allclose(_tyres(world), [(0.85, 2.0, 0.075), (1.15, 2.0, 0.075)], atol=1e-3)
+    ours, hull = World(open_floor()).model.geom("robot/lower_hull"), world.model.geom("robot/file/hull_1")
+    for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
+        np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
     assert capfd.readouterr().err == ""  # MuJoCo finds nothing to warn of
+
+
+def test_where_a_file_shows_its_robot_does_not_matter(carrier: Path, tmp_path: Path) -> None:
+    elsewhere = write_robot(tmp_path / "r", robot=ROBOT.replace('pos="0.4 0.1 0.075"', 'pos="-3 2 0.4"'))
+    (here, _), (there, _) = load_robot(carrier), load_robot(elsewhere)
+    assert there.body.height_m == pytest.approx(here.body.height_m)
+    assert there.body.radius_m == pytest.approx(here.body.radius_m)
+    worlds = [World(open_floor(), robot=config) for config in (here, there)]
+    for world in worlds:
+        world.reset(Pose(1.0, 0.0, 0.0))
+    np.testing.assert_allclose(_tyres(worlds[0]), _tyres(worlds[1]), atol=1e-6)
+
+
+def test_motors_are_as_strong_and_as_quick_for_the_weight_as_ours(carrier: Path) -> None:
+    theirs, ours = load_robot(carrier)[0], RobotConfig()
+    for of in (lambda wheels: wheels.max_push_n, lambda wheels: wheels.motor_gain_nm_s / wheels.radius_m**2):
+        assert of(theirs.wheels) / theirs.body.mass_kg == pytest.approx(of(ours.wheels) / ours.body.mass_kg)
 
 
 @pytest.mark.parametrize("box_floor", [False, True])
@@ -199,6 +220,9 @@ def test_a_run_with_another_robot_names_it_and_goes_on_with_no_other(
     assert len(config["robot_sha256"]) == 64
     assert run.entry(options) == 2
     assert "robot" in capsys.readouterr().err
+    options[-3:] = ["0 1.81 53", "--episodes", "1"]  # ours fits there, a corner of the deck does not
+    assert run.entry([*options, "--robot", str(carrier), "--out", str(tmp_path / "tight")]) == 2
+    assert "the robot (radius 0.20" in capsys.readouterr().err
 
 
 WRONG = {
@@ -214,6 +238,7 @@ WRONG = {
     "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is no hinge"),
     "a mesh that is missing": ({}, {"cube.obj": "deck.obj"}, r"deck\.obj"),
     "another format": ({}, {"<mujoco": "<robot"}, "no MJCF file that MuJoCo can read"),
+    "two bodies": ({"casters": None}, {ROBOT: TWO_BODIES}, "hang on different bodies of the world"),
     "a body that nothing touches": ({}, {"</default>\n  </default>": HOLLOW}, "nothing of it collides"),
 }
 
