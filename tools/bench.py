@@ -72,7 +72,7 @@ def main(args: Args) -> int:
     calibrator, tries = Calibrator(), 3 if args.quick else 20
     for part in wanted:
         calibrations[part] = calibrator.measure(tries)
-        figures += measured(part, Setting(QUICK if args.quick else Amount(), calibrations[part]), console)
+        figures += measured(part, Setting(QUICK if args.quick else Amount(), calibrator), console)
     calibrations["end"] = calibrator.measure(tries)
     calibrator.close()
     first = next(iter(calibrations.values()))

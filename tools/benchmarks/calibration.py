@@ -57,10 +57,17 @@ class Calibrator:
 
     def measure(self, tries: int) -> Calibration:
         """The least of some tries of each."""
-        render = min(timed(self._render) for _ in range(tries))
+        render = min(self.render_ms() for _ in range(tries))
         step = min(timed(self._step) for _ in range(tries))
-        march = min(timed(lambda: skfmm.distance(self._field, dx=0.05)) for _ in range(tries))
-        return Calibration(render, step, march)
+        return Calibration(render, step, min(self.march_ms() for _ in range(tries)))
+
+    def render_ms(self) -> float:
+        """The fixed render, once, now."""
+        return timed(self._render)
+
+    def march_ms(self) -> float:
+        """The fixed march, once, now."""
+        return timed(lambda: skfmm.distance(self._field, dx=0.05))
 
     def close(self) -> None:
         """Free the renderer."""

@@ -19,7 +19,7 @@ from sim.pose import Pose
 from sim.world import World
 from stubborn import agents
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from tools.benchmarks.calibration import Calibration
+from tools.benchmarks.calibration import Calibrator
 
 SENSORS = ("depth", "semantic")
 """What an agent with ground-truth segmentation asks for."""
@@ -58,7 +58,8 @@ class Setting:
     """What each part is given."""
 
     amount: Amount
-    calibration: Calibration
+    calibrator: Calibrator
+    """Fixed work, to do in between."""
 
 
 def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]:
