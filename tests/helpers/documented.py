@@ -95,6 +95,13 @@ _EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 
 _VIEWS = (
     f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
 )
+_FOREIGN = f"{PYTHON} -c 'from pathlib import Path; from tests.helpers.foreign import *; "
+_SCENE = _FOREIGN + 'write_scene(Path("{tmp}/s"))\''
+_ROBOT = _FOREIGN + 'write_robot(Path("{tmp}/r"))\''
+_IN_SCENE = (
+    f"{_RUN} --house {{tmp}}/s/flat.xml --labels {{tmp}}/s/labels.json --episodes 1 --agent oracle --record"
+    " --out {tmp}/run"
+)
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
 
 TRIALS: dict[str, tuple[str, ...] | Only] = {
@@ -155,7 +162,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --house scene.xml --labels labels.json --goal chair": Only("stands for files of the reader's"),
     f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
     f"{PYTHON} tools/make_episodes.py --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
@@ -246,8 +252,22 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} -m sim.teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{PYTHON} -m sim.teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
     # docs/verification.md
-    f"{PYTHON} tools/train_verifier.py --semantics noisy --split train --episodes 2000": Only(
+    f"{PYTHON} tools/train_verifier.py --semantics noisy --split train --episodes 2000 --workers 2": Only(
         "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
+    ),
+    f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 200 --workers 2 --judge": (
+        f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 1 --workers 1 --judge"
+        " --max-steps 20 --log {tmp}/log",
+    ),
+    f"{_RUN} --semantics noisy --verification logistic": (
+        f"{_RUN} --semantics noisy --verification logistic {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    # docs/worlds.md
+    f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
+    f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
+    f"{_RUN} --robot carrier.xml --episodes 20": (
+        _ROBOT,
+        f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
 }
 """Each documented command: the commands to try, the last of them the same tool with the same options, or why not.
@@ -255,5 +275,5 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 `{tmp}` is a scratch folder. Commands with `--help` need no line.
 """
 
-STAND_INS = ("my_house.xml", "scene.xml", "labels.json", "rednet_semmap_mp3d_40.pth")
+STAND_INS = ("my_house.xml", "flat.xml", "labels.json", "carrier.xml", "rednet_semmap_mp3d_40.pth")
 """Files of the reader's that the docs speak of and that are not there."""
