@@ -41,6 +41,10 @@ def main(args: Args) -> int:
     if out.is_dir():
         raise ConfigError(f"--out '{out}' is a folder; name the page, for example {out / 'report.html'}.")
     paths = [str(path) for path in (args.run, args.other) if path is not None]
+    console = tables.make_console()
+    console.print(
+        f"{max(len(run.lines) for run in runs)} episodes; a house takes a second, a goal in it a fraction of one."
+    )
     page = build_page(runs, out_folder=out.parent, command=shlex.join(["python", "-m", "sim.report", *paths]))
     part = out.with_name(f"{out.name}.part-{os.getpid()}")
     try:
@@ -50,7 +54,7 @@ def main(args: Args) -> int:
     except OSError as error:
         raise ConfigError(f"Cannot write the report '{out}': {error.strerror}.") from None
     told = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
-    tables.make_console().print(told, highlight=False, markup=False, soft_wrap=True)
+    console.print(told, highlight=False, markup=False, soft_wrap=True)
     return 0
 
 

@@ -73,7 +73,7 @@ def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
     seen = _seen(trajectory)
     if len(seen):
         found.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
-    there = np.flatnonzero(trajectory.distance_m <= 0.0)
+    there = _there(trajectory)
     if len(there) and not trajectory.success:
         found.append(Mark("there", int(there[0]), None, "stands where a STOP would count"))
     elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
@@ -100,7 +100,7 @@ def _reason(result: str, line: Line, trajectory: Trajectory) -> str:
         where = _instance_away(goal, trajectory)
         return f"Called STOP at step {trajectory.num_steps}: {where}. {sight or never + '.'}"
     if result == "missed_detection":
-        there = np.flatnonzero(trajectory.distance_m <= 0.0)
+        there = _there(trajectory)
         if len(there):
             return f"{sight} At step {there[0]} a STOP would have counted, and it drove on."
         return f"{sight} It drove on, {driven} in all, and did not go there."
@@ -153,6 +153,12 @@ def _the_end(line: Line, trajectory: Trajectory) -> str:
 def _seen(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
     """Steps at which the goal was in view."""
     return np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
+
+
+def _there(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Steps at which a STOP would have counted, from the first sight of the goal on; all where it was never seen."""
+    there, seen = np.flatnonzero(trajectory.distance_m <= 0.0), _seen(trajectory)
+    return there[there >= seen[0]] if len(seen) else there
 
 
 def _nearest(trajectory: Trajectory) -> tuple[int, float] | None:

@@ -306,6 +306,17 @@ def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> No
     assert "By the rules of the code that wrote this report the cause would be explore." in other
 
 
+def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Path]) -> None:
+    _, folder = pair
+    line = _lines(folder)[0] | {"failure": "missed_detection"}
+    trajectory = read_trajectory(trajectory_file(folder, line["episode_id"]))
+    share, distance_m = np.zeros_like(trajectory.goal_share), np.full_like(trajectory.distance_m, 2.0)
+    share[5:7], distance_m[[2, 8]] = 0.1, 0.0
+    missed = Trajectory(**{**vars(trajectory), "goal_share": share, "distance_m": distance_m})
+    assert "in view from step 5 on, in 2 frames. At step 8 a STOP would have counted" in explain(line, missed)
+    assert [mark.step for mark in marks(line, missed)] == [5, 8, missed.num_steps]
+
+
 def test_an_interval_has_a_width_where_all_episodes_ended_alike() -> None:
     low, high = Share(10, 10).interval
     assert low == pytest.approx(0.7225, abs=1e-4)  # Wilson: n / (n + z^2)
