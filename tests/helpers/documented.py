@@ -112,27 +112,21 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make types": _NEEDS_SETUP,
     "make docs": _NEEDS_SETUP,
     # README
-    _RUN: (f"{_RUN} --episodes 1 --out {{tmp}}/run",),
-    f"{_RUN} --agent oracle --episodes 100 --workers 2": (
-        f"{_RUN} --agent oracle --episodes 2 --workers 2 --out {{tmp}}/run",
+    f"{_RUN} --episodes 20 --workers 2 --record --out runs/mine": (
+        f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
-    f"{_RUN} --agent stubborn-iii --goal toilet --out runs/toilets": (
-        f"{_RUN} --agent stubborn-iii --goal toilet --episodes 1 --out {{tmp}}/toilets",
+    f"{PYTHON} -m sim.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    f"{_RUN} --agent examples.my_agent:make --video": (
+        f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --house my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
-        f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
+    f"{_RUN} --semantics noisy --noise realsense": (
+        f"{_RUN} --semantics noisy --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --agent examples.my_agent:make": (
-        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --out {{tmp}}/run",
+    f"{PYTHON} -m sim.teleop --house examples/my_house.xml": Only(
+        "needs a terminal; tests/sim/test_teleop.py gives it one"
     ),
-    f"{_RUN} --noise realsense": (f"{_RUN} --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",),
-    f"{_RUN} --semantics noisy --agent single-frame": (
-        f"{_RUN} --semantics noisy --agent single-frame {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --record --out runs/mine": (_RECORDED,),
-    f"{PYTHON} tools/draw_trajectories.py runs/mine": (
-        _RECORDED,
-        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
+    f"{PYTHON} tools/reproduce.py ablation --episodes 200 --workers 2": (
+        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
     ),
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
