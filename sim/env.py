@@ -189,7 +189,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         if self.render_mode is None:
             return None
         world = self.scene.world
-        return self.scene.camera.render(world.data, world.pose, ("rgb",))["rgb"]
+        return self.scene.camera.render(world.data, world.camera_pose, ("rgb",))["rgb"]
 
     def close(self) -> None:
         """Free the renderers."""
@@ -213,7 +213,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # its spaces are typed by what the
         """The observation, and the true segmentation that the task's metrics need even where no agent sees it."""
         world, start = self.scene.world, self.episode.start
         wanted = sorted({*self.sensors, *self._truth, "semantic", *self._noise.needs(self.sensors)})
-        images = self.truth_images = self.scene.camera.render(world.data, world.pose, wanted)
+        images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
         pose = world.pose.relative_to(start)
         observation = {name: images[name] for name in self.sensors}
         observation["gps"] = np.array([pose.x_m, pose.y_m], np.float32)

@@ -129,7 +129,7 @@ class NoisySegmenter:
         geom = _middles(self._episode.truth_images["geom"], self.config.stride_px)
         thing = self._things.of_geom[geom]  # (h, w); -1, the last of them, is nothing
         share = np.bincount(thing.reshape(-1) + 1, minlength=len(self._things.category) + 1)[1:] / thing.size
-        pose = scene.world.pose
+        pose = scene.world.camera_pose
         seen = self.see(self._things, share, (pose.x_m, pose.y_m), seed, rng)
         return self._paint(thing, seen, MPCAT40_ID[goal], rng)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,6 +55,15 @@ class World:
         x, y, yaw, _, _ = self._body.state()
         z = self._body.z_m
         return Pose(x, y, wrap_angle(yaw), min(self._storeys_m, key=lambda floor: abs(floor - z)))
+
+    @property
+    def camera_pose(self) -> Pose:
+        """Where the camera is mounted, over the floor: the robot's pose, moved ahead by the mount."""
+        pose, ahead_m = self.pose, self.config.camera_forward_m
+        if ahead_m == 0.0:
+            return pose
+        x_m, y_m = pose.x_m + ahead_m * math.cos(pose.yaw_rad), pose.y_m + ahead_m * math.sin(pose.yaw_rad)
+        return Pose(x_m, y_m, pose.yaw_rad, pose.floor_z_m)
 
     def reset(self, start: Pose, conditions: Conditions = NOMINAL) -> None:
         """Everything as the house's file has it but for `conditions`, the robot at rest on the floor at `start`.

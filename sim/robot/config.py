@@ -201,6 +201,8 @@ class RobotConfig:
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     file: RobotFile | None = None
     """A body from elsewhere, which the numbers of `body` and `wheels` then describe; None: ours is made from them."""
+    camera_forward_m: float = 0.0
+    """Camera mount ahead of the axle."""
 
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):
@@ -228,6 +230,11 @@ class RobotConfig:
                 f"DriveConfig.blocking_force_n must be below what the motors can push, {wheels.max_push_n:.1f} N; "
                 f"got {self.drive.blocking_force_n} N."
             )
+        if not abs(self.camera_forward_m) < self.body.radius_m:
+            raise ConfigError(
+                f"RobotConfig.camera_forward_m must stay inside the body's radius of {self.body.radius_m:.3f} m, or "
+                f"the camera would look through walls; got {self.camera_forward_m} m."
+            )
         if wheels.half_track_m >= self.body.radius_m or wheels.caster_offset_m >= self.body.radius_m:
             raise ConfigError(
                 f"Wheels and casters must stand inside the hull's radius of {self.body.radius_m} m, got "
@@ -242,4 +249,6 @@ class RobotConfig:
     @property
     def model(self) -> RobotModel:
         """What an agent may know of it."""
-        return RobotModel(radius_m=self.body.radius_m, height_m=self.body.height_m)
+        return RobotModel(
+            radius_m=self.body.radius_m, height_m=self.body.height_m, camera_forward_m=self.camera_forward_m
+        )

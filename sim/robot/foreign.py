@@ -8,7 +8,8 @@ Beside `carrier.xml` lies `carrier.json`:
 | `wheel_radius_m` | metres |
 | `casters` | names of geoms or bodies that only slide on the floor; none if not given |
 | `radius_m`, `height_m` | of the upright cylinder that holds the body; measured if not given |
-| `camera_height_m`, `camera_hfov_deg` | where the camera sits on the axis, and how wide it sees; as ours if not given |
+| `camera_height_m`, `camera_forward_m` | where the level camera sits: above the floor, ahead of the axle (0.88, 0) |
+| `camera_hfov_deg` | how wide it sees (79) |
 
 Masses, inertias and the shapes that collide are the file's. The file shows it at rest: +x ahead, wheels on the ground.
 What this program needs otherwise is put in its place: the base is held upright, a wheel touches as a sphere of its
@@ -32,7 +33,8 @@ from sim.gl import mujoco
 from sim.interface import CameraModel, ConfigError
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 
-KEYS = ("wheel_joints", "wheel_radius_m", "casters", "radius_m", "height_m", "camera_height_m", "camera_hfov_deg")
+KEYS = ("wheel_joints", "wheel_radius_m", "casters", "radius_m", "height_m")
+CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
 MIN_CLEARANCE_M = 0.03
 """What is lower than this the free space takes to pass under the robot."""
 STRAIGHT = 0.999
@@ -211,7 +213,12 @@ def _configured(path: Path, sidecar: dict[str, Any]) -> tuple[RobotConfig, Camer
         height_m=_positive(sidecar, "camera_height_m", CameraModel().height_m),
         hfov_rad=math.radians(_positive(sidecar, "camera_hfov_deg", math.degrees(CameraModel().hfov_rad))),
     )
-    return RobotConfig(body=body, wheels=wheels, file=file), camera
+    forward_m = sidecar.get("camera_forward_m", 0.0)
+    if isinstance(forward_m, bool) or not isinstance(forward_m, int | float):
+        raise ConfigError(
+            f'"camera_forward_m" in its sidecar must be a number of metres; it is {json.dumps(forward_m)}.'
+        )
+    return RobotConfig(body=body, wheels=wheels, file=file, camera_forward_m=float(forward_m)), camera
 
 
 def _body(sidecar: dict[str, Any], measured: Measured) -> BodyConfig:
@@ -261,9 +268,10 @@ def _read_sidecar(file: Path) -> dict[str, Any]:
         raise ConfigError(f"its sidecar '{file.name}' is no JSON: {error}.") from None
     if not isinstance(content, dict):
         raise ConfigError(f"its sidecar '{file.name}' must be one JSON object.")
-    unknown = [key for key in content if key not in KEYS]
+    unknown = [key for key in content if key not in (*KEYS, *CAMERA_KEYS)]
     if unknown:
-        raise ConfigError(f"its sidecar has '{unknown[0]}', which is no key. There is: {', '.join(KEYS)}.")
+        there = ", ".join((*KEYS, *CAMERA_KEYS))
+        raise ConfigError(f"its sidecar has '{unknown[0]}', which is no key. There is: {there}.")
     joints, casters = content.get("wheel_joints"), content.get("casters", [])
     if not (isinstance(joints, list) and len(joints) == 2 and _are_names(joints) and joints[0] != joints[1]):
         raise ConfigError('its sidecar needs "wheel_joints": ["<left>", "<right>"], the names of two joints.')

@@ -207,6 +207,27 @@ def test_the_free_space_is_that_of_the_robot_that_drives(carrier: Path) -> None:
     assert lost_m == pytest.approx(2 * (config.model.radius_m - ours.robot.radius_m), abs=0.026)
 
 
+def test_the_camera_sits_where_the_sidecar_mounts_it(tmp_path: Path) -> None:
+    (tmp_path / "room.xml").write_text(
+        with_box(room(4, 4), "sofa_00", centre_m=(0, 1.5, 0.2), half_m=(0.2, 0.2, 0.2)).spec.to_xml()
+    )
+    depths = []
+    for number, forward_m in enumerate((0.0, 0.12, -0.1)):
+        config, camera = load_robot(write_robot(tmp_path / str(number), camera_forward_m=forward_m))
+        assert config.model.camera_forward_m == forward_m
+        start = Pose(-1.0, 0.0, 0.0)
+        env = ObjectNavEnv(
+            house=tmp_path / "room.xml", goal="sofa", start=start, robot=config, camera=camera, sensors=("depth",)
+        )
+        try:
+            observation, _ = env.reset(seed=0)
+            depths.append(float(observation["depth"][240, 320]))
+            assert observation["gps"] == pytest.approx((0.0, 0.0), abs=0.002)  # the robot's place, not the camera's
+        finally:
+            env.close()
+    assert depths == pytest.approx([3.0, 2.88, 3.1], abs=0.01)
+
+
 def test_a_run_with_another_robot_names_it_and_goes_on_with_no_other(
     carrier: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -234,6 +255,7 @@ WRONG = {
     "an unknown caster": ({"casters": ["caster"]}, {}, "no geom and no body 'caster'"),
     "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m.*name what slides.*casters"),
     "a radius that is too small": ({"radius_m": 0.15}, {}, r"radius_m in the sidecar is 0\.150 m.*at least 0\.205"),
+    "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must stay inside .* 0\.205 m"),
     "a robot that heads along y": ({}, {'"0.4 0.1 0.075"': '"0.4 0.1 0.075" euler="90 0 0"'}, "with .x ahead"),
     "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is no hinge"),
     "a mesh that is missing": ({}, {"cube.obj": "deck.obj"}, r"deck\.obj"),
