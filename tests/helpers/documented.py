@@ -126,7 +126,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "needs a terminal; tests/sim/test_teleop.py gives it one"
     ),
     f"{PYTHON} tools/reproduce.py ablation --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
+        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
     ),
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
