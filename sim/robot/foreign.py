@@ -35,8 +35,8 @@ from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 
 KEYS = ("wheel_joints", "wheel_radius_m", "casters", "radius_m", "height_m")
 CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
-MIN_CLEARANCE_M = 0.03
-"""What is lower than this the free space takes to pass under the robot."""
+MIN_CLEARANCE_M = 0.005
+"""Below the skin of the body, or it would rub on the floor it drives on."""
 STRAIGHT = 0.999
 """Cosine of the angle by which a wheel's axle may be off the robot's left."""
 LEVEL_M = 0.002
