@@ -47,6 +47,7 @@ class Browser:
             "--headless",
             "--no-sandbox",
             "--disable-gpu",
+            "--hide-scrollbars",
             "--disable-dev-shm-usage",
             "--host-resolver-rules=MAP * ~NOTFOUND",  # nothing is fetched from anywhere
             f"--user-data-dir={profile}",
