@@ -45,7 +45,8 @@ def test_what_a_march_that_stops_early_knows_is_right(seed: int):
     goal, passable, speed = cluttered(seed)
     whole = march(goal, passable, speed, CELL_M)
     far = np.where(np.isfinite(whole), whole, -1.0)
-    half = np.unravel_index(int(np.argmin(np.abs(far - 0.5 * far.max()))), goal.shape)
+    middle = np.unravel_index(int(np.argmin(np.abs(far - 0.5 * far.max()))), goal.shape)
+    half = int(middle[0]), int(middle[1])
     part = march(goal, passable, speed, CELL_M, until=half, beyond_m=0.2)
     known = whole <= whole[half] + 0.2
     np.testing.assert_array_equal(part[known], whole[known])

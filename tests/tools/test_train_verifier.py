@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from sim import segmenters
-from sim.env import ObjectNavEnv
 from sim.episodes import Episode, load_split, write_split
 from sim.interface import ConfigError
 from sim.pose import Pose
