@@ -197,6 +197,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 1000 --shard 1/4 --out runs/big": (_SHARDS[1],),
     f"{PYTHON} tools/merge_runs.py runs/big": (*_SHARDS, f"{PYTHON} tools/merge_runs.py {{tmp}}/big"),
     # docs/reproduce.md
+    f"{PYTHON} tools/reproduce.py categories --episodes 200 --split val": (
+        f"{PYTHON} tools/reproduce.py categories --episodes 1 --split val --agents random oracle --out {{tmp}}/paper",
+    ),
     f"{PYTHON} tools/reproduce.py ablation": (
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
     ),
