@@ -8,7 +8,6 @@ import sys
 import weakref
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from sim.env import ObjectNavEnv
@@ -16,9 +15,9 @@ from sim.episodes import Episode, write_split
 from sim.pose import Pose
 from sim.sensors.camera import Camera, describe_gl
 from sim.world import World
-from stubborn.grid import GridFrame
-from stubborn.navmap import NavMap
 from tests.helpers.worlds import room, with_box
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def resident_mb() -> float:
@@ -64,19 +63,29 @@ def test_a_camera_asked_for_no_colour_has_no_buffer_for_colour_or_shadows() -> N
     assert grown_mb < 16, grown_mb  # a shadow map alone has 16.8
 
 
-def test_maps_take_no_memory_where_nothing_was_seen() -> None:
-    frame = GridFrame.around_start(1440, 0.05)
-    before_mb = resident_mb()
-    np.ones(
-        30_000_000, np.uint8
-    )  # from now on malloc keeps blocks up to this size, and clears them by hand when they are used again
+MAPS = """
+import numpy as np
+
+from stubborn.grid import GridFrame
+from stubborn.navmap import NavMap
+from tests.sim.test_memory import resident_mb
+
+frame = GridFrame.around_start(1440, 0.05)
+NavMap.empty(GridFrame.around_start(10, 0.05))
+before_mb = resident_mb()
+np.ones(30_000_000, np.uint8)  # from now on malloc keeps blocks up to this size, and clears by hand what it uses again
+for _ in range(4):
     navmap = NavMap.empty(frame)
-    for _ in range(3):
-        navmap = NavMap.empty(frame)
-        navmap.score_sum[700:740, 700:740] = 1.0
-    grown_mb = resident_mb() - before_mb
-    assert not navmap.visited.any()
-    assert grown_mb < 16, grown_mb  # all layers have 68
+    navmap.score_sum[700:740, 700:740] = 1.0
+assert not navmap.visited.any()
+print(resident_mb() - before_mb)
+"""
+
+
+def test_maps_take_no_memory_where_nothing_was_seen() -> None:
+    """In a process of its own: what others have freed before would hide or add pages."""
+    ended = subprocess.run([sys.executable, "-c", MAPS], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert float(ended.stdout) < 24, ended.stdout  # all layers have 68
 
 
 def test_a_worker_imports_no_library_that_it_does_not_need() -> None:
