@@ -50,6 +50,7 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
         assert f"sim/assets/{file.relative_to(ROOT / 'assets')}" in packed
     for file in (ROOT / "stubborn/verifiers").glob("*.json"):
         assert f"stubborn/verifiers/{file.name}" in packed
+    assert "stubborn/segmentation/weights/rednet.safetensors" in packed
     for file in (ROOT / "sim/report/page").iterdir():
         assert f"sim/report/page/{file.name}" in packed
 

@@ -231,6 +231,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_rednet.py --views {{tmp}}/views --val-views {{tmp}}/views --out {{tmp}}/rednet"
         " --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
+    f"{_RUN} --semantics rednet": (f"{_RUN} --semantics rednet {_SMALL} --episodes 1 --out {{tmp}}/run",),
+    f"{PYTHON} tools/evaluate_rednet.py --views views_val --fit-temperature --card card.md "
+    "--weights runs/rednet/rednet.safetensors": (
+        f"{_VIEWS} --views-per-shard 2",
+        f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
+        f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --fit-temperature --card {{tmp}}/card.md "
+        "--weights {tmp}/rednet.safetensors",
+    ),
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
     # docs/traps.md

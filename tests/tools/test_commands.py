@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 TOOLS = sorted(file.stem for file in (ROOT / "tools").glob("*.py") if '__name__ == "__main__"' in file.read_text())
 WAYS = [(tool, way) for tool in TOOLS for way in ("file", "module")]
 TRIED = [command for command, trial in TRIALS.items() if not isinstance(trial, Only)]
-OUTPUTS = ("out", "log")
+OUTPUTS = ("out", "log", "card")
 """Fields of tools' `Args` that name what they write."""
 SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
 

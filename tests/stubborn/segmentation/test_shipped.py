@@ -1,0 +1,47 @@
+"""The network that ships: small, whole, described, and of use in houses that it has never seen."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.episodes import load_split
+from sim.interface import CameraModel
+from sim.robot.config import RobotConfig
+from sim.scene import Scene
+from sim.views import sample_views
+from stubborn.segmentation.checkpoints import load_rednet
+from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.rednet import COMPACT
+from stubborn.segmentation.shipped import SHIPPED_REDNET
+
+
+def test_it_is_small_and_its_card_tells_what_it_is() -> None:
+    assert SHIPPED_REDNET.stat().st_size <= 20_000_000
+    model, metadata = load_rednet(SHIPPED_REDNET)
+    assert model.config == COMPACT
+    card = SHIPPED_REDNET.with_name("README.md").read_text(encoding="utf-8")
+    assert f"temperature {metadata['temperature']:.2f}" in card
+    assert f"{metadata['step']} steps, {metadata['hours']} h" in card
+    for heading in (
+        "mIoU, goal categories present",
+        "MIT licence",
+        "python tools/train_rednet.py",
+        "| category | IoU |",
+    ):
+        assert heading in card
+
+
+def test_it_knows_most_of_what_it_sees_in_a_house_of_val() -> None:
+    scene = Scene(load_split("val").load_house("val_00"), robot=RobotConfig(), camera=CameraModel(), profile="fast")
+    try:
+        views = list(sample_views(scene, np.random.default_rng(0), 6, stem="v", record={}))
+    finally:
+        scene.close()
+    segmenter = RedNetSegmenter.from_file(SHIPPED_REDNET, threads=1)
+    right = total = 0
+    for view in views:
+        predicted = segmenter.logits(view.rgb, (view.depth_mm / 1000).astype(np.float32)).argmax(dim=0).numpy() + 1
+        truth = view.semantic[2::4, 2::4]
+        right += int((predicted == truth)[truth > 0].sum())
+        total += int((truth > 0).sum())
+    assert right / total > 0.6
