@@ -118,6 +118,8 @@ def main(args: Args) -> int:
         episodes, args = share.of(episodes), replace(args, out=args.out / share.folder)
     lines, summary = play_missing(args, episodes, split, console)
     tables.print_results(console, lines, summary)
+    if args.video:
+        console.print(f"Videos are in {args.out}/videos.", highlight=False, soft_wrap=True)
     return 1 if summary["errors"] else 0
 
 
