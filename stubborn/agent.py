@@ -96,7 +96,8 @@ class StubbornAgent:
         Args:
             camera: what the observations are taken with.
             robot: the body that is driven.
-            segmenter: where scores come from.
+            segmenter: where scores come from. One that has `exact = True` is trusted to the outline; with any other the
+                rim of the target does not count (see `Mapper.add_scores`).
             verifier: judges candidates; by default it accepts all.
             explorer: chooses where to look; by default the paper's, from `config.exploration`.
             layers: keeps the scores; by default over all frames.
@@ -105,6 +106,7 @@ class StubbornAgent:
         self.config = config
         self.robot = robot
         self.segmenter = segmenter
+        self._true_outlines = bool(getattr(segmenter, "exact", False))
         avoidance = config.avoidance
         self.mapper = Mapper(camera, robot, config.mapping, layers)
         self.planner = Planner(config.planning, trust_visited=avoidance.visited_is_free)
@@ -161,6 +163,7 @@ class StubbornAgent:
         """Enter the frame into the map."""
         exact = self.mapper.add_depth(self.navmap, observation["depth"], pose)
         scores = self.segmenter.scores(observation, self.goal)
+        exact &= self._true_outlines
         return self.mapper.add_scores(self.navmap, observation["depth"], scores, pose, self.step, exact=exact)
 
     def _decide(self, pose: PlanarPose, sighting: Sighting) -> Action:

@@ -183,7 +183,7 @@ class Mapper:
     ) -> Sighting:
         """Enter one frame of class scores into the object layers; returns the target points it shows.
 
-        With depth that is not `exact` (see `add_depth`) the rim of the target does not count.
+        The rim of the target does not count unless depth is `exact` (see `add_depth`) and so are the scores' outlines.
         """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
@@ -236,7 +236,8 @@ class Mapper:
     def _inner(self, target: NDArray[np.float32]) -> NDArray[np.bool_]:
         """Target pixels with nothing but target around them, as far as a noisy camera shifts the edges of things.
 
-        Beyond the rim of something near, a noisy depth image has a seam where the target behind it looks as near.
+        Beyond the rim of something near, a noisy depth image has a seam where the target behind it looks as near. A
+        detector's outline that runs over what stands in front of the target has the same effect: a stop too early.
         """
         found = (target > self.config.candidate_score).view(np.uint8)
         rim = -(-self.config.rim_px * target.shape[1] // self.camera.width_px)

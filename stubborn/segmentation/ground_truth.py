@@ -11,6 +11,8 @@ class GroundTruthSegmenter:
     """Score 1 where the pixel's category is the goal's, else 0."""
 
     sensors: tuple[str, ...] = ("semantic",)
+    exact = True
+    """Outlines are true to the pixel."""
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Scores at the image's own resolution; void pixels score 0 for everything."""

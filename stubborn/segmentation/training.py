@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
@@ -34,6 +35,8 @@ class Augmentation:
     """Colour is scaled by 1 +- this, each channel by half of it more: other walls and lamps."""
     contrast: float = 0.3
     saturation: float = 0.6
+    hue_rad: float = 0.6
+    """Colours turn about grey by up to this: furniture comes in other colours in other houses."""
     noise_rgb: float = 4.0
     """Largest standard deviation of Gaussian noise, of 255."""
     depth_noise: float = 0.0012
@@ -42,7 +45,16 @@ class Augmentation:
     """Up to so many rectangles of depth are lost."""
 
 
-NONE = Augmentation(mirror=False, brightness=0.0, contrast=0.0, saturation=0.0, noise_rgb=0.0, depth_noise=0.0, holes=0)
+NONE = Augmentation(
+    mirror=False,
+    brightness=0.0,
+    contrast=0.0,
+    saturation=0.0,
+    hue_rad=0.0,
+    noise_rgb=0.0,
+    depth_noise=0.0,
+    holes=0,
+)
 
 
 @dataclass(frozen=True)
@@ -56,11 +68,15 @@ class Sampler:
     block_px: int = 1
     """Views are shrunk by this first; 1 where they are stored small."""
     augmentation: Augmentation = NONE
+    window_px: int | None = None
+    """Samples are windows of so many columns, see `random_window`; None: whole views."""
 
     def __call__(self, view: LabelledView, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
         """Tensors float32, float32 and int64; labels are class channels, `IGNORED` where there is none."""
         rgb, depth_m = shrink(view.rgb, self.block_px), shrink(view.depth_m, self.block_px)
         semantic = shrink(view.semantic, self.block_px)
+        if self.window_px is not None:
+            rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, rng)
         a = self.augmentation
         if a.mirror and rng.random() < 0.5:
             rgb, depth_m, semantic = (np.ascontiguousarray(image[:, ::-1]) for image in (rgb, depth_m, semantic))
@@ -94,9 +110,47 @@ def labels(semantic: NDArray[np.uint8]) -> NDArray[np.int64]:
     return np.pad(channel, (pad[:2], pad[2:]), constant_values=IGNORED)
 
 
+def random_window(
+    rgb: NDArray[np.uint8],
+    depth_m: NDArray[np.float32],
+    semantic: NDArray[np.uint8],
+    window_px: int,
+    rng: np.random.Generator,
+) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint8]]:
+    """A window of the same shape as the view and `window_px` wide, anywhere in it, at a random scale.
+
+    Between the whole view, shrunk, and a cut-out with the view's own pixels. A network that learns from windows costs a
+    fraction of one that learns from whole views, has met things in several sizes, and works on whole views as well.
+
+    Raises:
+        ConfigError: the view is narrower than the window.
+    """
+    height, width = semantic.shape
+    if window_px > width:
+        raise ConfigError(f"A view of {width} columns has no window of {window_px}.")
+    cols = round(width * float(np.exp(rng.uniform(np.log(window_px / width), 0.0))))
+    rows, window_rows = round(height * cols / width), round(height * window_px / width)
+    top, left = rng.integers(0, height - rows + 1), rng.integers(0, width - cols + 1)
+    cut = (slice(top, top + rows), slice(left, left + cols))
+    shape = (window_px, window_rows)
+    return (
+        cv2.resize(rgb[cut], shape, interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False),
+        cv2.resize(depth_m[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.float32, copy=False),
+        cv2.resize(semantic[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.uint8, copy=False),
+    )
+
+
+def turn_hue(image: NDArray[np.float32], angle_rad: float) -> NDArray[np.float32]:
+    """(h, w, 3) colours turned about the axis of greys."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    even, ahead, behind = (1 + 2 * c) / 3, (1 - c) / 3 - s / math.sqrt(3), (1 - c) / 3 + s / math.sqrt(3)
+    turn = np.array([[even, ahead, behind], [behind, even, ahead], [ahead, behind, even]], np.float32)
+    return image @ turn.T
+
+
 def jitter_colour(rgb: NDArray[np.uint8], a: Augmentation, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """Another brightness, white balance, contrast, saturation and some noise."""
-    if max(a.brightness, a.contrast, a.saturation, a.noise_rgb) == 0.0:
+    """Another brightness, white balance, contrast, saturation, hue and some noise."""
+    if max(a.brightness, a.contrast, a.saturation, a.hue_rad, a.noise_rgb) == 0.0:
         return rgb
     image = rgb.astype(np.float32)
     gain = (1.0 + rng.uniform(-a.brightness, a.brightness)) * (1.0 + 0.5 * rng.uniform(-1, 1, 3) * a.brightness)
@@ -105,6 +159,8 @@ def jitter_colour(rgb: NDArray[np.uint8], a: Augmentation, rng: np.random.Genera
     image = mean + (image - mean) * np.float32(1.0 + rng.uniform(-a.contrast, a.contrast))
     grey = image.mean(axis=2, keepdims=True)
     image = grey + (image - grey) * np.float32(1.0 + rng.uniform(-a.saturation, a.saturation))
+    if a.hue_rad > 0.0:
+        image = turn_hue(image, rng.uniform(-a.hue_rad, a.hue_rad))
     sigma = rng.uniform(0.0, a.noise_rgb)
     if sigma > 0.0:
         image += rng.standard_normal(image.shape, np.float32) * np.float32(sigma)

@@ -1,9 +1,10 @@
 """The whole agent in a world of boxes."""
 
+import cv2
 import numpy as np
 import pytest
 
-from sim.interface import Action, CameraModel, RobotModel
+from sim.interface import Action, CameraModel, Observation, RobotModel, Scores
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -126,3 +127,30 @@ def test_a_picture_can_be_drawn_before_the_first_step():
     agent = agents.make("stubborn", camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
     assert draw.draw_belief(agent).ndim == 3
+
+
+class Smeared:
+    """A segmenter whose outlines run over what is beside the target."""
+
+    sensors: tuple[str, ...] = ("semantic",)
+
+    def __init__(self, *, exact: bool) -> None:
+        self.exact = exact
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        true = GroundTruthSegmenter().scores(observation, goal)
+        target = np.asarray(cv2.dilate(true.target, np.ones((7, 7), np.uint8)), np.float32)
+        return Scores(target, 1.0 - target)
+
+
+@pytest.mark.parametrize("exact", [True, False])
+def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: bool):
+    world = GridWorld([Box((2.0, 3.0), (-1.0, 1.0), (0.0, 0.8), "bed")], (0.0, 0.0, 0.0), camera=SMALL_CAMERA)
+    agent = agents.make("stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=Smeared(exact=exact))
+    assert isinstance(agent, StubbornAgent)
+    agent.reset("bed", 0)
+    agent.act(world.observe("bed"))
+    rows, cols = np.nonzero(agent.navmap.score_max > 0.5)
+    _, y_m = agent.navmap.frame.centres(rows, cols)
+    assert rows.size > 10
+    assert (np.abs(y_m).max() > 1.1) == exact  # beside the bed
