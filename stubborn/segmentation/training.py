@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import cv2
 import numpy as np
@@ -16,11 +17,12 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 from torch.utils.data import Dataset
 
-from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, CameraModel
+from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import CLASSES, RedNet
 from stubborn.segmentation.views import LabelledView
 
+DtypeT = TypeVar("DtypeT", bound=np.generic)
 IGNORED = -100
 """Label of pixels that do not count: void and padding."""
 
@@ -73,13 +75,14 @@ class Sampler:
 
     def __call__(self, view: LabelledView, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
         """Tensors float32, float32 and int64; labels are class channels, `IGNORED` where there is none."""
-        rgb, depth_m = shrink(view.rgb, self.block_px), shrink(view.depth_m, self.block_px)
-        semantic = shrink(view.semantic, self.block_px)
+        rgb: NDArray[np.uint8] = shrink(view.rgb, self.block_px)
+        depth_m: NDArray[np.float32] = shrink(view.depth_m, self.block_px)
+        semantic: NDArray[np.uint8] = shrink(view.semantic, self.block_px)
         if self.window_px is not None:
             rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, rng)
         a = self.augmentation
         if a.mirror and rng.random() < 0.5:
-            rgb, depth_m, semantic = (np.ascontiguousarray(image[:, ::-1]) for image in (rgb, depth_m, semantic))
+            rgb, depth_m, semantic = _mirrored(rgb), _mirrored(depth_m), _mirrored(semantic)
         rgb, depth_m = jitter_colour(rgb, a, rng), jitter_depth(depth_m, a, rng)
         return (
             torch.from_numpy(normalise_rgb(rgb)),
@@ -100,6 +103,10 @@ class Samples(Dataset):
 
     def __getitem__(self, i: int) -> tuple[Tensor, Tensor, Tensor]:
         return self._sampler(self._views[i], np.random.default_rng(0))
+
+
+def _mirrored(image: NDArray[DtypeT]) -> NDArray[DtypeT]:
+    return np.ascontiguousarray(image[:, ::-1])
 
 
 def labels(semantic: NDArray[np.uint8]) -> NDArray[np.int64]:

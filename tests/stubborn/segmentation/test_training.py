@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import MPCAT40_ID, CameraModel
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.training import (
     GOAL_CHANNELS,
@@ -26,6 +26,8 @@ from stubborn.segmentation.training import (
     labels,
     learning_rate,
     pyramid_loss,
+    random_window,
+    turn_hue,
 )
 from stubborn.segmentation.views import LabelledView
 
@@ -80,6 +82,47 @@ def test_jitter_changes_images_within_bounds_and_none_changes_nothing() -> None:
     holes = [(jitter_depth(view.depth_m, a, np.random.default_rng(i)) == 0).mean() for i in range(50)]
     assert min(holes) == 0.0
     assert 0.01 < max(holes) < 0.25
+
+
+def test_windows_have_one_size_lie_anywhere_and_come_in_all_scales() -> None:
+    row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
+    depth = (1000 * row.astype(np.float32)) + col
+    spans, corners = [], []
+    for seed in range(300):
+        rgb, depth_m, semantic = random_window(
+            np.stack([row, row, row], axis=2), depth, col, 40, np.random.default_rng(seed)
+        )
+        assert rgb.shape == (30, 40, 3)
+        assert (rgb.dtype, depth_m.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
+        assert (depth_m % 1000 == semantic).all()  # depth and labels are of the same pixels
+        assert np.abs(rgb[..., 0] - depth_m // 1000).max() <= 1  # colour is an average around them
+        spans.append(float(semantic[0, -1]) - semantic[0, 0])
+        corners.append((depth_m[0, 0] // 1000, semantic[0, 0]))
+    assert 38 <= min(spans) <= 41  # a cut-out
+    assert 74 <= max(spans) <= 79  # the whole view
+    assert np.median(spans) == pytest.approx(80 / np.sqrt(2), abs=4)  # a zoom in is as likely as one out
+    assert np.min(corners, axis=0).tolist() == [0, 0]
+    assert np.max(corners, axis=0).tolist() >= [25, 35]
+    with pytest.raises(ConfigError, match="80 columns has no window of 81"):
+        random_window(np.stack([row, row, row], axis=2), depth, col, 81, np.random.default_rng(0))
+
+
+def test_a_sampler_of_windows_gives_what_a_network_takes() -> None:
+    rgb, depth, target = Sampler(CameraModel(), 1, Augmentation(), 48)(a_view(), np.random.default_rng(0))
+    assert rgb.shape == (3, 32, 64)
+    assert depth.shape == (1, 32, 64)
+    assert (target[:, :8] == IGNORED).all()  # 48 x 32 pixels in the middle of 64 x 32
+    assert (target[:, 8:56] != IGNORED).any()
+
+
+def test_turning_the_hue_keeps_greys_and_brightness_and_swaps_primaries_after_a_third() -> None:
+    image = np.array([[[10.0, 10.0, 10.0], [200.0, 0.0, 0.0]]], np.float32)
+    turned = turn_hue(image, 2 * np.pi / 3)
+    assert turned[0, 0] == pytest.approx([10, 10, 10], abs=1e-3)
+    assert sorted(turned[0, 1].round(3).tolist()) == [0, 0, 200]
+    assert turned[0, 1, 0] == pytest.approx(0.0, abs=1e-3)
+    assert turn_hue(image, 0.4).sum(axis=2) == pytest.approx(image.sum(axis=2), rel=1e-5)
+    assert turn_hue(turn_hue(image, 0.4), -0.4) == pytest.approx(image, abs=1e-3)
 
 
 def test_the_loss_is_the_sum_of_the_cross_entropies_of_all_scales() -> None:
