@@ -124,7 +124,7 @@ class RerunLog:
         self._log_images(moment)
         self._log_places(moment)
         self._stream.log("map", self._rr.Image(self._map.paint(MAP_PX)).compress(jpeg_quality=95))
-        self._text(" ".join(filter(None, [ACTION_WORDS[moment.action], self._map.words()])))
+        self._text("; ".join(filter(None, [ACTION_WORDS[moment.action], self._map.words()])))
 
     def moved(self, info: Mapping[str, Any]) -> None:
         """What came of it."""
