@@ -12,7 +12,7 @@ from torch import Tensor
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores
 from stubborn.segmentation.checkpoints import load_rednet
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
-from stubborn.segmentation.rednet import RedNet
+from stubborn.segmentation.rednet import RedNet, folded
 
 
 class RedNetSegmenter:
@@ -45,7 +45,7 @@ class RedNetSegmenter:
             raise ConfigError(f"The softmax temperature must be > 0, got {temperature}.")
         if threads is not None:
             torch.set_num_threads(threads)
-        self.model = model.eval()
+        self.model = folded(model)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.camera = camera or CameraModel()
         self.block_px = block_px

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from sim.interface import ConfigError
-from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
+from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig, folded
 
 NAMES_AND_SHAPES = Path(__file__).with_name("rednet_state_dict.txt")
 
@@ -61,6 +61,25 @@ def test_both_colour_and_depth_reach_the_output() -> None:
     assert not torch.allclose(plain, coloured)
     assert not torch.allclose(plain, deep)
     assert not torch.allclose(coloured, deep)
+
+
+@pytest.mark.parametrize("bottleneck", [False, True])
+def test_folded_normalisations_leave_the_outputs_and_the_model_as_they_were(bottleneck: bool) -> None:
+    torch.manual_seed(1)
+    blocks = (2, 1, 1, 1)
+    model = RedNet(RedNetConfig(width=8, encoder_blocks=blocks, bottleneck=bottleneck, decoder_blocks=blocks)).eval()
+    for module in model.modules():
+        if isinstance(module, torch.nn.BatchNorm2d):  # as if it had been trained
+            for tensor in (module.weight.data, module.bias.data, module.running_mean, module.running_var):
+                assert tensor is not None
+                tensor.uniform_(0.5, 1.5)
+    rgb, depth = torch.randn(1, 3, 64, 96), torch.randn(1, 1, 64, 96)
+    with torch.inference_mode():
+        before, fast = model(rgb, depth), folded(model)(rgb, depth)
+        assert torch.equal(model(rgb, depth), before)
+    assert before.std() > 0
+    assert torch.allclose(fast, before, rtol=0, atol=1e-4 * float(before.abs().max()))
+    assert not any(isinstance(module, torch.nn.BatchNorm2d) for module in folded(model).modules())
 
 
 def test_every_parameter_learns_from_the_five_outputs() -> None:
