@@ -165,11 +165,13 @@ def run_quickly(parts: str, tmp_path: Path) -> dict[str, Any]:
 
 def test_a_quick_run_writes_figures_machine_and_calibration(tmp_path: Path) -> None:
     written = run_quickly("c,d", tmp_path)
-    shares = {"c": 0.0, "d": 0.0}
+    shares = {"c": 0.0, "gt": 0.0, "rednet": 0.0}
     for figure in written["figures"]:
         if figure["what"].startswith("of it"):
-            shares[figure["part"]] += figure["ratio"]
-    assert shares["d"] == pytest.approx(1.0)
+            whose = "c" if figure["part"] == "c" else figure["what"].split(", ")[1]
+            shares[whose] += figure["ratio"]
+    assert shares["gt"] == pytest.approx(1.0)
+    assert shares["rednet"] == pytest.approx(1.0)
     assert 0.8 < shares["c"] <= 1.0
 
 

@@ -16,9 +16,10 @@ from sim.episodes import Episode
 from sim.freespace import FreeSpace
 from sim.interface import Action, Agent
 from sim.pose import Pose
+from sim.segmenters import make_segmenter
 from sim.world import World
 from stubborn import agents
-from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.verification import verifier_for
 from tools.benchmarks.calibration import Calibrator
 
 SENSORS = ("depth", "semantic")
@@ -70,11 +71,11 @@ def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]
     return [Pose(float(x), float(y), float(rng.uniform(-math.pi, math.pi)), 0.0) for x, y in places]
 
 
-def stubborn_agent(env: ObjectNavEnv, **options: Any) -> Agent:
-    """The agent of the paper with ground-truth segmentation."""
-    return agents.make(
-        "stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter(), **options
-    )
+def stubborn_agent(env: ObjectNavEnv, *, semantics: str = "gt", **options: Any) -> Agent:
+    """The agent of the paper with this kind of segmentation and what it is verified by."""
+    segmenter = make_segmenter(semantics, env)
+    options.setdefault("verifier", verifier_for(semantics))
+    return agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=segmenter, **options)
 
 
 class Rig:

@@ -8,14 +8,18 @@ import numpy as np
 
 from sim.env import ObjectNavEnv
 from sim.rollout import play_episode
+from sim.segmenters import SEMANTICS
 from sim.sensors.camera import Camera
 from sim.task import Task
 from sim.world import World
 from stubborn.mapping import Mapper
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.segmentation.network import RedNetSegmenter
 from tools.benchmarks.figures import Figure, Goal, stopwatch
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
+STEP_GOALS_MS = {"gt": 10.0, "rednet": 75.0}
+"""A step of the agent at the median, by where segmentation comes from."""
 FIXED_EVERY = 20
 """Steps between two pieces of fixed work."""
 _WORLD = {
@@ -25,7 +29,7 @@ _WORLD = {
 }
 _AGENT = {
     "mapping": [(Mapper, "add_depth"), (Mapper, "add_scores")],
-    "detection": [(GroundTruthSegmenter, "scores")],
+    "detection": [(GroundTruthSegmenter, "scores"), (RedNetSegmenter, "scores")],
 }
 
 
@@ -39,14 +43,16 @@ def environment_step(setting: Setting) -> list[Figure]:
 
 
 def agent_step(setting: Setting) -> list[Figure]:
-    """(d) What of a step of the agent is mapping, planning and detection."""
-    whole, parts, march = _split_steps(setting, of_agent=True)
-    parts["planning"] = whole - sum(parts.values())
-    goal = Goal(of="value", sign="<=", bound=10.0)
-    return [
-        _against("d", "a step of the agent", whole, march, "the fixed march", goal),
-        *(_share("d", f"of it {name}", ms, whole, "the whole step") for name, ms in sorted(parts.items())),
-    ]
+    """(d) What of a step of the agent is mapping, planning and detection, with ground truth and with the network."""
+    figures: list[Figure] = []
+    for semantics, bound_ms in STEP_GOALS_MS.items():
+        whole, parts, march = _split_steps(setting, of_agent=True, semantics=semantics)
+        parts["planning"] = whole - sum(parts.values())
+        goal = Goal(of="value", sign="<=", bound=bound_ms)
+        figures.append(_against("d", f"a step of the agent, {semantics}", whole, march, "the fixed march", goal))
+        for name, ms in sorted(parts.items()):
+            figures.append(_share("d", f"of it {name}, {semantics}", ms, whole, "the whole step"))
+    return figures
 
 
 def whole_episodes(setting: Setting) -> list[Figure]:
@@ -77,15 +83,17 @@ def whole_episodes(setting: Setting) -> list[Figure]:
     ]  # fmt: skip
 
 
-def _split_steps(setting: Setting, *, of_agent: bool) -> tuple[np.ndarray, dict[str, np.ndarray], float]:
+def _split_steps(
+    setting: Setting, *, of_agent: bool, semantics: str = "gt"
+) -> tuple[np.ndarray, dict[str, np.ndarray], float]:
     """Milliseconds of each step, and of its parts, over the first episodes of val; and of the fixed work in between.
 
     That is the march for the agent and the render for the environment, its median like the step's.
     """
     fixed = setting.calibrator.march_ms if of_agent else setting.calibrator.render_ms
     fixed_ms: list[float] = []
-    env = ObjectNavEnv(split="val", sensors=SENSORS)
-    rig = Rig(env, stubborn_agent(env), env.split.episodes)
+    env = ObjectNavEnv(split="val", sensors=("depth", *SEMANTICS[semantics]))
+    rig = Rig(env, stubborn_agent(env, semantics=semantics), env.split.episodes)
     whole: list[float] = []
     with stopwatch(_AGENT if of_agent else _WORLD) as ms:
         parts: dict[str, list[float]] = {name: [] for name in ms}
