@@ -26,6 +26,7 @@ from sim.executors import make_executor
 from sim.houses.load import load_house
 from sim.interface import Agent, ConfigError
 from sim.oracle import Oracle
+from sim.paper_tables import SEMANTICS_DO_NOT_MATTER, TRUTH
 from sim.parallel import Share
 from sim.paths import code_hash
 from sim.pose import Pose
@@ -50,8 +51,8 @@ class Args:
 
     agent: str = "stubborn"
     """Who plays: a name of --list-agents, or your own as package.module:factory."""
-    semantics: str = "gt"
-    """Where segmentation comes from: gt (ground truth), noisy (ground truth with a network's mistakes) or rednet."""
+    semantics: str = "rednet"
+    """Where segmentation comes from: rednet, noisy (ground truth with a network's mistakes) or gt (ground truth)."""
     weights: Path | None = None
     """With --semantics rednet: your network in place of the shipped one."""
     verification: str = "naive-bayes"
@@ -224,7 +225,8 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     if args.agent == "oracle":
         return Oracle(env)
     robot = env.robot_model
-    segmenter = make_segmenter(args.semantics, env, weights=args.weights)
+    looks = args.agent not in SEMANTICS_DO_NOT_MATTER
+    segmenter = make_segmenter(args.semantics if looks else TRUTH, env, weights=args.weights)
     if args.agent in agents.NAMES:
         verifier = verifier_for(args.semantics, args.verifier, args.verification)
         return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)
@@ -289,7 +291,7 @@ def _body(args: Args) -> dict[str, Any]:
 
 def _sensors(args: Args) -> tuple[str, ...]:
     """Image sensors that the agent reads; an agent from elsewhere gets all of them."""
-    if args.agent == "oracle":
+    if args.agent in SEMANTICS_DO_NOT_MATTER:
         return ()
     if args.agent in agents.NAMES:
         return ("depth", *SEMANTICS[args.semantics])

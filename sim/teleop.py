@@ -247,6 +247,7 @@ def run_options(args: Args) -> run.Args:
     """What `sim.run` would call this run."""
     return run.Args(
         agent="human",
+        semantics="gt",
         split=args.split,
         house=args.house,
         labels=args.labels,

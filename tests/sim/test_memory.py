@@ -88,8 +88,9 @@ def test_maps_take_no_memory_where_nothing_was_seen() -> None:
     assert float(ended.stdout) < 24, ended.stdout  # all layers have 68
 
 
-def test_a_worker_imports_no_library_that_it_does_not_need() -> None:
-    player = "from sim.run import Args, EpisodePlayer; player = EpisodePlayer(Args()); player.close()"
+@pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
+def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
+    player = f"from sim.run import Args, EpisodePlayer; player = EpisodePlayer(Args({options})); player.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
     told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
     ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)

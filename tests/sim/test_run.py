@@ -32,7 +32,9 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def command(*options: object) -> list[str]:
-    return [sys.executable, "-m", "sim.run", *map(str, options)]
+    """With ground truth unless another segmentation is asked for: a network would take most of the time."""
+    semantics = () if "--semantics" in options else ("--semantics", "gt")
+    return [sys.executable, "-m", "sim.run", *map(str, (*options, *semantics))]
 
 
 def run(*options: object) -> subprocess.CompletedProcess[str]:
@@ -134,6 +136,18 @@ def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_pat
     assert [line["success"] for line in lines] == [1.0, 0.0, 0.0, 1.0]
     assert [line["shortest_path"] is None for line in lines] == [False, True, True, False]
     assert [line["gt_explored"] for line in lines] == [True, False, False, True]
+
+
+def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from sim.run import entry
+
+    assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
+    assert "stubborn with rednet semantics" in capsys.readouterr().out
+    (line,) = lines_of(tmp_path)
+    assert (line["agent"], line["semantics"]) == ("stubborn", "rednet")
+    assert "weights_sha256" in json.loads((tmp_path / "config.json").read_text())["semantics_config"]
 
 
 def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:

@@ -73,7 +73,7 @@ def lines_of(out: Path) -> list[dict]:
 
 
 def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tmp_path: Path) -> None:
-    options = ["--house", str(house), "--noise", "realsense", "--episodes", "1", "--out"]
+    options = ["--semantics", "gt", "--house", str(house), "--noise", "realsense", "--episodes", "1", "--out"]
     assert entry([*options, str(tmp_path / "plain")]) == 0
     assert entry([*options, str(tmp_path / "filmed"), "--video"]) == 0
     assert lines_of(tmp_path / "plain") == lines_of(tmp_path / "filmed")
