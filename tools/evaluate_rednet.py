@@ -5,14 +5,15 @@
         --fit-temperature --card stubborn/segmentation/weights/README.md
 
 With --fit-temperature the temperature of the softmax is fitted on the views of every second house, written into the
-file of the weights, and judged on the other houses. --card writes the model card that ships beside the weights.
+file of the weights, and judged on the other houses; --block-px tries another working resolution. --card writes the
+model card that ships beside the weights.
 """
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,8 @@ class Args:
     """Fit the softmax's temperature and write it into the file of the weights."""
     card: Path | None = None
     """Write a model card here."""
+    block_px: int | None = None
+    """Let it see the image shrunk by this (of 640 x 480), not by what its file says; --fit-temperature writes it."""
     threads: int = 2
     """Of PyTorch."""
 
@@ -72,11 +75,15 @@ class Measured:
 
 def main(args: Args) -> int:
     """Measure, tell and, if asked to, write; returns the exit status."""
-    if args.threads < 1:
-        raise ConfigError(f"--threads must be at least 1, got {args.threads}.")
+    for name in ("threads", "block_px"):
+        value = getattr(args, name)
+        if value is not None and value < 1:
+            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     file = weights_file(args.weights)
     model, metadata = load_rednet(file)
+    if args.block_px is not None:
+        metadata["block_px"] = args.block_px
     measured = measure(args, model, metadata)
     if args.fit_temperature:
         metadata["temperature"] = round(measured.temperature, 4)
@@ -169,10 +176,7 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
     """The model card, Markdown."""
     parameters = sum(tensor.numel() for tensor in load_rednet(file)[0].parameters())
     iou, px = measured.iou, int(metadata.get("block_px", 1))
-    options = metadata.get("options", {})
-    told = " ".join(
-        f"--{key.replace('_', '-')} {' '.join(v) if isinstance(v, list) else v}" for key, v in options.items() if v
-    )
+    stages = list(training_stages(metadata))
     rows = [f"| {name} | {iou.by_category[name]:.3f} |" for name in GOAL_CATEGORIES if name in iou.by_category]
     absent = [name for name in GOAL_CATEGORIES if name not in iou.by_category]
     bins = zip(measured.before.rows(), measured.after.rows(), strict=False)
@@ -191,12 +195,12 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             f"| pixel accuracy | {iou.accuracy:.3f} |",
             f"| views measured | {measured.views} |",
             f"| time a frame, {args.threads} threads | {measured.frame_ms:.0f} ms |",
-            f"| training | {metadata.get('step', '?')} steps, {metadata.get('hours', '?')} h |",
+            *(f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages),
             f"| calibration error, temperature 1 | {measured.before.error:.3f} |",
             f"| calibration error, temperature {measured.temperature:.2f} | {measured.after.error:.3f} |",
             "",
             "```sh",
-            f"python tools/train_rednet.py {told}",
+            *(_command(stage) for stage in stages),
             "```",
             "",
             "| category | IoU |",
@@ -212,6 +216,22 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             "",
         ]
     )
+
+
+def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """What is known of each training that led to a network, the first one first."""
+    if "started_from" in metadata:
+        yield from training_stages(metadata["started_from"])
+    yield metadata
+
+
+def _command(stage: dict[str, Any]) -> str:
+    told = (
+        f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
+        for key, value in stage.get("options", {}).items()
+        if value
+    )
+    return " ".join(["python tools/train_rednet.py", *told])
 
 
 if __name__ == "__main__":

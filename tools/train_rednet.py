@@ -112,7 +112,8 @@ class Trainer:
         if args.threads is not None:
             torch.set_num_threads(args.threads)
         torch.manual_seed(args.seed)
-        self.model = _network(args).to(self.device)
+        model, self.started_from = _network(args)
+        self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
         shards = _all_shards(args.views)
@@ -195,7 +196,8 @@ class Trainer:
             key: None if value is None else str(value) for key, value in asdict(self.args).items()
         }
         options |= {key: [str(folder) for folder in getattr(self.args, key)] for key in ("views", "val_views")}
-        return {
+        earlier = {"started_from": self.started_from} if self.started_from else {}
+        return earlier | {
             "block_px": self.args.block_px * self.stored_block_px,
             "step": self.step,
             "hours": round(self.spent_s / 3600, 3),
@@ -243,13 +245,14 @@ def _all_shards(folders: Sequence[Path]) -> list[Path]:
     return [shard for folder in folders for shard in list_shards(folder)]
 
 
-def _network(args: Args) -> RedNet:
+def _network(args: Args) -> tuple[RedNet, dict[str, Any]]:
+    """The network to train, and what its file says of its training so far."""
     if args.init is None:
-        return RedNet(SIZES[args.size])
-    model, _ = load_rednet(args.init)
+        return RedNet(SIZES[args.size]), {}
+    model, metadata = load_rednet(args.init)
     if model.config != SIZES[args.size]:
         raise ConfigError(f"--init '{args.init}' is not of size '{args.size}'.")
-    return model
+    return model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
 
 
 def _device(name: str) -> torch.device:

@@ -48,6 +48,16 @@ def test_a_temperature_is_fitted_written_and_makes_scores_more_honest(tmp_path: 
     assert "| views measured | 8 |" in text
 
 
+def test_another_resolution_is_measured_and_written_with_the_temperature(tmp_path: Path, weights: Path) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    views = (tmp_path / "one", tmp_path / "two")
+    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1)) == 0
+    assert load_rednet(weights)[1]["block_px"] == 1
+    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1, fit_temperature=True)) == 0
+    assert load_rednet(weights)[1]["block_px"] == 2
+
+
 def test_views_stored_smaller_than_the_network_sees_are_refused(tmp_path: Path, weights: Path) -> None:
     write_views(tmp_path / "one", 2)
     views = [

@@ -11,10 +11,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+import torch
 
 from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.checkpoints import load_rednet
 from stubborn.segmentation.rednet import COMPACT
+from tools import evaluate_rednet
 from tools.train_rednet import Args, main
 
 
@@ -65,6 +67,25 @@ def test_training_writes_curves_and_weights_and_goes_on_where_it_was(tmp_path: P
     assert card["miou_goals"] == pytest.approx(max(float(row["miou_goals"]) for row in first), abs=1e-4)
     assert main(options(tmp_path, views=folders, steps=6)) == 0
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
+
+
+def test_finetuning_starts_from_the_weights_given_and_remembers_how_they_were_made(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    assert main(options(tmp_path, steps=2)) == 0
+    first = tmp_path / "out/rednet.safetensors"
+    slow = {"init": first, "rate": 1e-9, "window_px": 32, "steps": 1, "evaluate_every": 1}
+    assert main(options(tmp_path, out=tmp_path / "finer", **slow)) == 0
+    (before, earlier), (after, card) = load_rednet(first), load_rednet(tmp_path / "finer/rednet.safetensors")
+    assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options")}
+    assert card["options"]["window_px"] == "32"
+    assert torch.allclose(before.conv1.weight, after.conv1.weight, atol=1e-4)
+    assert (
+        main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
+    )
+    _, last = load_rednet(tmp_path / "finest/rednet.safetensors")
+    told = [stage["options"]["out"] for stage in evaluate_rednet.training_stages(last)]
+    assert told == [str(tmp_path / name) for name in ("out", "finer", "finest")]
 
 
 def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> None:
