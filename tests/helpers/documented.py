@@ -88,6 +88,7 @@ class Only:
 
 _RUN = f"{PYTHON} -m sim.run"
 _SMALL = "--house examples/my_house.xml --goal sofa"
+_SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
@@ -132,6 +133,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
     f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --semantics gt --goal toilet": (f"{_RUN} --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",),
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
     ),
@@ -175,7 +177,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/gallery.py --sheet --categories fireplace --pool train --out {{tmp}}/gallery",
     ),
     # docs/report.md
-    f"{_RUN} --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
+    f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
         f"{_RUN} --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record --out {{tmp}}/harsh",
     ),
     f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
@@ -231,7 +233,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_rednet.py --views {{tmp}}/views --val-views {{tmp}}/views --out {{tmp}}/rednet"
         " --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
-    f"{_RUN} --semantics rednet": (f"{_RUN} --semantics rednet {_SMALL} --episodes 1 --out {{tmp}}/run",),
+    f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
+        f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
     f"{PYTHON} tools/evaluate_rednet.py --views views_val --fit-temperature --card card.md "
     "--weights runs/rednet/rednet.safetensors": (
         f"{_VIEWS} --views-per-shard 2",
@@ -241,8 +245,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
+    f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --rate 1e-3 --views views_small "
+    "--val-views views_val --out runs/finer --hours 1": (
+        _VIEWS,
+        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --batch 2 --steps 1 --views {{tmp}}/views "
+        "--val-views {tmp}/views --out {tmp}/finer",
+    ),
     # docs/traps.md
-    f"{_RUN} --split traps --episodes 19": (f"{_RUN} --split traps --episodes 1 --agent oracle --out {{tmp}}/run",),
+    f"{_RUN} --split traps --semantics gt --episodes 19": (
+        f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
     f"{PYTHON} tools/trap_report.py --out runs/traps": (
         f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
     ),
