@@ -9,11 +9,9 @@ Specification 0.8). It may be deleted at any time.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version as package_version
@@ -21,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.errors import HouseError
+from sim.files import write_atomically
 from sim.houses.splits import Recipe
 from sim.interface import ConfigError
 from sim.paths import assets_dir
@@ -165,25 +164,6 @@ def copy_textures(folder: Path) -> None:
         content, there = source.read_bytes(), folder / source.name
         if not there.is_file() or there.read_bytes() != content:
             write_atomically(there, content)
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file so that whoever looks sees all of it or nothing; makes its folder.
-
-    Raises:
-        OSError: it cannot be written.
-    """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.chmod(part, 0o644)  # mkstemp's files are the owner's alone
-        os.replace(part, path)
-    except BaseException:  # Ctrl-C too: nothing is left behind
-        with contextlib.suppress(OSError):
-            os.unlink(part)
-        raise
 
 
 def _sha256_of(path: Path) -> str | None:

@@ -34,6 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env import ObjectNavEnv
+from sim.files import part_file
 from sim.interface import MPCAT40, CameraModel, ConfigError
 from sim.overlay import ACTION_WORDS, in_words
 from sim.palette import PALETTE
@@ -113,7 +114,8 @@ class RerunLog:
         if self._run is None:
             self._stream.spawn(port=PORT)
         else:
-            self._save_to(rerun_file(self._run, episode.episode_id))
+            self._part = part_file(rerun_file(self._run, episode.episode_id), what="recording")
+            self._stream.save(self._part)
         self._stream.send_recording_name(f"{episode.episode_id}: {in_words(episode.goal)}")
         self._stream.send_blueprint(self._blueprint())
         self._log_what_stays()
@@ -148,17 +150,6 @@ class RerunLog:
         if self._part is not None:
             self._part.unlink(missing_ok=True)
             self._part = None
-
-    def _save_to(self, file: Path) -> None:
-        self._part = file.with_name(f".{file.stem}.part-{os.getpid()}.rrd")
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            for left_over in file.parent.glob(f".{file.stem}.part-*.rrd"):  # of a process that was killed
-                left_over.unlink()
-            self._part.touch()
-        except OSError as error:
-            raise ConfigError(f"Cannot write the recording '{file}': {error.strerror}.") from None
-        self._stream.save(self._part)
 
     def _disconnect(self) -> None:
         if self._stream is not None:

@@ -23,7 +23,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.house_list import write_atomically
+from sim.files import write_atomically
 from sim.interface import MPCAT40, ConfigError
 from sim.views import View
 

@@ -18,7 +18,6 @@ OpenCV passes no options to the encoder, so it runs at libvpx's default speed, i
 from __future__ import annotations
 
 import contextlib
-import os
 import queue
 import threading
 import urllib.parse
@@ -32,6 +31,7 @@ from numpy.typing import NDArray
 
 from sim import overlay
 from sim.env import ObjectNavEnv
+from sim.files import part_file
 from sim.interface import ConfigError
 from sim.topview import TopView
 from sim.watching import MapPainter, Moment
@@ -65,14 +65,7 @@ class VideoWriter:
             ConfigError: nothing can be written there, or this OpenCV has no VP9.
         """
         self.file = file
-        self._part = file.with_name(f".{file.stem}.part-{os.getpid()}.mp4")
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            for left_over in file.parent.glob(f".{file.stem}.part-*.mp4"):  # of a process that was killed
-                left_over.unlink()
-            self._part.touch()
-        except OSError as error:
-            raise ConfigError(f"Cannot write the video '{file}': {error.strerror}.") from None
+        self._part = part_file(file, what="video")
         fourcc = cv2.VideoWriter.fourcc(*"vp09")
         self._encoder = cv2.VideoWriter(str(self._part), cv2.CAP_FFMPEG, fourcc, frames_per_s, size_px)
         if not self._encoder.isOpened():

@@ -24,7 +24,7 @@ import cv2
 from rich.console import Console
 
 from sim import cli, tables
-from sim.house_list import write_atomically
+from sim.files import write_atomically
 from sim.interface import ConfigError
 from tools.benchmarks import growth, making, rendering, report, scaling, stepping
 from tools.benchmarks.calibration import Calibration, Calibrator

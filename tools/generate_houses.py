@@ -25,7 +25,8 @@ from pathlib import Path
 
 from sim import cli
 from sim.errors import HouseError
-from sim.house_list import cache_dir, copy_textures, write_atomically, write_house_list
+from sim.files import write_atomically
+from sim.house_list import cache_dir, copy_textures, write_house_list
 from sim.houses.furniture.item import Pool
 from sim.houses.generator import HouseConfig, generate_house
 from sim.houses.rooms import PlanKind

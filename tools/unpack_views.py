@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 
 from sim import cli
-from sim.house_list import write_atomically
+from sim.files import write_atomically
 from sim.interface import ConfigError
 from stubborn.segmentation.views import LabelledView, list_shards, read_shard
 

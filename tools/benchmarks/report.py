@@ -13,7 +13,7 @@ from typing import Any
 
 from rich.table import Table
 
-from sim.house_list import write_atomically
+from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.paths import code_hash
 from sim.sensors.camera import describe_gl
