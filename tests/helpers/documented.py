@@ -243,6 +243,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --fit-temperature --card {{tmp}}/card.md "
         "--weights {tmp}/rednet.safetensors",
     ),
+    f"{_RUN} --episodes 50 --record --out runs/looked": (
+        f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
+    ),
+    f"{PYTHON} tools/show_mistakes.py runs/looked --out runs/false.png": (
+        f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
+        f"{PYTHON} tools/show_mistakes.py {{tmp}}/looked --out {{tmp}}/false.png",
+    ),
+    f"{PYTHON} tools/show_mistakes.py runs/looked --cause missed_detection --out runs/missed.png": Only(
+        "a small run has none; tests/tools/test_show_mistakes.py"
+    ),
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
     f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --rate 1e-3 --views views_small "

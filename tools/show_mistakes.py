@@ -1,0 +1,141 @@
+"""What the network saw where an episode was lost: at the STOP elsewhere, or where the goal was plainest and missed.
+
+    python -m sim.run --episodes 100 --record --out runs/mine
+    python tools/show_mistakes.py runs/mine --out runs/false.png
+    python tools/show_mistakes.py runs/mine --cause missed_detection --out runs/missed.png
+
+A row an episode: the picture, the true categories, the network's, and its score of the goal (white 0, red 1). Nothing
+is played again: the house is drawn from the recorded pose, without sensor noise, and what the robot has pushed stands
+where it stood at the start.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import tyro
+from numpy.typing import NDArray
+
+from sim import cli
+from sim.comparison import read_run
+from sim.interface import MPCAT40, ConfigError
+from sim.palette import with_legend
+from sim.pose import Pose
+from sim.report.drawings import split_of
+from sim.segmenters import weights_file
+from sim.sensors.camera import Camera
+from sim.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.world import World
+from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.views import tile
+
+Picture = NDArray[np.uint8]
+CAUSES = ("false_detection", "missed_detection")
+PANEL_PX = 320
+CAPTION_PX = 22
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Draw mistakes of a run with `--semantics rednet --record`."""
+
+    run: tyro.conf.Positional[Path]
+    """Folder of the run."""
+    out: Path
+    """The PNG file."""
+    cause: str = "false_detection"
+    """Which failures: false_detection (seen at the STOP) or missed_detection (seen where the goal was largest)."""
+    count: int = 10
+    """At most so many, the first ones."""
+
+
+def main(args: Args) -> int:
+    """Draw the sheet, and say of each row what it shows; returns the exit status, 1 where there is no such failure."""
+    if args.cause not in CAUSES:
+        raise ConfigError(f"--cause must be one of {', '.join(CAUSES)}, got '{args.cause}'.")
+    if args.count < 1:
+        raise ConfigError(f"--count must be at least 1, got {args.count}.")
+    run = read_run(args.run)
+    if run.config.get("semantics") != "rednet":
+        raise ConfigError(f"'{args.run}' was played with --semantics {run.config.get('semantics')}, not with rednet.")
+    weights = run.config.get("weights")
+    network = RedNetSegmenter.from_file(weights_file(Path(weights) if weights else None))
+    split = split_of(run)
+    picked = [
+        line
+        for line in run.lines.values()
+        if line["failure"] == args.cause and trajectory_file(run.path, line["episode_id"]).is_file()
+    ][: args.count]
+    if not picked:
+        print(f"No recorded episode of '{args.run}' failed by {args.cause}.")
+        return 1
+    rows: list[Picture] = []
+    for line in sorted(picked, key=lambda line: line["house"]):
+        trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
+        step = decisive_step(trajectory, args.cause)
+        images = photographed(World(split.load_house(line["house"])), trajectory.poses[step])
+        row, words = draw(images, network, line["goal"])
+        about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
+        print(about)
+        rows.append(_captioned(row, about))
+    args.out.parent.mkdir(parents=True, exist_ok=True)
+    cv2.imwrite(str(args.out), cv2.cvtColor(tile(rows, columns=1), cv2.COLOR_RGB2BGR))
+    print(f"{len(rows)} episodes in {args.out}")
+    return 0
+
+
+def decisive_step(trajectory: Trajectory, cause: str) -> int:
+    """Number of the frame to look at: the last one, or the one that showed most of the goal."""
+    if cause == "false_detection":
+        return trajectory.num_steps
+    return int(np.nanargmax(trajectory.goal_share))
+
+
+def photographed(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dict[str, NDArray]:
+    """Colour, depth and categories from (x, y, yaw, floor height)."""
+    x_m, y_m, yaw_rad, floor_z_m = (float(value) for value in pose)
+    camera = Camera(world.model, world.labels)
+    images = camera.render(world.data, Pose(x_m, y_m, yaw_rad, floor_z_m), ("rgb", "depth", "semantic"))
+    camera.close()
+    return images
+
+
+def draw(images: dict[str, NDArray], network: RedNetSegmenter, goal: str) -> tuple[Picture, str]:
+    """One row of panels, and in words what truly is where the network sees the goal."""
+    size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
+    guess = (network.logits(images["rgb"], images["depth"]).argmax(dim=0).numpy() + 1).astype(np.uint8)
+    score = network.scores(images, goal).target  # pyright: ignore[reportArgumentType] - what it reads of an observation
+    labels = [
+        with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))
+        for of in (images["semantic"], guess)
+    ]
+    faint = cv2.resize(255.0 * (1.0 - score), size)
+    heat = np.dstack([np.full_like(faint, 255.0), faint, faint]).astype(np.uint8)
+    rgb = np.asarray(cv2.resize(images["rgb"], size, interpolation=cv2.INTER_AREA), np.uint8)
+    return np.hstack([rgb, *labels, heat], dtype=np.uint8), in_words(images["semantic"], score)
+
+
+def in_words(semantic: NDArray[np.uint8], score: NDArray[np.float32]) -> str:
+    """What truly is where the goal is scored above 0.5, the most first; else how high it is scored."""
+    every = semantic.shape[0] // score.shape[0]
+    true = semantic[every // 2 :: every, every // 2 :: every][score > 0.5]
+    if true.size == 0:
+        return f"nothing scored above 0.5, at most {score.max():.2f}"
+    shares = np.bincount(true, minlength=len(MPCAT40)) / true.size
+    named = [f"{MPCAT40[i]} {shares[i]:.0%}" for i in np.argsort(-shares)[:3] if shares[i] >= 0.05]
+    return f"taken for it: {', '.join(named)}"
+
+
+def _captioned(row: Picture, words: str) -> Picture:
+    caption = np.full((CAPTION_PX, row.shape[1], 3), 255, np.uint8)
+    cv2.putText(caption, words, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.48, (30, 30, 30), 1, cv2.LINE_AA)
+    return np.vstack([caption, row], dtype=np.uint8)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
