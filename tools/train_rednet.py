@@ -284,6 +284,10 @@ def _check(args: Args) -> None:
     for name in ("steps", "batch", "block_px", "evaluate_every"):
         if getattr(args, name) < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
+    if args.window_px is not None and args.window_px < 32:
+        raise ConfigError(
+            f"--window-px must be at least 32, got {args.window_px}: a network halves a sample five times."
+        )
     if args.batch < 2:
         raise ConfigError("--batch must be at least 2: batch normalisation needs more than one view.")
     if args.hours is not None and args.hours <= 0:

@@ -95,5 +95,7 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path))
     with pytest.raises(ConfigError, match="--size must be one of compact, published, got 'huge'"):
         main(options(tmp_path, size="huge"))
+    with pytest.raises(ConfigError, match="--window-px must be at least 32, got 16"):
+        main(options(tmp_path, window_px=16))
     with pytest.raises(ConfigError, match="No shards"):
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))
