@@ -178,7 +178,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/report.md
     f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
-        f"{_RUN} --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record --out {{tmp}}/harsh",
+        f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
+        " --out {tmp}/harsh",
     ),
     f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
     f"{PYTHON} -m sim.report runs/before runs/after": (
@@ -258,8 +259,23 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --rate 1e-3 --views views_small "
     "--val-views views_val --out runs/finer --hours 1": (
         _VIEWS,
-        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --batch 2 --steps 1 --views {{tmp}}/views "
-        "--val-views {tmp}/views --out {tmp}/finer",
+        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --rate 1e-3 --views {{tmp}}/views"
+        " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
+    ),
+    # docs/reproduce.md, the tables that have been played
+    **{
+        f"{PYTHON} tools/reproduce.py {table} --episodes 200 --workers 2": (
+            f"{PYTHON} tools/reproduce.py {table} --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+        )
+        for table in ("failures", "exploration")
+    },
+    f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
+        f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "
+        "--out {tmp}/paper",
+    ),
+    f"{PYTHON} tools/reproduce.py failures --semantics rednet --agents stubborn single-frame": (
+        f"{PYTHON} tools/reproduce.py failures --semantics rednet --agents random oracle --episodes 1"
+        " --out {tmp}/paper",
     ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 19": (

@@ -80,7 +80,7 @@ def test_another_table_takes_the_episodes_that_are_there_and_plays_the_rest(
 def test_a_run_of_the_runner_and_a_run_for_a_table_have_the_same_lines(args: reproduce.Args, split: Path) -> None:
     reproduce.main(args)
     alone = args.out / "alone"
-    options = ["--agent", AGENTS[1], "--split", str(split), "--episodes", "2", "--out", str(alone)]
+    options = ["--agent", AGENTS[1], "--semantics", "gt", "--split", str(split), "--episodes", "2", "--out", str(alone)]
     assert run.entry(options) == 0
     times = ("wall_time_s", "steps_per_s")
     first, second = (
