@@ -269,6 +269,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         )
         for table in ("failures", "exploration")
     },
+    f"{PYTHON} tools/reproduce.py overall --episodes 200 --agents stubborn single-frame frontier-avoid random oracle": (
+        f"{PYTHON} tools/reproduce.py overall --episodes 1 --agents random oracle --out {{tmp}}/paper",
+    ),
     f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
