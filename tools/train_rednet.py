@@ -69,8 +69,8 @@ class Args:
     block_px: int = 1
     """The network sees the views shrunk by this; views stored small (--shrink 2) need no more."""
     window_px: int | None = None
-    """Train on windows of so many columns at random scales, on the CPU several times faster; None: whole views.
-    It is evaluated, and meant to be used, on whole views in any case."""
+    """Train on windows of so many columns at random scales, a quarter of the pixels at half the width; None: whole
+    views. It is evaluated, and meant to be used, on whole views in any case."""
     steps: int = 20_000
     """Steps of the learning-rate schedule."""
     hours: float | None = None

@@ -126,8 +126,8 @@ def random_window(
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint8]]:
     """A window of the same shape as the view and `window_px` wide, anywhere in it, at a random scale.
 
-    Between the whole view, shrunk, and a cut-out with the view's own pixels. A network that learns from windows costs a
-    fraction of one that learns from whole views, has met things in several sizes, and works on whole views as well.
+    Between the whole view, shrunk, and a cut-out with the view's own pixels: fewer pixels to a step, things in several
+    sizes.
 
     Raises:
         ConfigError: the view is narrower than the window.
