@@ -144,7 +144,7 @@ class Camera:
         if self._reflects:
             geoms = self._drawable
         elif self.profile.shadows and lamps and self.cull:
-            geoms = np.union1d(seen, self._lamps.casters(data, lamps[0]))
+            geoms = np.union1d(seen, self._lamps.casters(data, lamps[0], eye_m, axes))
         self._lamps.light(lamps)
         self._fill_scene(data, geoms, eye_m, axes)
         self._lamps.restore()

@@ -55,12 +55,19 @@ class Lamps:
         nearest = np.argsort(away_m, kind="stable")[:LAMPS_LIT]
         return [int(self._lamps[i]) for i in nearest if np.isfinite(away_m[i])]
 
-    def casters(self, data: mujoco.MjData, lamp: int) -> NDArray[np.intp]:
-        """Ids of the drawable geoms that may throw a shadow in this lamp's light: no wall stands between."""
+    def casters(self, data: mujoco.MjData, lamp: int, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
+        """Ids of the drawable geoms that may throw a shadow of this lamp into the picture: no wall stands between.
+
+        Args:
+            data: state of the model, the one that `visibility` has looked at last.
+            lamp: its number.
+            eye_m: (3,) optical centre in the world.
+            axes: (3, 3) the camera's forward, left and up as rows.
+        """
         if lamp not in self._lit:
             places = data.geom_xpos[self._drawable]
             self._lit[lamp] = self._visibility.in_sight(data.light_xpos[lamp], places) | ~self._fixed
-        return self._drawable[self._lit[lamp]]
+        return self._drawable[self._lit[lamp] & self._visibility.shading(data.light_xpos[lamp], eye_m, axes)]
 
     def light(self, lamps: Sequence[int]) -> None:
         """Let these lamps shine in the model, the first with shadows; all others are off until `restore`."""

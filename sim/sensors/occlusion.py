@@ -1,4 +1,4 @@
-"""Which geoms a level camera cannot see: those outside its view, and those wholly behind walls.
+"""Which geoms a level camera cannot see: those outside its view, and those wholly behind walls; and whose shadows.
 
 The picture is cut into strips of a few pixel columns. In each strip the nearest opaque upright box that covers the
 whole strip and spans the height of the eye is its *wall*: nothing that lies farther than the wall's front and, seen
@@ -108,6 +108,31 @@ class Visibility:
             hidden = self._hidden_by_strip(self._bounds.take(self._bound_of[kept[upright]]), eye_m, (c, s), horizon)
             kept = np.delete(kept, upright[hidden])
         return self._ids[kept]
+
+    def shading(self, light_m: NDArray, eye_m: NDArray, axes: NDArray) -> NDArray[np.bool_]:
+        """(drawable,) False where neither a geom nor its shadow can reach the picture; after `visible`, of its state.
+
+        A shadow is what lies behind the geom as seen from the light: the hull of its corners and of the rays from the
+        light through them. It misses the picture where all of these lie beyond one of its sides.
+
+        Args:
+            light_m: (3,) where the light is.
+            eye_m: (3,) optical centre in the world.
+            axes: (3, 3) the camera's forward, left and up as rows.
+        """
+        ahead, left, up = np.einsum("ai,ikn->akn", axes, self._corners - eye_m[:, None, None])
+        far_ahead, far_left, far_up = np.einsum("ai,ikn->akn", axes, self._corners - light_m[:, None, None])
+        wide, high = self._right_max + self._slack, self._up_max + self._slack
+        missed = np.zeros(len(self._ids), np.bool_)
+        for inwards, onwards in (
+            (ahead, far_ahead),
+            (wide * ahead - left, wide * far_ahead - far_left),
+            (wide * ahead + left, wide * far_ahead + far_left),
+            (high * ahead - up, high * far_ahead - far_up),
+            (high * ahead + up, high * far_ahead + far_up),
+        ):
+            missed |= (inwards < 0.0).all(axis=0) & (onwards < 0.0).all(axis=0)
+        return ~(missed & self._bounded)
 
     def in_sight(self, eye_m: NDArray, places_m: NDArray) -> NDArray[np.bool_]:
         """(k,) True where no wall stands between the eye and a place (k, 3), in plan; on a wall counts as before it.

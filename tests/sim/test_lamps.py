@@ -39,11 +39,27 @@ class Eye:
         mujoco.mj_forward(self.model, self.data)
         drawable = rendered_geoms(self.model)
         visibility = Visibility(self.model, drawable, CameraModel(), Z_NEAR_M)
+        self.visibility = visibility
         self.lamps = Lamps(self.model, visibility, np.flatnonzero(drawable))
         self.profile, self.cull = profile, cull
 
     def choose(self, x_m: float, y_m: float) -> list[int]:
         return self.lamps.choose(self.data, np.array([x_m, y_m, 0.88]), FORWARD)
+
+    def casting(self, pose: Pose) -> np.ndarray:
+        """Ids of what is drawn for the shadow that it may throw."""
+        eye_m, axes = self._frame(pose)
+        self.visibility.visible(self.data, eye_m, pose.yaw_rad)
+        return self.lamps.casters(self.data, 0, eye_m, axes)
+
+    def lit(self, pose: Pose) -> np.ndarray:
+        """Ids of what the lamp shines on, wherever its shadow falls."""
+        eye_m, _ = self._frame(pose)
+        return self.lamps.casters(self.data, 0, eye_m, np.zeros((3, 3)))
+
+    def _frame(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+        c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
+        return np.array([pose.x_m, pose.y_m, 0.88]), np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
     def rgb(self, pose: Pose) -> np.ndarray:
         camera = Camera(self.model, self.labels, profile=self.profile, cull=self.cull)
@@ -102,3 +118,18 @@ def test_what_hangs_out_of_the_picture_throws_its_shadow_into_it_and_what_is_beh
     np.testing.assert_array_equal(shadow, Eye(elsewhere, profile="good", cull=False).rgb(pose))
     bare = Eye(two_rooms(), profile="good").rgb(pose)
     assert (np.abs(bare.astype(int) - shadow) > 20).any(axis=2).mean() > 0.03
+
+
+def test_what_throws_its_shadow_away_from_the_picture_is_left_out_and_no_pixel_changes() -> None:
+    house = two_rooms()
+    for i in range(12):
+        angle = 2 * np.pi * i / 12
+        centre_m = (-2.0 + 1.5 * np.cos(angle), 0.9 * np.sin(angle), 0.4 + 0.15 * (i % 5))
+        house = with_box(house, f"table_{i:02d}", centre_m=centre_m, half_m=(0.12, 0.12, 0.1))
+    eye, whole = Eye(house, profile="good"), Eye(house, profile="good", cull=False)
+    left_out = 0
+    for yaw_rad in np.linspace(-np.pi, np.pi, 8, endpoint=False):
+        pose = Pose(-2.0, 0.0, float(yaw_rad), 0.0)
+        np.testing.assert_array_equal(eye.rgb(pose), whole.rgb(pose))
+        left_out += len(eye.lit(pose)) - len(eye.casting(pose))
+    assert left_out > 8 * 4
