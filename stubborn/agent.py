@@ -97,7 +97,7 @@ class StubbornAgent:
             camera: what the observations are taken with.
             robot: the body that is driven.
             segmenter: where scores come from. One that has `exact = True` is trusted to the outline; with any other the
-                rim of the target does not count (see `Mapper.add_scores`).
+                rim of the target does not count (see `Mapper.add_scores`) and the agent goes nearer before it stops.
             verifier: judges candidates; by default it accepts all.
             explorer: chooses where to look; by default the paper's, from `config.exploration`.
             layers: keeps the scores; by default over all frames.
@@ -115,7 +115,11 @@ class StubbornAgent:
         )
         self.glancer = Glancer(config.glance, camera)
         self.seeker = TargetSeeker(
-            config.target, self.planner, verifier or AcceptAll(), bumps=avoidance.collision_layers
+            config.target,
+            self.planner,
+            verifier or AcceptAll(),
+            bumps=avoidance.collision_layers,
+            true_outlines=self._true_outlines,
         )
         self.untrap = Untrap(config.untrap)
         self.reset(GOAL_CATEGORIES[0], 0)

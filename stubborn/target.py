@@ -8,9 +8,10 @@ as tall as the camera may be a wall; a table or a sofa between robot and object 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,6 +38,9 @@ class TargetConfig:
     """A stand is this near a candidate cell: a metre, less what cells blur."""
     far_stand_m: float = 0.93
     """Where there is no such stand, this will do."""
+    outline_margin_m: float = 0.25
+    """So much nearer than `stop_in_view_m` and `stand_m` the agent goes, where it can, with a detector that errs: its
+    outlines run over what stands beside the target."""
     last_resort_m: float = 1.6
     """Where there is no stand at all, a candidate is verified from the nearest reachable place within this distance;
     late in an episode the agent stops there, which is better than nothing."""
@@ -60,6 +64,11 @@ class TargetConfig:
                 "TargetConfig needs 0 < stand_m <= far_stand_m <= last_resort_m, "
                 f"got {self.stand_m}, {self.far_stand_m} and {self.last_resort_m} m."
             )
+        if not 0.0 <= self.outline_margin_m < min(self.stand_m, self.stop_in_view_m):
+            raise ConfigError(
+                "TargetConfig needs 0 <= outline_margin_m < stand_m and stop_in_view_m, "
+                f"got {self.outline_margin_m}, {self.stand_m} and {self.stop_in_view_m} m."
+            )
 
 
 @dataclass(frozen=True)
@@ -79,8 +88,13 @@ class Approach:
 class TargetSeeker:
     """Finds candidates on the map, leads to them and judges them."""
 
-    def __init__(self, config: TargetConfig, planner: Planner, verifier: Verifier, *, bumps: bool) -> None:
+    def __init__(
+        self, config: TargetConfig, planner: Planner, verifier: Verifier, *, bumps: bool, true_outlines: bool = True
+    ) -> None:
+        """Without `true_outlines` it goes `outline_margin_m` nearer; without `bumps` no collision mark counts."""
         self.config = config
+        margin_m = 0.0 if true_outlines else config.outline_margin_m
+        self._stop_in_view_m, self._stand_m = config.stop_in_view_m - margin_m, config.stand_m - margin_m
         self.planner = planner
         self.verifier = verifier
         self._maps = (Bumps.PESSIMISTIC, Bumps.OPTIMISTIC) if bumps else (Bumps.NONE,)
@@ -97,9 +111,24 @@ class TargetSeeker:
         """Cells that look like the target and were neither rejected nor set aside."""
         return (view.score_max > self.config.candidate_score) & ~view.rejected & ~view.set_aside
 
+    def likely(self, view: NavMap) -> NDArray[np.bool_]:
+        """Candidates that would be accepted as far as they have been seen by now: they are approached first."""
+        candidates = self.candidates(view)
+        _, parts = cv2.connectedComponents(candidates.view(np.uint8), connectivity=8)
+        cells = np.flatnonzero(candidates)
+        part, score = np.asarray(parts).ravel()[cells], view.score_sum.ravel()[cells]
+        by_score = cells[np.lexsort((-score, part))]
+        _, first = np.unique(np.asarray(parts).ravel()[by_score], return_index=True)
+        accepted = [
+            i + 1
+            for i, best in enumerate(by_score[first].tolist())
+            if self.verifier.accepts(self.goal, features_of(view, best))
+        ]
+        return np.isin(parts, accepted)
+
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """Map cell of the nearest target point in this very frame, when it is near enough to stop."""
-        if sighting.nearest_m(navmap) > self.config.stop_in_view_m:
+        if sighting.nearest_m(navmap) > self._stop_in_view_m:
             return None
         counts = ~navmap.rejected[sighting.rows, sighting.cols]
         nearest = int(np.argmin(np.where(counts, sighting.distance_m, np.inf)))
@@ -114,14 +143,10 @@ class TargetSeeker:
             self._far = False
             return None
         # A way that needs the whole map is kept on the whole map: else each step could choose another one.
-        for part in (whole,) if self._far else (window, whole):
-            view = navmap.view(part)
-            candidates = self.candidates(view)
-            if candidates.any():
-                late = step >= self.config.last_resort_step
-                found = self._approach_on(
-                    view, candidates, pose, late=late, anywhere=late or (part is whole and self.verifier.may_refuse)
-                )
+        parts = (whole,) if self._far else (window, whole)
+        for chosen in (self.likely, self.candidates) if self.verifier.may_refuse else (self.candidates,):
+            for part in parts:
+                found = self._approach_in(navmap.view(part), chosen, pose, step, last=part is whole)
                 if found is not None:
                     self._far = part is whole
                     row, col = found.cell
@@ -144,19 +169,31 @@ class TargetSeeker:
         row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
         instance = connected(view.score_max > self.config.candidate_score, row, col, connectivity=8)
         # Its edge, which is nearest, shares its cells with what is around it; the cell seen best speaks for the whole.
-        best = np.unravel_index(int(np.argmax(np.where(instance, view.score_sum, -1.0))), instance.shape)
-        features = Features(
-            int(view.frames_in_view[best]),
-            float(view.score_sum[best]),
-            float(view.score_max[best]),
-            float(view.other_max[best]),
-        )
+        features = features_of(view, int(np.argmax(np.where(instance, view.score_sum, -1.0))))
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
         if found_late or self.verifier.accepts(self.goal, features):
             return True
         margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
         view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
         return False
+
+    def _approach_in(
+        self,
+        view: NavMap,
+        chosen: Callable[[NavMap], NDArray[np.bool_]],
+        pose: PlanarPose,
+        step: int,
+        *,
+        last: bool,
+    ) -> Approach | None:
+        """The way to the nearest stand of the chosen candidates on one window; `last` when there is no larger one."""
+        candidates = chosen(view)
+        if not candidates.any():
+            return None
+        late = step >= self.config.last_resort_step
+        return self._approach_on(
+            view, candidates, pose, late=late, anywhere=late or (last and self.verifier.may_refuse)
+        )
 
     def _approach_on(
         self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool, anywhere: bool
@@ -199,7 +236,7 @@ class TargetSeeker:
         in_sight[rows, cols] &= (shown > 0) | (view.frames_in_view[rows, cols] > 0)
         unseen = self.planner.unseen(view)
         free_spaces: dict[Bumps, FreeSpace] = {}
-        for within_m in (self.config.stand_m, self.config.far_stand_m):
+        for within_m in (self._stand_m, self.config.far_stand_m):
             for bumps in self._maps:
                 if bumps not in free_spaces:
                     free_spaces[bumps] = self.planner.free_space(view, pose, bumps, unseen)
@@ -213,3 +250,14 @@ class TargetSeeker:
                 # The robot's own ground is free to it and moves with it: without a margin it would push on for ever.
                 margin_m = self.planner.config.own_ground_m + view.frame.cell_m
                 yield free, reach_m <= reach_m.min() + margin_m, False
+
+
+def features_of(view: NavMap, cell: int) -> Features:
+    """What the object layers hold at a cell of a map, counted in row-major order."""
+    at = divmod(cell, view.score_sum.shape[1])
+    return Features(
+        int(view.frames_in_view[at]),
+        float(view.score_sum[at]),
+        float(view.score_max[at]),
+        float(view.other_max[at]),
+    )

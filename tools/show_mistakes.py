@@ -35,7 +35,7 @@ from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.views import tile
 
 Picture = NDArray[np.uint8]
-CAUSES = ("false_detection", "missed_detection")
+CAUSES = ("false_detection", "missed_detection", "misc")
 PANEL_PX = 320
 CAPTION_PX = 22
 
@@ -49,7 +49,7 @@ class Args:
     out: Path
     """The PNG file."""
     cause: str = "false_detection"
-    """Which failures: false_detection (seen at the STOP) or missed_detection (seen where the goal was largest)."""
+    """Which failures: false_detection or misc (seen at the end), or missed_detection (seen where the goal was largest)."""
     count: int = 10
     """At most so many, the first ones."""
 
@@ -91,7 +91,7 @@ def main(args: Args) -> int:
 
 def decisive_step(trajectory: Trajectory, cause: str) -> int:
     """Number of the frame to look at: the last one, or the one that showed most of the goal."""
-    if cause == "false_detection":
+    if cause != "missed_detection":
         return trajectory.num_steps
     return int(np.nanargmax(trajectory.goal_share))
 

@@ -30,7 +30,16 @@ class RefuseAll:
         return False
 
 
-def seeker(verifier: AcceptAll | RefuseAll | None = None, **options: float) -> TargetSeeker:
+class Doubtful:
+    """A verifier that accepts what was seen with a mean score above 0.7."""
+
+    may_refuse = True
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        return features.cumulative / features.total_view > 0.7
+
+
+def seeker(verifier: AcceptAll | RefuseAll | Doubtful | None = None, **options: float) -> TargetSeeker:
     made = TargetSeeker(TargetConfig(**options), PLANNER, verifier or AcceptAll(), bumps=True)  # type: ignore[arg-type]
     made.reset("sofa")
     return made
@@ -83,6 +92,65 @@ def test_on_a_stand_there_is_nothing_left_to_walk():
     assert approach is not None
     assert approach.route is None
     assert approach.bearing_rad == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_detector_that_errs_is_followed_nearer():
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    config = TargetConfig(outline_margin_m=0.3)
+    careful = TargetSeeker(config, PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    approach = careful.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
+    for distance_m, near_enough in ((0.80, False), (0.60, True)):
+        sighting = Sighting(np.array([30]), np.array([60]), np.array([distance_m], np.float32))
+        assert seeker().in_reach(navmap, sighting) == (30, 60)
+        assert (careful.in_reach(navmap, sighting) is not None) == near_enough
+
+
+def test_where_there_is_no_nearer_stand_the_usual_one_will_do():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in range(48, 60):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    careful = TargetSeeker(TargetConfig(), PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    approach = careful.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.near_enough
+
+
+def doubtful_one_first() -> tuple[NavMap, PlanarPose]:
+    """A candidate nearby that was mostly scored low, and a plain one farther away."""
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    navmap.score_max[30, 35] = 0.6
+    navmap.score_sum[30, 35], navmap.score_sum[30, 60] = 3.0, 9.0
+    navmap.frames_in_view[30, 35] = navmap.frames_in_view[30, 60] = 10
+    return navmap, pose
+
+
+def test_candidates_that_would_be_accepted_are_approached_first():
+    navmap, pose = doubtful_one_first()
+    for verifier, cell in ((AcceptAll(), (30, 35)), (Doubtful(), (30, 60))):
+        approach = seeker(verifier).approach(navmap, whole(navmap), pose, 0)
+        assert approach is not None
+        assert approach.cell == cell
+
+
+def test_doubtful_candidates_are_approached_when_there_is_no_other():
+    navmap, pose = doubtful_one_first()
+    navmap.rejected[30, 60] = True
+    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.cell == (30, 35)
+
+
+def test_a_part_is_likely_as_its_cell_seen_best():
+    navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
+    navmap.score_max[30, 61] = navmap.score_max[30, 35] = 0.6
+    navmap.frames_in_view[:] = 10
+    navmap.score_sum[30, 60], navmap.score_sum[30, 61], navmap.score_sum[30, 35] = 9.0, 2.0, 3.0
+    assert np.argwhere(seeker(Doubtful()).likely(navmap)).tolist() == [[30, 60], [30, 61]]
 
 
 def test_no_stand_lies_behind_a_wall_however_near():
