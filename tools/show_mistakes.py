@@ -49,7 +49,7 @@ class Args:
     out: Path
     """The PNG file."""
     cause: str = "false_detection"
-    """Which failures: false_detection or misc (seen at the end), or missed_detection (seen where the goal was largest)."""
+    """Which failures: false_detection, misc (seen at the end) or missed_detection (where the goal was largest)."""
     count: int = 10
     """At most so many, the first ones."""
 

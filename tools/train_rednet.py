@@ -71,6 +71,11 @@ class Args:
     window_px: int | None = None
     """Train on windows of so many columns at random scales, a quarter of the pixels at half the width; None: whole
     views. It is evaluated, and meant to be used, on whole views in any case."""
+    whole_share: float = 0.0
+    """With --window-px: this share of the samples is the whole view, shrunk, as a network sees it that works at that
+    width."""
+    val_block_px: int | None = None
+    """Evaluate on views shrunk by this, which the weights then name as what they work at; None: as --block-px."""
     steps: int = 20_000
     """Steps of the learning-rate schedule."""
     hours: float | None = None
@@ -120,8 +125,12 @@ class Trainer:
         self.stored_block_px = stored_block_px(shards)
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
-        self.data = ViewDataset(shards, Sampler(camera, args.block_px, Augmentation(), args.window_px), seed=args.seed)
-        self.val = Samples(spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, args.block_px))
+        sampler = Sampler(camera, args.block_px, Augmentation(), args.window_px, args.whole_share)
+        self.data = ViewDataset(shards, sampler, seed=args.seed)
+        self.val_block_px = args.val_block_px or args.block_px
+        self.val = Samples(
+            spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, self.val_block_px)
+        )
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
         self.total = args.steps
         args.out.mkdir(parents=True, exist_ok=True)
@@ -198,7 +207,7 @@ class Trainer:
         options |= {key: [str(folder) for folder in getattr(self.args, key)] for key in ("views", "val_views")}
         earlier = {"started_from": self.started_from} if self.started_from else {}
         return earlier | {
-            "block_px": self.args.block_px * self.stored_block_px,
+            "block_px": self.val_block_px * self.stored_block_px,
             "step": self.step,
             "hours": round(self.spent_s / 3600, 3),
             "miou_goals": round(iou.goals, 4),
@@ -288,6 +297,10 @@ def _check(args: Args) -> None:
         raise ConfigError(
             f"--window-px must be at least 32, got {args.window_px}: a network halves a sample five times."
         )
+    if not 0.0 <= args.whole_share <= 1.0 or (args.whole_share and args.window_px is None):
+        raise ConfigError(f"--whole-share must be in [0, 1] and needs --window-px, got {args.whole_share}.")
+    if args.val_block_px is not None and args.val_block_px < 1:
+        raise ConfigError(f"--val-block-px must be at least 1, got {args.val_block_px}.")
     if args.batch < 2:
         raise ConfigError("--batch must be at least 2: batch normalisation needs more than one view.")
     if args.hours is not None and args.hours <= 0:

@@ -72,6 +72,8 @@ class Sampler:
     augmentation: Augmentation = NONE
     window_px: int | None = None
     """Samples are windows of so many columns, see `random_window`; None: whole views."""
+    whole_share: float = 0.0
+    """This share of the windows is the whole view, shrunk: what a network that works on shrunk images will see."""
 
     def __call__(self, view: LabelledView, rng: np.random.Generator) -> tuple[Tensor, Tensor, Tensor]:
         """Tensors float32, float32 and int64; labels are class channels, `IGNORED` where there is none."""
@@ -79,7 +81,7 @@ class Sampler:
         depth_m: NDArray[np.float32] = shrink(view.depth_m, self.block_px)
         semantic: NDArray[np.uint8] = shrink(view.semantic, self.block_px)
         if self.window_px is not None:
-            rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, rng)
+            rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, self.whole_share, rng)
         a = self.augmentation
         if a.mirror and rng.random() < 0.5:
             rgb, depth_m, semantic = _mirrored(rgb), _mirrored(depth_m), _mirrored(semantic)
@@ -122,12 +124,13 @@ def random_window(
     depth_m: NDArray[np.float32],
     semantic: NDArray[np.uint8],
     window_px: int,
+    whole_share: float,
     rng: np.random.Generator,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint8]]:
     """A window of the same shape as the view and `window_px` wide, anywhere in it, at a random scale.
 
     Between the whole view, shrunk, and a cut-out with the view's own pixels: fewer pixels to a step, things in several
-    sizes.
+    sizes. With a probability of `whole_share` it is the whole view.
 
     Raises:
         ConfigError: the view is narrower than the window.
@@ -135,7 +138,8 @@ def random_window(
     height, width = semantic.shape
     if window_px > width:
         raise ConfigError(f"A view of {width} columns has no window of {window_px}.")
-    cols = round(width * float(np.exp(rng.uniform(np.log(window_px / width), 0.0))))
+    smallest = 0.0 if rng.random() < whole_share else np.log(window_px / width)
+    cols = round(width * float(np.exp(rng.uniform(smallest, 0.0))))
     rows, window_rows = round(height * cols / width), round(height * window_px / width)
     top, left = rng.integers(0, height - rows + 1), rng.integers(0, width - cols + 1)
     cut = (slice(top, top + rows), slice(left, left + cols))

@@ -74,11 +74,20 @@ def test_finetuning_starts_from_the_weights_given_and_remembers_how_they_were_ma
     write_views(tmp_path / "val", 2)
     assert main(options(tmp_path, steps=2)) == 0
     first = tmp_path / "out/rednet.safetensors"
-    slow = {"init": first, "rate": 1e-9, "window_px": 32, "steps": 1, "evaluate_every": 1}
+    slow = {
+        "init": first,
+        "rate": 1e-9,
+        "window_px": 32,
+        "whole_share": 0.5,
+        "val_block_px": 2,
+        "steps": 1,
+        "evaluate_every": 1,
+    }
     assert main(options(tmp_path, out=tmp_path / "finer", **slow)) == 0
     (before, earlier), (after, card) = load_rednet(first), load_rednet(tmp_path / "finer/rednet.safetensors")
     assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options")}
     assert card["options"]["window_px"] == "32"
+    assert (earlier["block_px"], card["block_px"]) == (1, 2)
     assert torch.allclose(before.conv1.weight, after.conv1.weight, atol=1e-4)
     assert (
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
@@ -97,5 +106,9 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path, size="huge"))
     with pytest.raises(ConfigError, match="--window-px must be at least 32, got 16"):
         main(options(tmp_path, window_px=16))
+    with pytest.raises(ConfigError, match=r"--whole-share must be in \[0, 1\] and needs --window-px, got 0.5"):
+        main(options(tmp_path, whole_share=0.5))
+    with pytest.raises(ConfigError, match="--val-block-px must be at least 1, got 0"):
+        main(options(tmp_path, val_block_px=0))
     with pytest.raises(ConfigError, match="No shards"):
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))

@@ -90,7 +90,7 @@ def test_windows_have_one_size_lie_anywhere_and_come_in_all_scales() -> None:
     spans, corners = [], []
     for seed in range(300):
         rgb, depth_m, semantic = random_window(
-            np.stack([row, row, row], axis=2), depth, col, 40, np.random.default_rng(seed)
+            np.stack([row, row, row], axis=2), depth, col, 40, 0.0, np.random.default_rng(seed)
         )
         assert rgb.shape == (30, 40, 3)
         assert (rgb.dtype, depth_m.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
@@ -104,7 +104,15 @@ def test_windows_have_one_size_lie_anywhere_and_come_in_all_scales() -> None:
     assert np.min(corners, axis=0).tolist() == [0, 0]
     assert np.max(corners, axis=0).tolist() >= [25, 35]
     with pytest.raises(ConfigError, match="80 columns has no window of 81"):
-        random_window(np.stack([row, row, row], axis=2), depth, col, 81, np.random.default_rng(0))
+        random_window(np.stack([row, row, row], axis=2), depth, col, 81, 0.0, np.random.default_rng(0))
+
+
+def test_a_share_of_the_windows_is_the_whole_view() -> None:
+    row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
+    rgb, depth = np.stack([row, row, row], axis=2), row.astype(np.float32)
+    windows = [random_window(rgb, depth, col, 40, 0.6, np.random.default_rng(seed))[2] for seed in range(300)]
+    whole = np.mean([window[0, 0] == 0 and window[0, -1] >= 78 for window in windows])
+    assert whole == pytest.approx(0.6, abs=0.09)
 
 
 def test_a_sampler_of_windows_gives_what_a_network_takes() -> None:
