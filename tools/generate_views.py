@@ -1,10 +1,12 @@
 """Labelled views as WebDataset shards, for training segmentation networks.
 
 python tools/generate_views.py --split train --views 100000 --out /data/views --workers 2
+python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide --workers 2
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
-of freshly generated ones. Killed and started again it goes on; the same options give the same bytes. Several machines
+of freshly generated ones. With --pool all are freshly generated, and `wide` has more styles of furniture than any house
+of train. Killed and started again it goes on; the same options give the same bytes. Several machines
 may share the work with --shard 0/4, 1/4, ...; whoever ends last writes an index of everything.
 """
 
@@ -27,7 +29,7 @@ from sim.episodes import Split, load_split
 from sim.errors import HouseError
 from sim.executors import make_executor
 from sim.houses.house import House
-from sim.houses.splits import train_recipe
+from sim.houses.splits import Recipe, train_recipe
 from sim.interface import CameraModel, ConfigError
 from sim.parallel import Share, ordered_map
 from sim.robot.config import RobotConfig
@@ -40,6 +42,8 @@ from sim.views import sample_views
 FRESH_SEEDS_FROM = 1_000_000
 """Seeds of freshly generated train houses: none of a shipped split is as high."""
 
+FRESH_POOLS = ("train", "wide")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
@@ -47,6 +51,8 @@ class Args:
 
     split: str = "train"
     """Houses of a shipped split, or of a folder laid out like one."""
+    pool: str | None = None
+    """Freshly generated houses alone, of pool train, or of wide: train's furniture and many more styles."""
     views: int = 1000
     """How many, over all shards."""
     out: Path
@@ -121,9 +127,9 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
     tasks = []
     for number, first in enumerate(range(0, args.views, args.views_per_shard)):
         count = min(args.views_per_shard, args.views - first)
-        fresh = number >= len(houses) and split.name == "train"
+        fresh = args.pool is not None or (number >= len(houses) and split.name == "train")
         seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
-        house = f"train_{seed}" if fresh else houses[number % len(houses)]
+        house = f"{args.pool or 'train'}_{seed}" if fresh else houses[number % len(houses)]
         tasks.append(ShardTask(number, count, house, seed))
     return tasks
 
@@ -153,9 +159,14 @@ def _house(args: Args, task: ShardTask) -> House:
     if task.fresh_seed is None:
         return load_split(args.split).load_house(task.house)
     try:
-        return House(task.house, train_recipe(task.fresh_seed).make().spec)
+        return House(task.house, _recipe(args, task.fresh_seed).make().spec)
     except HouseError:  # a seed without a house: its neighbour, for everybody who makes this shard
-        return House(task.house, train_recipe(task.fresh_seed + FRESH_SEEDS_FROM // 2).make().spec)
+        return House(task.house, _recipe(args, task.fresh_seed + FRESH_SEEDS_FROM // 2).make().spec)
+
+
+def _recipe(args: Args, seed: int) -> Recipe:
+    recipe = train_recipe(seed)
+    return replace(recipe, pool="wide") if args.pool == "wide" else recipe
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
@@ -181,6 +192,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
     packages = ("stubborn-objectnav", "mujoco", "numpy", "opencv-python-headless")
     return {
         "split": split.name,
+        "pool": args.pool,
         "split_version": split.version,
         "split_sha256": split.sha256,
         "seed": args.seed,
@@ -202,6 +214,11 @@ def _picked(args: Args) -> Callable[[int], bool]:
         raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
     if args.rgb not in ("jpg", "png"):
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
+    if args.pool is not None and (args.pool not in FRESH_POOLS or args.split != "train"):
+        raise ConfigError(
+            f"--pool must be {' or '.join(FRESH_POOLS)}, of --split train, got '{args.pool}' of '{args.split}': what "
+            "houses of other splits show is for evaluation."
+        )
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     return Share.parse(args.shard).takes
@@ -209,8 +226,9 @@ def _picked(args: Args) -> Callable[[int], bool]:
 
 def _command(args: Args) -> str:
     """The options that make the same shards."""
-    keys = ("split", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
-    return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(getattr(args, key)))}" for key in keys) + " --out DIR"
+    keys = ("split", "pool", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
+    given = [(key, value) for key in keys if (value := getattr(args, key)) is not None]
+    return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(value))}" for key, value in given) + " --out DIR"
 
 
 def _summary(index: dict[str, Any]) -> str:

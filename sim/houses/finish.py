@@ -12,9 +12,9 @@ from sim.houses.floorplan import FloorPlan
 from sim.houses.furniture.item import Look, Pool
 from sim.houses.structure import Finish
 
-TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
-OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
-SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
+TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "wide": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
+OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "wide": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
+SKY = {"train": (0.42, 0.58, 0.76, 1.0), "wide": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
 PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper, one of them in a home."""
 

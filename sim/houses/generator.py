@@ -36,7 +36,7 @@ MAX_BYTES = 395_000
 """Of a house as a file."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
 """What one geom less to draw may cost in the file: less where the house would get too large otherwise."""
-_POOL_STREAM = {"train": 0, "heldout": 1}
+_POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -191,7 +191,12 @@ def _draw_plan(
 
 
 def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
-    """The specification of a drawn home, its parts joined as far as the file's size allows; None: it is too large."""
+    """The specification of a drawn home, its parts joined as far as the file's size allows; None: it is too large.
+
+    Homes of the pool `wide` are in no split and never become files: they may be of any size.
+    """
+    if config.pool == "wide":
+        return _build(draft, config, BYTES_PER_GEOM[0])
     at = 0
     while at < len(BYTES_PER_GEOM):
         spec = _build(draft, config, BYTES_PER_GEOM[at])

@@ -32,7 +32,7 @@ class Swatches:
 
 @dataclass(frozen=True)
 class Material:
-    """A material's two pools and how it shines."""
+    """A material's two palettes and how it shines; the pool `wide` paints with train's."""
 
     train: Swatches
     heldout: Swatches
@@ -42,7 +42,7 @@ class Material:
 
     def swatches(self, pool: Pool) -> Swatches:
         """The swatches of a pool."""
-        return self.train if pool == "train" else self.heldout
+        return self.heldout if pool == "heldout" else self.train
 
 
 _WOOD = (("wood_fine", "wood_bold"), ("wood_straight", "wood_cloud"))

@@ -220,6 +220,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/generate_views.py --split train --views 20000 --shrink 2 --profile fast --out views_small": (
         f"{PYTHON} tools/generate_views.py --split train --views 4 --shrink 2 --profile fast --out {{tmp}}/views",
     ),
+    f"{PYTHON} tools/generate_views.py --pool wide --views 20000 --shrink 2 --profile fast --out views_wide": (
+        f"{PYTHON} tools/generate_views.py --pool wide --views 4 --shrink 2 --profile fast --out {{tmp}}/views",
+    ),
     f"{PYTHON} tools/generate_views.py --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
     f"{PYTHON} tools/show_views.py --views views --out views.png": (
         _VIEWS,

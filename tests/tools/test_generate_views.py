@@ -29,8 +29,8 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def options(split: Path, out: Path, **changes: object) -> Args:
-    few = Args(split=str(split), out=out, views=9, views_per_shard=3, shrink=4, profile="fast")
+def options(folder: Path, out: Path, **changes: object) -> Args:
+    few = Args(split=str(folder), out=out, views=9, views_per_shard=3, shrink=4, profile="fast")
     return replace(few, **changes)  # pyright: ignore[reportArgumentType]
 
 
@@ -91,6 +91,15 @@ def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
     assert all(task.fresh_seed is None for task in val)
 
 
+def test_a_pool_is_freshly_generated_houses_alone(tmp_path: Path) -> None:
+    main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+    index = json.loads((tmp_path / "index.json").read_text())
+    assert [entry["house"] for entry in index["shards"]] == [f"wide_{FRESH_SEEDS_FROM}"]
+    assert "--pool wide" in index["command"]
+    with pytest.raises(ConfigError, match="pool = 'wide', this run has 'train'"):
+        main(Args(pool="train", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+
+
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
@@ -98,6 +107,8 @@ def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
         ({"shrink": 7}, "--shrink must divide 640 and 480, got 7"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
         ({"shard": "2/2"}, '--shard must be "i/n" with 0 <= i < n, got "2/2"'),
+        ({"pool": "wide"}, "--pool must be train or wide, of --split train, got 'wide' of"),
+        ({"pool": "heldout", "split": "train"}, "--pool must be train or wide, of --split train, got 'heldout'"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )

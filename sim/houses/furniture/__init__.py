@@ -3,7 +3,8 @@
 The rule of the pools: a style belongs to one pool and is built with that pool's palettes and textures only
 (`sim.houses.materials`), so a held-out house shows structures, sizes, colours and textures that no train house does.
 Every category has styles in both, goal categories at least four in train and two held out, and every `use` exists in
-both.
+both. Styles of the pool `wide` widen what perception is trained on; they were designed without a look at the held-out
+ones.
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ from sim.houses.furniture import (
     toilets,
     towels,
     wall_panels,
+    wide,
     windows,
 )
 from sim.houses.furniture.catalogue import HINTS, Style
@@ -84,6 +86,7 @@ _MODULES = (
     towels,
     wall_panels,
     windows,
+    wide,
 )
 
 
@@ -108,19 +111,20 @@ def styles(category: str, pool: Pool | None = None, use: str | None = None) -> t
     Raises:
         ConfigError: no such category.
     """
-    return tuple(s.name for s in _styles(category) if pool in (None, s.pool) and (use is None or use in s.uses))
+    fitting = (s for s in _styles(category) if pool is None or s.shown_in(pool))
+    return tuple(s.name for s in fitting if use is None or use in s.uses)
 
 
 def make_item(category: str, rng: np.random.Generator, *, pool: Pool, style: str | None = None, **hints: Any) -> Item:
     """Build one piece of furniture.
 
-    The same arguments and the same state of `rng` give the same item. A style belongs to one pool only; without
+    The same arguments and the same state of `rng` give the same item. A style belongs to one pool; without
     `style` one is drawn among the pool's that fit `use`. Hints that a style has no place for are passed over.
 
     Args:
         category: mpcat40 name with underscores (`CATALOGUE` has all); rugs are of category "floor".
         rng: source of every draw.
-        pool: "train" or "heldout".
+        pool: "train", "heldout" or "wide", which has train's styles and more.
         style: name of a style of that pool; None draws one.
         **hints: see the tables.
 
@@ -192,7 +196,7 @@ def _styles(category: str) -> tuple[Style, ...]:
 
 
 def _choose(category: str, rng: np.random.Generator, pool: Pool, name: str | None, use: str | None) -> Style:
-    of_pool = [s for s in _styles(category) if s.pool == pool]
+    of_pool = [s for s in _styles(category) if s.shown_in(pool)]
     if name is not None:
         named = [s for s in of_pool if s.name == name]
         if not named:

@@ -17,12 +17,16 @@ class Style:
     name: str
     """Unique within the category."""
     pool: Pool
-    """The only pool that ever shows it."""
+    """The pool it belongs to, the only one that ever shows it; but `wide` shows train's too."""
     build: Callable[[Workbench], None]
     uses: tuple[str, ...] = ()
     """What hint `use` may ask for."""
     mount: Mount = "floor"
     walk_over: bool = False
+
+    def shown_in(self, pool: Pool) -> bool:
+        """Whether houses of this pool may have it."""
+        return self.pool == pool or (pool == "wide" and self.pool == "train")
 
 
 HINTS: frozenset[str] = frozenset(

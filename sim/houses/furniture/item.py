@@ -17,8 +17,12 @@ from numpy.typing import NDArray
 Shape = Literal["box", "cylinder", "sphere", "capsule", "ellipsoid", "mesh"]
 Mount = Literal["floor", "wall", "ceiling", "top"]
 """Where an item's origin sits: on the floor, on a wall (x = 0 is the wall's surface), on the ceiling, on a top."""
-Pool = Literal["train", "heldout"]
-"""Which styles, sizes, colours and textures may be drawn: val and test houses use what train never shows."""
+Pool = Literal["train", "heldout", "wide"]
+"""Which styles, sizes, colours and textures may be drawn: val and test houses use what train never shows.
+
+Houses of `wide` show everything that train's do and styles of their own beside it: they are for training perception,
+and no split has them, so that train's houses stay what they are when a style is added.
+"""
 
 
 @dataclass(frozen=True)

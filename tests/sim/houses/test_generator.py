@@ -13,7 +13,7 @@ from sim.gl import mujoco
 from sim.houses import generate
 from sim.houses.check import check_house
 from sim.houses.furniture import make_item
-from sim.houses.generator import GeneratedHouse, HouseConfig, generate_house
+from sim.houses.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house
 from sim.houses.geometry import Rect
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
@@ -59,6 +59,13 @@ def test_seeds_and_pools_give_different_houses() -> None:
     xml = {small(seed).spec.to_xml() for seed in range(3)}
     assert len(xml) == 3
     assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
+
+
+def test_a_wide_house_keeps_the_format_and_may_be_too_large_to_ship() -> None:
+    house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
+    assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0
+    assert check_house(house.spec) == []
+    assert len(house.spec.to_xml()) > MAX_BYTES
 
 
 def test_area_and_shape_are_as_asked() -> None:
