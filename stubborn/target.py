@@ -114,17 +114,14 @@ class TargetSeeker:
     def likely(self, view: NavMap) -> NDArray[np.bool_]:
         """Candidates that would be accepted as far as they have been seen by now: they are approached first."""
         candidates = self.candidates(view)
-        _, parts = cv2.connectedComponents(candidates.view(np.uint8), connectivity=8)
+        count, labels = cv2.connectedComponents(candidates.view(np.uint8), connectivity=8)
+        parts = np.asarray(labels, np.intp)
         cells = np.flatnonzero(candidates)
-        part, score = np.asarray(parts).ravel()[cells], view.score_sum.ravel()[cells]
-        by_score = cells[np.lexsort((-score, part))]
-        _, first = np.unique(np.asarray(parts).ravel()[by_score], return_index=True)
-        accepted = [
-            i + 1
-            for i, best in enumerate(by_score[first].tolist())
-            if self.verifier.accepts(self.goal, features_of(view, best))
-        ]
-        return np.isin(parts, accepted)
+        best_last = cells[np.argsort(view.score_sum[candidates], kind="stable")]
+        best = np.zeros(count, np.intp)
+        best[parts.ravel()[best_last]] = best_last
+        accepted = [self.verifier.accepts(self.goal, features_of(view, cell)) for cell in best[1:].tolist()]
+        return np.array([False, *accepted])[parts]
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """Map cell of the nearest target point in this very frame, when it is near enough to stop."""
