@@ -8,7 +8,7 @@ as tall as the camera may be a wall; a table or a sofa between robot and object 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import cv2
@@ -73,7 +73,7 @@ class TargetConfig:
 
 @dataclass(frozen=True)
 class Approach:
-    """The way to the nearest stand of any candidate."""
+    """The way to the nearest stand of the candidates that are pursued."""
 
     route: Route | None
     """None when the robot stands on one."""
@@ -94,10 +94,18 @@ class TargetSeeker:
         """Without `true_outlines` it goes `outline_margin_m` nearer; without `bumps` no collision mark counts."""
         self.config = config
         margin_m = 0.0 if true_outlines else config.outline_margin_m
-        self._stop_in_view_m, self._stand_m = config.stop_in_view_m - margin_m, config.stand_m - margin_m
+        self._stop_in_view_m = config.stop_in_view_m - margin_m
         self.planner = planner
         self.verifier = verifier
-        self._maps = (Bumps.PESSIMISTIC, Bumps.OPTIMISTIC) if bumps else (Bumps.NONE,)
+        maps: tuple[Bumps, ...] = (Bumps.PESSIMISTIC, Bumps.OPTIMISTIC) if bumps else (Bumps.NONE,)
+        # How near a stand must be, and on which maps it may be reached. Nobody crosses marks to get nearer than usual.
+        self._kinds_of_stands: list[tuple[float, tuple[Bumps, ...]]] = [
+            (config.stand_m, maps),
+            (config.far_stand_m, maps),
+        ]
+        if not true_outlines:
+            self._kinds_of_stands.insert(0, (config.stand_m - margin_m, maps[:1]))
+        self._last_map = maps[-1]
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -106,22 +114,35 @@ class TargetSeeker:
         self._retry_step = 0
         self._patience_steps = self.config.retry_after_steps
         self._far = False  # whether the candidate pursued needs more than the local window
+        self._pursued: tuple[int, int] | None = None  # map cell of the likely candidate that is approached
 
     def candidates(self, view: NavMap) -> NDArray[np.bool_]:
         """Cells that look like the target and were neither rejected nor set aside."""
         return (view.score_max > self.config.candidate_score) & ~view.rejected & ~view.set_aside
 
-    def likely(self, view: NavMap) -> NDArray[np.bool_]:
-        """Candidates that would be accepted as far as they have been seen by now: they are approached first."""
-        candidates = self.candidates(view)
-        count, labels = cv2.connectedComponents(candidates.view(np.uint8), connectivity=8)
-        parts = np.asarray(labels, np.intp)
-        cells = np.flatnonzero(candidates)
-        best_last = cells[np.argsort(view.score_sum[candidates], kind="stable")]
+    def likely(self, navmap: NavMap) -> NDArray[np.bool_]:
+        """Cells of the whole map: candidates that the verifier would accept as far as they have been seen by now.
+
+        Also the one that is pursued as such, as long as it is a candidate: else the goal could change with every look.
+        That what is found late is not verified does not count here.
+        """
+        whole = navmap.known_window(margin_cells=self.config.margin_cells)
+        view = navmap.view(whole)
+        shown = view.score_max > self.config.candidate_score
+        count, labels = cv2.connectedComponents(shown.view(np.uint8), connectivity=8)
+        parts, cells = np.asarray(labels, np.intp), np.flatnonzero(shown)
+        best_last = cells[np.argsort(view.score_sum[shown], kind="stable")]
         best = np.zeros(count, np.intp)
         best[parts.ravel()[best_last]] = best_last
-        accepted = [self.verifier.accepts(self.goal, features_of(view, cell)) for cell in best[1:].tolist()]
-        return np.array([False, *accepted])[parts]
+        would = [self.verifier.would_accept(self.goal, features_of(view, flat)) for flat in best[1:].tolist()]
+        accepted = np.array([False, *would])
+        if self._pursued is not None:
+            row, col = self._pursued
+            accepted[parts[row - whole.rows.start, col - whole.cols.start]] = True
+            accepted[0] = False  # part 0 is the background
+        likely = np.zeros(navmap.frame.shape, np.bool_)
+        likely[whole.rows, whole.cols] = accepted[parts] & self.candidates(view)
+        return likely
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """Map cell of the nearest target point in this very frame, when it is near enough to stop."""
@@ -132,22 +153,23 @@ class TargetSeeker:
         return int(sighting.rows[nearest]), int(sighting.cols[nearest])
 
     def approach(self, navmap: NavMap, window: Window, pose: PlanarPose, step: int) -> Approach | None:
-        """The way to the nearest stand; None when there is no candidate or none can be reached now."""
+        """The way to the nearest stand of a likely candidate, else of any; None when none can be reached now."""
         whole = navmap.known_window(margin_cells=self.config.margin_cells)
         if step >= self._retry_step:
             navmap.view(whole).set_aside[:] = False
         if not self.candidates(navmap.view(whole)).any():
-            self._far = False
+            self._far, self._pursued = False, None
             return None
-        # A way that needs the whole map is kept on the whole map: else each step could choose another one.
-        parts = (whole,) if self._far else (window, whole)
-        for chosen in (self.likely, self.candidates) if self.verifier.may_refuse else (self.candidates,):
-            for part in parts:
-                found = self._approach_in(navmap.view(part), chosen, pose, step, last=part is whole)
-                if found is not None:
-                    self._far = part is whole
-                    row, col = found.cell
-                    return replace(found, cell=(row + part.rows.start, col + part.cols.start))
+        for part, candidates, anywhere, is_likely in self._choices(navmap, window, whole, step):
+            if not candidates.any():
+                continue
+            late = step >= self.config.last_resort_step
+            found = self._approach_on(navmap.view(part), candidates, pose, late=late, anywhere=anywhere)
+            if found is not None:
+                row, col = found.cell[0] + part.rows.start, found.cell[1] + part.cols.start
+                self._far = part is whole
+                self._pursued = (row, col) if is_likely else None
+                return replace(found, cell=(row, col))
         self.postpone(navmap, step)
         return None
 
@@ -155,7 +177,7 @@ class TargetSeeker:
         """Set all candidates aside: they cannot be reached from what is known now."""
         view = navmap.view(navmap.known_window(margin_cells=self.config.margin_cells))
         view.set_aside[self.candidates(view)] = True
-        self._far = False
+        self._far, self._pursued = False, None
         self._retry_step = step + self._patience_steps
         self._patience_steps *= 2
 
@@ -174,28 +196,26 @@ class TargetSeeker:
         view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
         return False
 
-    def _approach_in(
-        self,
-        view: NavMap,
-        chosen: Callable[[NavMap], NDArray[np.bool_]],
-        pose: PlanarPose,
-        step: int,
-        *,
-        last: bool,
-    ) -> Approach | None:
-        """The way to the nearest stand of the chosen candidates on one window; `last` when there is no larger one."""
-        candidates = chosen(view)
-        if not candidates.any():
-            return None
+    def _choices(
+        self, navmap: NavMap, window: Window, whole: Window, step: int
+    ) -> Iterator[tuple[Window, NDArray[np.bool_], bool, bool]]:
+        """Candidates to try, in this order: the part of the map, its cells, and whether a last resort would do for
+        them, which it never does for likely ones, since there are others; and whether these are the likely ones.
+        """
+        # A way that needs the whole map is kept on the whole map: else each step could choose another one.
+        parts = (whole,) if self._far else (window, whole)
+        if self.verifier.may_refuse:
+            likely = self.likely(navmap)
+            for part in parts:
+                yield part, likely[part.rows, part.cols], False, True
         late = step >= self.config.last_resort_step
-        return self._approach_on(
-            view, candidates, pose, late=late, anywhere=late or (last and self.verifier.may_refuse)
-        )
+        for part in parts:
+            yield part, self.candidates(navmap.view(part)), late or (part is whole and self.verifier.may_refuse), False
 
     def _approach_on(
         self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool, anywhere: bool
     ) -> Approach | None:
-        """The same on one window, with the candidate cell counted in that window.
+        """The way to the nearest stand of these candidates on one part of the map; the cell is counted in that part.
 
         `anywhere` takes the nearest reachable place where there is no stand; `late` holds that to be near enough.
         """
@@ -233,15 +253,15 @@ class TargetSeeker:
         in_sight[rows, cols] &= (shown > 0) | (view.frames_in_view[rows, cols] > 0)
         unseen = self.planner.unseen(view)
         free_spaces: dict[Bumps, FreeSpace] = {}
-        for within_m in (self._stand_m, self.config.far_stand_m):
-            for bumps in self._maps:
+        for within_m, maps in self._kinds_of_stands:
+            for bumps in maps:
                 if bumps not in free_spaces:
                     free_spaces[bumps] = self.planner.free_space(view, pose, bumps, unseen)
                 stands = free_spaces[bumps].reachable & in_sight & (gap_m <= within_m)
                 if stands.any():
                     yield free_spaces[bumps], stands, True
         if anywhere:
-            free = free_spaces[self._maps[-1]]
+            free = free_spaces[self._last_map]
             reach_m = np.where(free.reachable, gap_m, np.inf)
             if reach_m.min() <= self.config.last_resort_m:
                 # The robot's own ground is free to it and moves with it: without a margin it would push on for ever.
@@ -249,9 +269,9 @@ class TargetSeeker:
                 yield free, reach_m <= reach_m.min() + margin_m, False
 
 
-def features_of(view: NavMap, cell: int) -> Features:
+def features_of(view: NavMap, flat: int) -> Features:
     """What the object layers hold at a cell of a map, counted in row-major order."""
-    at = divmod(cell, view.score_sum.shape[1])
+    at = divmod(flat, view.score_sum.shape[1])
     return Features(
         int(view.frames_in_view[at]),
         float(view.score_sum[at]),

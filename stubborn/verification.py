@@ -40,6 +40,10 @@ class Verifier(Protocol):
         """True: stop here. False: never come back to this candidate."""
         ...
 
+    def would_accept(self, goal: str, features: Features) -> bool:
+        """What it expects to say of a candidate that is seen from afar; it is asked at every step."""
+        ...
+
 
 class AcceptAll:
     """The verifier of ground truth: there is nothing to verify."""
@@ -47,6 +51,10 @@ class AcceptAll:
     may_refuse = False
 
     def accepts(self, goal: str, features: Features) -> bool:
+        """True for everything."""
+        return True
+
+    def would_accept(self, goal: str, features: Features) -> bool:
         """True for everything."""
         return True
 
@@ -89,6 +97,10 @@ class FittedVerifier:
     def accepts(self, goal: str, features: Features) -> bool:
         """See `Verifier`."""
         return self.probability(goal, features) > self.least_probability
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        """The same."""
+        return self.accepts(goal, features)
 
 
 def verifier_for(semantics: str, file: Path | None = None, method: str = "naive-bayes") -> Verifier:

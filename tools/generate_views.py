@@ -5,14 +5,15 @@ python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
-of freshly generated ones. With --pool all are freshly generated, and `wide` has more styles of furniture than any house
-of train. Killed and started again it goes on; the same options give the same bytes. Several machines
+of freshly generated ones. With --pool wide all are freshly generated, and have more styles of furniture than any house
+of a split. Killed and started again it goes on; the same options give the same bytes. Several machines
 may share the work with --shard 0/4, 1/4, ...; whoever ends last writes an index of everything.
 """
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import shlex
 import sys
 import time
@@ -28,6 +29,7 @@ from sim import cli
 from sim.episodes import Split, load_split
 from sim.errors import HouseError
 from sim.executors import make_executor
+from sim.houses.furniture import CATALOGUE, styles
 from sim.houses.house import House
 from sim.houses.splits import Recipe, train_recipe
 from sim.interface import CameraModel, ConfigError
@@ -40,9 +42,10 @@ from sim.shards import ShardNote, read_note, shard_name, write_index, write_shar
 from sim.views import sample_views
 
 FRESH_SEEDS_FROM = 1_000_000
-"""Seeds of freshly generated train houses: none of a shipped split is as high."""
+"""Seeds of freshly generated houses: none of a shipped split is as high."""
 
-FRESH_POOLS = ("train", "wide")
+WIDE = "wide"
+"""The pool of houses with styles that no split shows."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +55,7 @@ class Args:
     split: str = "train"
     """Houses of a shipped split, or of a folder laid out like one."""
     pool: str | None = None
-    """Freshly generated houses alone, of pool train, or of wide: train's furniture and many more styles."""
+    """wide: freshly generated houses alone, with train's furniture and many more styles."""
     views: int = 1000
     """How many, over all shards."""
     out: Path
@@ -129,7 +132,7 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
         count = min(args.views_per_shard, args.views - first)
         fresh = args.pool is not None or (number >= len(houses) and split.name == "train")
         seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
-        house = f"{args.pool or 'train'}_{seed}" if fresh else houses[number % len(houses)]
+        house = _recipe(args, seed).name if seed is not None else houses[number % len(houses)]
         tasks.append(ShardTask(number, count, house, seed))
     return tasks
 
@@ -166,7 +169,7 @@ def _house(args: Args, task: ShardTask) -> House:
 
 def _recipe(args: Args, seed: int) -> Recipe:
     recipe = train_recipe(seed)
-    return replace(recipe, pool="wide") if args.pool == "wide" else recipe
+    return replace(recipe, name=f"wide_{seed}", pool="wide") if args.pool == WIDE else recipe
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
@@ -193,6 +196,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
     return {
         "split": split.name,
         "pool": args.pool,
+        "styles_sha256": _styles_sha256() if args.pool == WIDE else None,
         "split_version": split.version,
         "split_sha256": split.sha256,
         "seed": args.seed,
@@ -202,6 +206,12 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         "rgb": args.rgb,
         "versions": {name: version(name) for name in packages} | {"gl_renderer": describe_gl()},
     }
+
+
+def _styles_sha256() -> str:
+    """Of the names of the styles that houses of the pool `wide` draw from: with one more they are other houses."""
+    names = [f"{category}/{name}" for category in CATALOGUE for name in styles(category, WIDE)]
+    return hashlib.sha256("\n".join(names).encode()).hexdigest()
 
 
 def _picked(args: Args) -> Callable[[int], bool]:
@@ -214,11 +224,8 @@ def _picked(args: Args) -> Callable[[int], bool]:
         raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
     if args.rgb not in ("jpg", "png"):
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
-    if args.pool is not None and (args.pool not in FRESH_POOLS or args.split != "train"):
-        raise ConfigError(
-            f"--pool must be {' or '.join(FRESH_POOLS)}, of --split train, got '{args.pool}' of '{args.split}': what "
-            "houses of other splits show is for evaluation."
-        )
+    if args.pool not in (None, WIDE) or (args.pool and args.split != "train"):
+        raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     return Share.parse(args.shard).takes

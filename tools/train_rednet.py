@@ -122,12 +122,12 @@ class Trainer:
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
         shards = _all_shards(args.views)
-        self.stored_block_px = stored_block_px(shards)
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         sampler = Sampler(camera, args.block_px, Augmentation(), args.window_px, args.whole_share)
         self.data = ViewDataset(shards, sampler, seed=args.seed)
         self.val_block_px = args.val_block_px or args.block_px
+        self.stored_block_px = stored_block_px(_all_shards(args.val_views))
         self.val = Samples(
             spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, self.val_block_px)
         )

@@ -97,7 +97,8 @@ def generate(
 
     Args:
         seed: any whole number from 0 on.
-        pool: which styles, sizes, colours and textures may appear; "train" and "heldout" share none.
+        pool: which styles, sizes, colours and textures may appear; "train" and "heldout" share none, "wide" shows
+            train's and styles of its own.
         kind: shape of the floor plan; drawn when None.
         area_m2: floor area, 50-400; drawn when None.
         clutter: 0 bare to 1 full of small things; drawn when None.
@@ -193,7 +194,7 @@ def _draw_plan(
 def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
     """The specification of a drawn home, its parts joined as far as the file's size allows; None: it is too large.
 
-    Homes of the pool `wide` are in no split and never become files: they may be of any size.
+    Homes of the pool `wide` are in no split and need not fit a file: they may be of any size.
     """
     if config.pool == "wide":
         return _build(draft, config, BYTES_PER_GEOM[0])

@@ -3,8 +3,8 @@
 One pass gives colour. The other draws every geom in the colour of its number; a single read of that frame buffer
 gives numbers and depth, so the edges of `depth` and `semantic` agree to the pixel. Only what is asked for is drawn,
 and geoms that cannot be seen (`sim.sensors.occlusion`) are left out of the scene, which changes no pixel. Where lamps
-throw shadows, what their light reaches is drawn too; that goes by the middle of things, so a long one out of sight may
-lose its shadow (`sim.sensors.lamps`).
+throw shadows, what may throw one into the picture is drawn too; what their light reaches goes by the middle of things,
+so a long one out of sight may lose its shadow (`sim.sensors.lamps`).
 """
 
 from __future__ import annotations

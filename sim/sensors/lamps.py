@@ -37,6 +37,7 @@ class Lamps:
         self._shining = model.light_active.copy()
         self._casts = model.light_castshadow.copy()
         everywhere = model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value
+        self._sun_casts = bool((self._shining.astype(np.bool_) & self._casts.astype(np.bool_) & everywhere).any())
         self._lamps = np.flatnonzero(self._shining.astype(np.bool_) & ~everywhere)
         self._fixed = model.body_weldid[model.geom_bodyid[drawable]] == 0  # (drawable,)
         self._lit: dict[int, NDArray[np.bool_]] = {}
@@ -55,8 +56,17 @@ class Lamps:
         nearest = np.argsort(away_m, kind="stable")[:LAMPS_LIT]
         return [int(self._lamps[i]) for i in nearest if np.isfinite(away_m[i])]
 
+    def lit(self, data: mujoco.MjData, lamp: int) -> NDArray[np.bool_]:
+        """(drawable,) True for geoms that this lamp shines on: no wall stands between."""
+        if lamp not in self._lit:
+            places = data.geom_xpos[self._drawable]
+            self._lit[lamp] = self._visibility.in_sight(data.light_xpos[lamp], places) | ~self._fixed
+        return self._lit[lamp]
+
     def casters(self, data: mujoco.MjData, lamp: int, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
-        """Ids of the drawable geoms that may throw a shadow of this lamp into the picture: no wall stands between.
+        """Ids of the drawable geoms that no wall hides from a lamp and whose shadow may fall into the picture.
+
+        A sun that throws shadows too lets all stay that the lamp shines on.
 
         Args:
             data: state of the model, the one that `visibility` has looked at last.
@@ -64,10 +74,10 @@ class Lamps:
             eye_m: (3,) optical centre in the world.
             axes: (3, 3) the camera's forward, left and up as rows.
         """
-        if lamp not in self._lit:
-            places = data.geom_xpos[self._drawable]
-            self._lit[lamp] = self._visibility.in_sight(data.light_xpos[lamp], places) | ~self._fixed
-        return self._drawable[self._lit[lamp] & self._visibility.shading(data.light_xpos[lamp], eye_m, axes)]
+        lit = self.lit(data, lamp)
+        if not self._sun_casts:
+            lit = lit & self._visibility.shading(data.light_xpos[lamp], eye_m, axes)
+        return self._drawable[lit]
 
     def light(self, lamps: Sequence[int]) -> None:
         """Let these lamps shine in the model, the first with shadows; all others are off until `restore`."""

@@ -32,6 +32,8 @@ _SLACK_PX = 0.5
 """How far geoms are grown in the picture, so that no rounding of the rasteriser matters."""
 _SLACK_M = 0.01
 """How much farther than a wall a geom must be: many times the resolution of the depth buffer."""
+_SHADOW_RIM_M = 0.05
+"""How far beside the picture a shadow must end: a pixel of the shadow map is a centimetre or two on the floor."""
 _MIN_RISE_M = 0.05
 """Walls must reach this far above and below the eye."""
 _MIN_SLAB_M = 0.2
@@ -131,7 +133,7 @@ class Visibility:
             (high * ahead - up, high * far_ahead - far_up),
             (high * ahead + up, high * far_ahead + far_up),
         ):
-            missed |= (inwards < 0.0).all(axis=0) & (onwards < 0.0).all(axis=0)
+            missed |= (inwards < -_SHADOW_RIM_M).all(axis=0) & (onwards < 0.0).all(axis=0)
         return ~(missed & self._bounded)
 
     def in_sight(self, eye_m: NDArray, places_m: NDArray) -> NDArray[np.bool_]:

@@ -52,11 +52,6 @@ class Eye:
         self.visibility.visible(self.data, eye_m, pose.yaw_rad)
         return self.lamps.casters(self.data, 0, eye_m, axes)
 
-    def lit(self, pose: Pose) -> np.ndarray:
-        """Ids of what the lamp shines on, wherever its shadow falls."""
-        eye_m, _ = self._frame(pose)
-        return self.lamps.casters(self.data, 0, eye_m, np.zeros((3, 3)))
-
     def _frame(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
         return np.array([pose.x_m, pose.y_m, 0.88]), np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -131,5 +126,15 @@ def test_what_throws_its_shadow_away_from_the_picture_is_left_out_and_no_pixel_c
     for yaw_rad in np.linspace(-np.pi, np.pi, 8, endpoint=False):
         pose = Pose(-2.0, 0.0, float(yaw_rad), 0.0)
         np.testing.assert_array_equal(eye.rgb(pose), whole.rgb(pose))
-        left_out += len(eye.lit(pose)) - len(eye.casting(pose))
+        left_out += eye.lamps.lit(eye.data, 0).sum() - len(eye.casting(pose))
     assert left_out > 8 * 4
+
+
+def test_a_sun_that_throws_shadows_lets_all_stay_that_the_lamp_shines_on() -> None:
+    board = with_box(two_rooms(), "picture_00", centre_m=(-2.0, -2.0, 1.8), half_m=(0.5, 0.05, 0.3))
+    away = Pose(-2.0, 0.9, np.pi / 2, 0.0)
+    board.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 1, -1), castshadow=False)
+    without = len(Eye(board).casting(away))
+    board.spec.lights[-1].castshadow = True
+    sunny = Eye(board)
+    assert len(sunny.casting(away)) == sunny.lamps.lit(sunny.data, 0).sum() > without

@@ -13,6 +13,7 @@ from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.classifiers import Features
 from stubborn.exploration import CornerExplorer
+from stubborn.mapping import Sighting
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.untrap import UntrapConfig
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
@@ -97,10 +98,20 @@ class SeenOften:
     def accepts(self, goal: str, features: Features) -> bool:
         return features.total_view >= 4 and features.cumulative > 0.5 * features.total_view
 
+    would_accept = accepts
+
 
 def unsure(name: str) -> Agent:
     parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel(), "segmenter": Fickle()}
     return agents.make(name, verifier=SeenOften(), **parts)
+
+
+def test_a_segmenter_that_errs_is_followed_nearer():
+    exact = agents.make("stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    sighting = Sighting(np.array([720]), np.array([736]), np.array([0.8], np.float32))
+    for agent, near_enough in ((exact, True), (unsure("stubborn"), False)):
+        assert isinstance(agent, StubbornAgent)
+        assert (agent.seeker.in_reach(agent.navmap, sighting) is not None) == near_enough
 
 
 TWO_ROOMS = boxes_from_plan(

@@ -29,6 +29,9 @@ class RefuseAll:
         self.asked.append((goal, features))
         return False
 
+    def would_accept(self, goal: str, features: Features) -> bool:
+        return False
+
 
 class Doubtful:
     """A verifier that accepts what was seen with a mean score above 0.7."""
@@ -37,6 +40,8 @@ class Doubtful:
 
     def accepts(self, goal: str, features: Features) -> bool:
         return features.cumulative / features.total_view > 0.7
+
+    would_accept = accepts
 
 
 def seeker(verifier: AcceptAll | RefuseAll | Doubtful | None = None, **options: float) -> TargetSeeker:
@@ -118,6 +123,14 @@ def test_where_there_is_no_nearer_stand_the_usual_one_will_do():
     approach = careful.approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.near_enough
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.min() >= 60 - 0.85 / 0.05  # not from farther away than with true outlines
+
+
+def test_a_margin_as_large_as_the_distance_is_refused():
+    with pytest.raises(ConfigError, match=r"0 <= outline_margin_m < stand_m and stop_in_view_m, got 0\.9, 0\.85"):
+        TargetConfig(outline_margin_m=0.9)
 
 
 def doubtful_one_first() -> tuple[NavMap, PlanarPose]:
@@ -143,6 +156,38 @@ def test_doubtful_candidates_are_approached_when_there_is_no_other():
     approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.cell == (30, 35)
+
+
+def test_a_likely_candidate_that_cannot_be_got_near_does_not_hold_up_the_others():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(60):
+        for col in range(40, 80):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    navmap.score_max[30, 25], navmap.score_sum[30, 25], navmap.score_sum[30, 60] = 0.6, 3.0, 9.0
+    navmap.frames_in_view[:] = 10
+    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.cell == (30, 25)
+
+
+class Wavering(Doubtful):
+    """It would accept now the one and then the other."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        self.asked += 1
+        return self.asked % 4 in (0, 1)
+
+
+def test_what_is_pursued_as_likely_is_pursued_to_the_end():
+    navmap, pose = doubtful_one_first()
+    wavering = seeker(Wavering())
+    approaches = [wavering.approach(navmap, whole(navmap), pose, step) for step in range(6)]
+    assert len({approach.cell for approach in approaches if approach}) == 1
 
 
 def test_a_part_is_likely_as_its_cell_seen_best():

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from sim.episodes import load_split
+from sim.houses.furniture import CATALOGUE
 from sim.interface import ConfigError
 from stubborn.segmentation.views import list_shards, read_shard
 from tests.helpers.worlds import room, with_box
@@ -91,13 +92,14 @@ def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
     assert all(task.fresh_seed is None for task in val)
 
 
-def test_a_pool_is_freshly_generated_houses_alone(tmp_path: Path) -> None:
+def test_the_wide_pool_is_freshly_generated_houses_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
     index = json.loads((tmp_path / "index.json").read_text())
     assert [entry["house"] for entry in index["shards"]] == [f"wide_{FRESH_SEEDS_FROM}"]
     assert "--pool wide" in index["command"]
-    with pytest.raises(ConfigError, match="pool = 'wide', this run has 'train'"):
-        main(Args(pool="train", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
+    monkeypatch.setitem(CATALOGUE["chair"], "throne", replace(CATALOGUE["chair"]["slat_back"], name="throne"))
+    with pytest.raises(ConfigError, match="holds shards with styles_sha256 = "):
+        main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -107,8 +109,8 @@ def test_a_pool_is_freshly_generated_houses_alone(tmp_path: Path) -> None:
         ({"shrink": 7}, "--shrink must divide 640 and 480, got 7"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
         ({"shard": "2/2"}, '--shard must be "i/n" with 0 <= i < n, got "2/2"'),
-        ({"pool": "wide"}, "--pool must be train or wide, of --split train, got 'wide' of"),
-        ({"pool": "heldout", "split": "train"}, "--pool must be train or wide, of --split train, got 'heldout'"),
+        ({"pool": "wide"}, "--pool must be wide, and needs --split train, got 'wide' with"),
+        ({"pool": "heldout", "split": "train"}, "--pool must be wide, and needs --split train, got 'heldout' with"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),
     ],
 )

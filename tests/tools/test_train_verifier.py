@@ -17,6 +17,7 @@ from sim.pose import Pose
 from sim.semantics import NoisyConfig
 from stubborn.classifiers import Features
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target import TargetSeeker
 from tests.helpers.worlds import room, with_box
 from tools import train_verifier
 
@@ -102,11 +103,15 @@ def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Pa
         asked.append((near_enough, len(self.candidates) - before))
         return answer
 
+    judged: list[object] = []
+    judge = TargetSeeker.judge
+    monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
     monkeypatch.setattr(train_verifier.Witness, "accepts", spy)
     monkeypatch.setattr(train_verifier, "SEMANTICS", {"noisy": GroundTruthSegmenter.sensors})  # sharp outlines
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
     played(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
+    assert len(asked) == len(judged)  # what is only seen from afar is not logged
 
 
 def test_two_workers_log_what_one_does(split: Path, tmp_path: Path):

@@ -3,8 +3,8 @@
 The rule of the pools: a style belongs to one pool and is built with that pool's palettes and textures only
 (`sim.houses.materials`), so a held-out house shows structures, sizes, colours and textures that no train house does.
 Every category has styles in both, goal categories at least four in train and two held out, and every `use` exists in
-both. Styles of the pool `wide` widen what perception is trained on; they were designed without a look at the held-out
-ones.
+both. Styles of the pool `wide`, in train's colours, widen what perception is trained on; they were designed without a
+look at the held-out ones.
 """
 
 from __future__ import annotations
