@@ -34,7 +34,7 @@ from stubborn.segmentation.views import LabelledView, list_shards, read_shard, s
 
 TIMED_FRAMES = 30
 ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) that sees {width} x {height} pixels and knows mpcat40.
-Trained from random weights on views of houses with this repository's train and wide furniture, nothing else; MIT licence.
+Trained from random weights on views of this repository's houses (pools train and wide), nothing else; MIT licence.
 Measured on houses of `val`, whose furniture styles and textures are in no train house; calibration on those half of
 them that the temperature was not fitted on. Checkpoint and working resolution were chosen by mIoU on views of these
 houses as well, so the figure flatters a little."""

@@ -1,4 +1,4 @@
-"""What the network saw where an episode was lost: at the STOP elsewhere, or where the goal was plainest and missed.
+"""What the network saw where an episode was lost: at the STOP or, without one, where the goal was plainest.
 
     python -m sim.run --episodes 100 --record --out runs/mine
     python tools/show_mistakes.py runs/mine --out runs/false.png
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from sim import cli
 from sim.comparison import read_run
+from sim.failures import CAUSES
 from sim.interface import MPCAT40, ConfigError
 from sim.palette import with_legend
 from sim.pose import Pose
@@ -35,7 +36,6 @@ from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.views import tile
 
 Picture = NDArray[np.uint8]
-CAUSES = ("false_detection", "missed_detection", "misc")
 PANEL_PX = 320
 CAPTION_PX = 22
 
@@ -49,7 +49,7 @@ class Args:
     out: Path
     """The PNG file."""
     cause: str = "false_detection"
-    """Which failures: false_detection, misc (seen at the end) or missed_detection (where the goal was largest)."""
+    """Which failures (sim/failures.py): seen at the STOP, or, where there was none, where the goal was largest."""
     count: int = 10
     """At most so many, the first ones."""
 
@@ -77,7 +77,7 @@ def main(args: Args) -> int:
     rows: list[Picture] = []
     for line in sorted(picked, key=lambda line: line["house"]):
         trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
-        step = decisive_step(trajectory, args.cause)
+        step = decisive_step(trajectory)
         images = photographed(World(split.load_house(line["house"])), trajectory.poses[step])
         row, words = draw(images, network, line["goal"])
         about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
@@ -89,9 +89,9 @@ def main(args: Args) -> int:
     return 0
 
 
-def decisive_step(trajectory: Trajectory, cause: str) -> int:
-    """Number of the frame to look at: the last one, or the one that showed most of the goal."""
-    if cause != "missed_detection":
+def decisive_step(trajectory: Trajectory) -> int:
+    """Number of the frame to look at: that of the STOP, or, without one, the one that showed most of the goal."""
+    if trajectory.end_reason == "stop":
         return trajectory.num_steps
     return int(np.nanargmax(trajectory.goal_share))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -60,8 +61,8 @@ def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(played: Path)
         **{name: getattr(trajectory, name) for name in trajectory.__dataclass_fields__}
         | {"goal_share": shares, "actions": np.zeros(3, np.uint8)}
     )
-    assert show_mistakes.decisive_step(longer, "false_detection") == 3
-    assert show_mistakes.decisive_step(longer, "missed_detection") == 2
+    assert show_mistakes.decisive_step(longer) == 3  # it stopped there
+    assert show_mistakes.decisive_step(replace(longer, end_reason="max_steps")) == 2
 
 
 def test_words_name_what_truly_is_where_the_goal_is_seen() -> None:
@@ -78,8 +79,8 @@ def test_runs_of_other_eyes_and_without_such_failures_are_told(
 ) -> None:
     assert show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="missed_detection")) == 1
     assert "failed by missed_detection" in capsys.readouterr().out
-    with pytest.raises(ConfigError, match="got 'trapped'"):
-        show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="trapped"))
+    with pytest.raises(ConfigError, match="got 'boredom'"):
+        show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="boredom"))
     other = tmp_path / "gt"
     other.mkdir()
     config = json.loads((played / "run" / "config.json").read_text())
