@@ -308,6 +308,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 1 --workers 1 --judge"
         " --max-steps 20 --log {tmp}/log",
     ),
+    f"{PYTHON} tools/train_verifier.py --semantics rednet --split val --episodes 200 --workers 2 --minutes 3 --judge": (
+        f"{PYTHON} tools/train_verifier.py --semantics rednet --split val --episodes 1 --workers 1 --minutes 3 --judge"
+        " --max-steps 20 --log {tmp}/log",
+    ),
     f"{_RUN} --semantics noisy --verification logistic": (
         f"{_RUN} --semantics noisy --verification logistic {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
