@@ -160,10 +160,10 @@ class TargetSeeker:
         if not self.candidates(navmap.view(whole)).any():
             self._far, self._pursued = False, None
             return None
-        for part, candidates, anywhere, is_likely in self._choices(navmap, window, whole, step):
+        late = step >= self.config.last_resort_step
+        for part, candidates, anywhere, is_likely in self._choices(navmap, window, whole, late=late):
             if not candidates.any():
                 continue
-            late = step >= self.config.last_resort_step
             found = self._approach_on(navmap.view(part), candidates, pose, late=late, anywhere=anywhere)
             if found is not None:
                 row, col = found.cell[0] + part.rows.start, found.cell[1] + part.cols.start
@@ -197,10 +197,10 @@ class TargetSeeker:
         return False
 
     def _choices(
-        self, navmap: NavMap, window: Window, whole: Window, step: int
+        self, navmap: NavMap, window: Window, whole: Window, *, late: bool
     ) -> Iterator[tuple[Window, NDArray[np.bool_], bool, bool]]:
-        """Candidates to try, in this order: the part of the map, its cells, and whether a last resort would do for
-        them, which it never does for likely ones, since there are others; and whether these are the likely ones.
+        """Candidates to try, in this order: the part of the map, cells of it, whether a last resort will do, and whether
+        these are the likely ones. For those it never will: doubtful ones that can be got near come before it.
         """
         # A way that needs the whole map is kept on the whole map: else each step could choose another one.
         parts = (whole,) if self._far else (window, whole)
@@ -208,7 +208,6 @@ class TargetSeeker:
             likely = self.likely(navmap)
             for part in parts:
                 yield part, likely[part.rows, part.cols], False, True
-        late = step >= self.config.last_resort_step
         for part in parts:
             yield part, self.candidates(navmap.view(part)), late or (part is whole and self.verifier.may_refuse), False
 

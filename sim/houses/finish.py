@@ -12,9 +12,9 @@ from sim.houses.floorplan import FloorPlan
 from sim.houses.furniture.item import Look, Pool
 from sim.houses.structure import Finish
 
-TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "wide": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
-OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "wide": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
-SKY = {"train": (0.42, 0.58, 0.76, 1.0), "wide": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
+TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
+OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
+SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
 PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper, one of them in a home."""
 
@@ -22,6 +22,7 @@ PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
     """Paint and floors by room; rooms that flow into each other share theirs."""
     walls, floors = {}, {}
+    paint = "heldout" if pool == "heldout" else "train"
     main_floor = materials.floor_look("living_room", rng, pool)
     main_wall = _wall(rng, pool, "hallway")
     shared = _flowing(plan)
@@ -33,12 +34,12 @@ def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish
         same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
         floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
-    trim = Look(TRIM[pool], specular=0.2)
+    trim = Look(TRIM[paint], specular=0.2)
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
     frame = trim if rng.random() < 0.6 else door
     return Finish(
-        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[pool]), trim, door, frame,
-        materials.look("metal", rng, pool), Look(SKY[pool], specular=0.0, emission=0.75),
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door, frame,
+        materials.look("metal", rng, pool), Look(SKY[paint], specular=0.0, emission=0.75),
     )  # fmt: skip
 
 

@@ -63,17 +63,6 @@ def _walls(w: Workbench, x: Range, y: Range, z: Range, thick: float, look: Look)
         w.box((x[0] + thick, x[1]), (low, low + thick), z, look)
 
 
-def _tools(w: Workbench, x: float, y: float) -> None:
-    """Poker, shovel and brush on a stand."""
-    iron = w.look("iron")
-    w.cylinder((x, y), (0.0, 0.02), 0.09, iron)
-    w.rod((x, y, 0.02), (x, y, 0.68), 0.010, iron)
-    w.rod((x, y - 0.09, 0.62), (x, y + 0.09, 0.62), 0.007, iron)
-    for side in BOTH:
-        w.rod((x, y + 0.08 * side, 0.14), (x, y + 0.08 * side, 0.62), 0.007, iron, solid=False)
-        w.box((x - 0.02, x + 0.02), (y + 0.08 * side - 0.03, y + 0.08 * side + 0.03), (0.06, 0.16), iron, solid=False)
-
-
 def kiva(w: Workbench) -> None:
     """Rounded adobe hearth that narrows into a chimney, logs upright in an oval mouth, a ledge beside it."""
     half, deep, top = 0.5 * w.width(0.85, 1.25), 0.5 * w.length(0.55, 0.75), w.height(2.30, 2.50)
