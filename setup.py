@@ -7,7 +7,7 @@ setup(
     package_dir={"sim.assets": "assets"},
     package_data={
         "sim.assets": ["mjcf_houses/**/*"],
-        "sim.report": ["page/*"],
+        "sim.analysis.report": ["page/*"],
         "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )

@@ -6,7 +6,7 @@ python examples/gym_agents.py
 import gymnasium
 from gymnasium.wrappers import RecordEpisodeStatistics
 
-from sim.env import ObjectNavEnv
+from sim.env.objectnav import ObjectNavEnv
 from stubborn import agents
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 

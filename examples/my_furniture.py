@@ -7,10 +7,10 @@ import os
 import sys
 from pathlib import Path
 
-from sim.houses import generate
-from sim.houses.furniture import CATALOGUE
-from sim.houses.furniture.catalogue import Style
-from sim.houses.furniture.workbench import Workbench
+from sim.housegen import generate
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.workbench import Workbench
 from sim.houses.writing import house_text
 from sim.paths import assets_dir
 

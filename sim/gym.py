@@ -24,4 +24,6 @@ import gymnasium
 ENV_ID = "stubborn/ObjectNav-v0"
 
 if ENV_ID not in gymnasium.registry:
-    gymnasium.register(id=ENV_ID, entry_point="sim.env:ObjectNavEnv")  # no time limit: the task truncates by itself
+    gymnasium.register(
+        id=ENV_ID, entry_point="sim.env.objectnav:ObjectNavEnv"
+    )  # no time limit: the task truncates by itself

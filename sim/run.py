@@ -18,30 +18,33 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
-from sim import cli, tables, watchers
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode
+from sim import cli
+from sim.analysis import display
+from sim.env.objectnav import ObjectNavEnv
+from sim.env.oracle import Oracle
+from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
-from sim.executors import make_executor
+from sim.evaluation.executors import make_executor
+from sim.evaluation.parallel import Share
+from sim.evaluation.results import RunDirectory
+from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
+from sim.evaluation.workers import PlayerSpec
+from sim.geometry.pose import Pose
 from sim.houses.load import load_house
 from sim.interface import Agent, ConfigError
-from sim.oracle import Oracle
-from sim.paper_tables import SEMANTICS_DO_NOT_MATTER, TRUTH
-from sim.parallel import Share
 from sim.paths import code_hash
-from sim.pose import Pose
-from sim.results import RunDirectory
 from sim.robot.foreign import load_robot, robot_sha256
-from sim.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.runner import PlayerSpec
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
 from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
-from sim.watching import WATCHED_IMAGES
+from sim.viewers import selection
+from sim.viewers.viewer import WATCHED_IMAGES
 from stubborn import agents, draw
-from stubborn.verification import verifier_for
+from stubborn.target.verification import verifier_for
 
+TRUTH = "gt"
+SEMANTICS_DO_NOT_MATTER = ("oracle", "random")
 ALL_SENSORS = ("rgb", "depth", "semantic")
 
 
@@ -90,7 +93,7 @@ class Args:
     out: Path | None = None
     """Where everything goes (runs/<time>); a run that is there goes on."""
     record: bool = False
-    """Leave a compact trajectory file of each episode, for `sim.trajectory.read_trajectory`."""
+    """Leave a compact trajectory file of each episode, for `sim.task.trajectory.read_trajectory`."""
     video: bool = False
     """Leave an MP4 of each episode in <out>/videos."""
     view: bool = False
@@ -105,7 +108,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Run what was asked for; returns the exit status."""
-    console = tables.make_console()
+    console = display.make_console()
     if args.list_agents:
         for name in agent_names():
             console.print(name)
@@ -118,7 +121,7 @@ def main(args: Args) -> int:
         share = Share.parse(args.shard)
         episodes, args = share.of(episodes), replace(args, out=args.out / share.folder)
     lines, summary = play_missing(args, episodes, split, console)
-    tables.print_results(console, lines, summary)
+    display.print_results(console, lines, summary)
     if args.video:
         console.print(f"Videos are in {args.out}/videos.", highlight=False, soft_wrap=True)
     return 1 if summary["errors"] else 0
@@ -160,7 +163,7 @@ def play_missing(
             )
         spec = PlayerSpec("sim.run:EpisodePlayer", args)
         lines = executor.run(spec, todo, on_death=lambda episode: _death_line(args, episode))
-        for line in () if not todo else tables.with_progress(console, lines, total=len(todo)):
+        for line in () if not todo else display.with_progress(console, lines, total=len(todo)):
             run.append(line)
         return run.lines, run.write_summary({"split": split})
     finally:
@@ -234,7 +237,7 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
 
 
 class EpisodePlayer:
-    """One process's environment and agent; see `sim.runner`."""
+    """One process's environment and agent; see `sim.evaluation.workers`."""
 
     def __init__(self, args: Args) -> None:
         self._args = args
@@ -249,7 +252,7 @@ class EpisodePlayer:
             **_body(args),
         )
         self._agent = make_agent(args, self._env)
-        self._watchers = watchers.make(args, draw.painter_of(self._agent))
+        self._watchers = selection.make(args, draw.painter_of(self._agent))
         self._about = {
             "profile": args.profile,
             "noise": args.noise,
@@ -278,7 +281,7 @@ class EpisodePlayer:
 
 def _truth(args: Args) -> tuple[str, ...]:
     """Images that are rendered beside what the agent reads: for a noisy detector, and for who looks on."""
-    return truth_needed(args.semantics) + WATCHED_IMAGES * watchers.any_asked(args)
+    return truth_needed(args.semantics) + WATCHED_IMAGES * selection.any_asked(args)
 
 
 def _body(args: Args) -> dict[str, Any]:
@@ -348,7 +351,7 @@ def check(args: Args) -> None:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     if args.house is None and (args.labels is not None or args.start_deg is not None):
         raise ConfigError("--labels and --start-deg go with --house.")
-    watchers.check(args)
+    selection.check(args)
     if args.shard is not None:
         Share.parse(args.shard)
         if args.out is None:

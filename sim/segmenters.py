@@ -13,9 +13,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from sim.env import ObjectNavEnv
+from sim.detectors.noisy import NoisyConfig, NoisySegmenter
+from sim.env.objectnav import ObjectNavEnv
 from sim.interface import ConfigError, Segmenter
-from sim.semantics import NoisyConfig, NoisySegmenter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 

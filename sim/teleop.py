@@ -22,17 +22,18 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sim import cli, run, tables
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode
+from sim import cli, run
+from sim.analysis import display
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.evaluation.results import RunDirectory
+from sim.evaluation.rollout import episode_seed, play_episode, record_episode
 from sim.interface import MPCAT40, MPCAT40_ID, Action, ConfigError, Observation
-from sim.overlay import ACTION_WORDS, colour_depth, in_words
-from sim.palette import colour_segmentation
-from sim.results import RunDirectory
 from sim.robot.foreign import load_robot
-from sim.rollout import episode_seed, play_episode, record_episode
-from sim.terminal import Colours, Terminal, beside, fitted, half_blocks
-from sim.video import VideoWatcher
+from sim.viewers.overlay import ACTION_WORDS, colour_depth, in_words
+from sim.viewers.palette import colour_segmentation
+from sim.viewers.terminal import Colours, Terminal, beside, fitted, half_blocks
+from sim.viewers.video import VideoWatcher
 from stubborn.agent import StubbornAgent
 from stubborn.draw import BeliefPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -89,7 +90,7 @@ class Quit(Exception):
 
 
 class Cockpit(Protocol):
-    """Where pictures are shown and keys come from; `sim.terminal.Terminal` is one."""
+    """Where pictures are shown and keys come from; `sim.viewers.terminal.Terminal` is one."""
 
     colours: Colours
 
@@ -187,7 +188,7 @@ class Human:
 
 def main(args: Args) -> int:
     """Play one episode; returns the exit status."""
-    console = tables.make_console()
+    console = display.make_console()
     terminal = Terminal()
     if args.colours != "auto":
         terminal.colours = args.colours

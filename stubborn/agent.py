@@ -21,17 +21,17 @@ from sim.interface import (
     Segmenter,
     wrap_angle,
 )
-from stubborn.collisions import CollisionConfig, Jitter, is_collision, mark_collision, mark_visited
-from stubborn.exploration import CornerExplorer, ExplorationConfig, Explorer, Route
-from stubborn.glance import GlanceConfig, Glancer
+from stubborn.exploration.corners import CornerExplorer, ExplorationConfig, Explorer, Route
+from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.grid import GridFrame, PlanarPose, Window
-from stubborn.mapping import Mapper, MappingConfig, Sighting
+from stubborn.mapping.collision_marks import CollisionConfig, Jitter, is_collision, mark_collision, mark_visited
+from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
+from stubborn.mapping.object_layers import ObjectLayers
 from stubborn.navmap import NavMap
-from stubborn.objects import ObjectLayers
-from stubborn.planning import Planner, PlanningConfig
-from stubborn.target import Approach, TargetConfig, TargetSeeker
-from stubborn.untrap import Untrap, UntrapConfig
-from stubborn.verification import AcceptAll, Verifier
+from stubborn.planning.planner import Planner, PlanningConfig
+from stubborn.planning.untrap import Untrap, UntrapConfig
+from stubborn.target.seeker import Approach, TargetConfig, TargetSeeker
+from stubborn.target.verification import AcceptAll, Verifier
 
 
 @dataclass(frozen=True, kw_only=True)

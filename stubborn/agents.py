@@ -10,13 +10,13 @@ from typing import Any, NamedTuple, TypeVar
 
 from sim.interface import Agent, CameraModel, ConfigError, RobotModel, Segmenter
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
-from stubborn.baselines.frontier import FrontierConfig, FrontierExplorer
 from stubborn.baselines.random import RandomAgent, RandomConfig
 from stubborn.baselines.single_frame import single_frame_agent
-from stubborn.exploration import ExplorationConfig
-from stubborn.glance import GlanceConfig
-from stubborn.planning import Planner
-from stubborn.verification import Verifier
+from stubborn.exploration.corners import ExplorationConfig
+from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer
+from stubborn.exploration.glance import GlanceConfig
+from stubborn.planning.planner import Planner
+from stubborn.target.verification import Verifier
 
 C = TypeVar("C", AgentConfig, RandomConfig)
 
@@ -60,7 +60,7 @@ def make(
         camera: what the observations are taken with.
         robot: the body that is driven.
         segmenter: where scores come from.
-        verifier: judges candidates where the agent verifies at all (`stubborn.verification`); None accepts all.
+        verifier: judges candidates where the agent verifies at all (`stubborn.target.verification`); None accepts all.
         options: fields of the agent's config (`stubborn.agent.AgentConfig`, `RandomConfig`), and `frontier`, a
             `FrontierConfig`, for the frontier agents.
 

@@ -12,7 +12,7 @@ from sim.interface import Action, Agent
 from stubborn.agent import StubbornAgent
 from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
-from stubborn.planning import Plan, trace
+from stubborn.planning.planner import Plan, trace
 
 Colour = tuple[int, int, int]
 

@@ -14,21 +14,25 @@ from typing import Any
 
 import pytest
 
-from sim.houses.furniture import CATALOGUE
+from sim.housegen.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.interface import CameraModel, RobotModel
-from stubborn import agent, collisions, exploration, mapping, planning, target
+from stubborn import agent
+from stubborn.exploration import corners
+from stubborn.mapping import collision_marks, mapper
+from stubborn.planning import planner
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target import seeker
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
-from tests.sim.houses import test_furniture as furniture_laws
+from tests.sim.housegen import test_furniture as furniture_laws
 from tools.site_hooks import fetched_from_elsewhere
 
 DOCS = ROOT / "docs"
-CONFIGURED = (agent, collisions, exploration, mapping, planning, target)
+CONFIGURED = (agent, collision_marks, corners, mapper, planner, seeker)
 """Modules with the configs that the page of differences names."""
 SNIPPET = re.compile(r'--8<-- "([^"]+)"')
 PYTHON_BLOCKS = [
@@ -40,8 +44,18 @@ PYTHON_BLOCKS = [
 PROMISED = (
     *(f"sim.interface.{name}" for name in ("Action", "GOAL_CATEGORIES", "MPCAT40", "CameraModel", "RobotModel")),
     *(f"sim.interface.{name}" for name in ("Observation", "Scores", "Segmenter.scores", "Agent.act", "ConfigError")),
-    *("sim.env.ObjectNavEnv", "stubborn.agents.make", "stubborn.agent.AgentConfig", "sim.houses.generator.generate"),
-    *("sim.trajectory.read_trajectory", "sim.episodes.load_split", "sim.run.Args.agent", "sim.failures"),
+    *(
+        "sim.env.objectnav.ObjectNavEnv",
+        "stubborn.agents.make",
+        "stubborn.agent.AgentConfig",
+        "sim.housegen.generator.generate",
+    ),
+    *(
+        "sim.task.trajectory.read_trajectory",
+        "sim.episodes.splits.load_split",
+        "sim.run.Args.agent",
+        "sim.task.failures",
+    ),
 )
 """Names on which users may rely, and others that pages speak of."""
 FURNITURE_LAWS = [

@@ -23,7 +23,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # run as a file, i
 import cv2
 from rich.console import Console
 
-from sim import cli, tables
+from sim import cli
+from sim.analysis import display
 from sim.files import write_atomically
 from sim.interface import ConfigError
 from tools.benchmarks import growth, making, rendering, report, scaling, stepping
@@ -65,7 +66,7 @@ def main(args: Args) -> int:
     """Measure the parts; returns 1 where a goal is missed (never with --quick)."""
     os.environ["LP_NUM_THREADS"] = "1"  # for both sides; llvmpipe reads it when it starts
     wanted = parse_parts(args.parts)
-    console = tables.make_console()
+    console = display.make_console()
     cv2.setNumThreads(1)
     about, calibrations = report.machine(), {}
     figures: list[Figure] = []

@@ -17,8 +17,8 @@ import numpy as np
 
 from sim import cli
 from sim.interface import Action, ConfigError
-from sim.trajectory import ENDED, FOLDER, read_trajectory
-from stubborn.collisions import CollisionConfig
+from sim.task.trajectory import ENDED, FOLDER, read_trajectory
+from stubborn.mapping.collision_marks import CollisionConfig
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,10 +14,11 @@ from pathlib import Path
 
 import tyro
 
-from sim import cli, tables
-from sim.comparison import MIN_PAIRS, Run, read_run, require_same_episodes
-from sim.report.figures import METRICS
-from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
+from sim import cli
+from sim.analysis import display
+from sim.analysis.comparison import MIN_PAIRS, Run, read_run, require_same_episodes
+from sim.analysis.report.figures import METRICS
+from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +36,7 @@ class Args:
 def main(args: Args) -> int:
     """Read, compare, tell; returns the exit status."""
     table = compare(read_run(args.first), read_run(args.second))
-    tables.make_console().print(to_rich(table))
+    display.make_console().print(to_rich(table))
     if args.out is not None:
         args.out.mkdir(parents=True, exist_ok=True)
         (args.out / "comparison.md").write_text(to_markdown([table]), encoding="utf-8")

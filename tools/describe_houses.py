@@ -24,16 +24,16 @@ from pathlib import Path
 import numpy as np
 
 from sim import cli
-from sim.episodes import UNREACHABLE_FILE, Split, load_split, read_unreachable
-from sim.house_list import CACHE_VARIABLE
+from sim.env.scene import Scene
+from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreachable
+from sim.evaluation.parallel import ordered_map
+from sim.geometry.pose import Pose
+from sim.housegen.recipes import CACHE_VARIABLE
 from sim.houses.house import read_rooms
 from sim.houses.labels import Labels, read_labels, rendered_geoms
 from sim.interface import GOAL_CATEGORIES, SENSORS, CameraModel, ConfigError
-from sim.parallel import ordered_map
 from sim.paths import assets_dir
-from sim.pose import Pose
 from sim.robot.config import RobotConfig
-from sim.scene import Scene
 from sim.sensors.camera import describe_gl
 
 SPLITS = ("val", "test", "train")

@@ -22,16 +22,17 @@ import tyro
 from numpy.typing import NDArray
 from rich.console import Console
 
-from sim import cli, tables
-from sim.comparison import read_run
-from sim.failures import cause_of_failure, first_looping_step, first_trapped_step
-from sim.ground_truth import GroundTruth
+from sim import cli
+from sim.analysis import display
+from sim.analysis.comparison import read_run
+from sim.analysis.report.drawings import split_of
+from sim.geometry.grid import PlanFrame
 from sim.interface import ConfigError
-from sim.metrics import EXPLORED_SHARE
-from sim.planframe import PlanFrame
-from sim.report.drawings import split_of
-from sim.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.world import World
+from sim.task.failures import cause_of_failure, first_looping_step, first_trapped_step
+from sim.task.ground_truth import GroundTruth
+from sim.task.metrics import EXPLORED_SHARE
+from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.world.world import World
 
 Picture = NDArray[np.uint8]
 PX_M = 60.0
@@ -56,7 +57,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Draw; returns the exit status, 1 when none of the episodes has a trajectory."""
-    console = tables.make_console()
+    console = display.make_console()
     run = read_run(args.run)
     wanted = args.episodes or tuple(i for i, line in run.lines.items() if not line["success"])
     unknown = [i for i in wanted if i not in run.lines]
@@ -86,7 +87,7 @@ def _tell(console: Console, words: str) -> None:
 
 
 def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
-    """One line: what was looked for, how it ended, and what the rules of `sim.failures` go by."""
+    """One line: what was looked for, how it ended, and what the rules of `sim.task.failures` go by."""
     seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
     facts = [f"{trajectory.num_steps} steps", f"{float(trajectory.moved_m.sum()):.1f} m"]
     facts += [f"{int(trajectory.collided.sum())} collisions"]

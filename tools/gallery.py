@@ -16,14 +16,14 @@ import numpy as np
 import tyro
 from numpy.typing import NDArray
 
-from sim.freespace import FreeSpace
 from sim.gl import mujoco
-from sim.houses.build import ASSETS_DIR, HouseBuilder, Lamp, Placed
-from sim.houses.furniture import CATALOGUE, make_item
-from sim.houses.furniture.item import Geom, Item, Look, Pool
+from sim.housegen.furniture import CATALOGUE, make_item
+from sim.housegen.furniture.item import Geom, Item, Look, Pool
+from sim.housegen.mjcf import ASSETS_DIR, HouseBuilder, Lamp, Placed
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
 from sim.interface import CameraModel, ConfigError
+from sim.world.freespace import FreeSpace
 
 Picture = NDArray[np.uint8]
 VIEW_PX = (640, 480)

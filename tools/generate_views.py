@@ -26,20 +26,20 @@ from typing import Any
 import numpy as np
 
 from sim import cli
-from sim.episodes import Split, load_split
+from sim.datasets.shards import ShardNote, read_note, shard_name, write_index, write_shard
+from sim.datasets.views import sample_views
+from sim.env.scene import Scene
+from sim.episodes.splits import Split, load_split
 from sim.errors import HouseError
-from sim.executors import make_executor
-from sim.houses.furniture import CATALOGUE, styles
+from sim.evaluation.executors import make_executor
+from sim.evaluation.parallel import Share, ordered_map
+from sim.housegen.furniture import CATALOGUE, styles
+from sim.housegen.shipped import Recipe, train_recipe
 from sim.houses.house import House
-from sim.houses.splits import Recipe, train_recipe
 from sim.interface import CameraModel, ConfigError
-from sim.parallel import Share, ordered_map
 from sim.robot.config import RobotConfig
-from sim.scene import Scene
 from sim.sensors.camera import describe_gl
 from sim.sensors.profiles import get_profile
-from sim.shards import ShardNote, read_note, shard_name, write_index, write_shard
-from sim.views import sample_views
 
 FRESH_SEEDS_FROM = 1_000_000
 """Seeds of freshly generated houses: none of a shipped split is as high."""

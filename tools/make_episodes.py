@@ -22,18 +22,18 @@ from pathlib import Path
 import numpy as np
 
 from sim import cli
-from sim.episodes import Episode, write_split
+from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M, draw_start
+from sim.episodes.reachable_goals import MAX_VIEW_POINTS, HouseGoals, survey
+from sim.episodes.splits import Episode, write_split
 from sim.errors import EpisodeError
-from sim.house_list import has_house_list, read_house_list
+from sim.evaluation.parallel import ordered_map
+from sim.geometry.pose import Pose
+from sim.housegen.recipes import has_house_list, read_house_list
+from sim.housegen.shipped import SPLIT_VERSION
 from sim.houses.load import load_house
-from sim.houses.splits import SPLIT_VERSION
 from sim.interface import ConfigError
-from sim.parallel import ordered_map
-from sim.pose import Pose
-from sim.sampling import MAX_DISTANCE_M, MIN_DISTANCE_M, draw_start
-from sim.survey import MAX_VIEW_POINTS, HouseGoals, survey
-from sim.task import Task
-from sim.world import World
+from sim.task.objectnav import Task
+from sim.world.world import World
 
 MAX_REDRAWS = 20
 """In a house too small for the distances no number of draws would do."""

@@ -11,8 +11,8 @@ from pathlib import Path
 import cv2
 import tyro
 
-from sim.houses.materials import texture_file
-from sim.houses.textures import TEXTURES
+from sim.housegen.materials import texture_file
+from sim.housegen.textures import TEXTURES
 
 
 @dataclass(frozen=True)

@@ -13,19 +13,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from sim import cli, habitat
-from sim.episodes import Episode, write_split
+from sim import cli
+from sim.episodes import habitat
+from sim.episodes.reachable_goals import survey
+from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
-from sim.houses.build import ASSETS_DIR, TEXTURE_DIR
+from sim.housegen.mjcf import ASSETS_DIR, TEXTURE_DIR
+from sim.housegen.shipped import SPLIT_VERSION
+from sim.housegen.traps.catalogue import TRAPS
+from sim.housegen.traps.trap import START_TURNS_RAD, Trap
 from sim.houses.load import load_house
-from sim.houses.splits import SPLIT_VERSION
-from sim.houses.traps.catalogue import TRAPS
-from sim.houses.traps.trap import START_TURNS_RAD, Trap
+from sim.houses.sidecar import write_sidecar
 from sim.interface import wrap_angle
-from sim.sidecar import write_sidecar
-from sim.survey import survey
-from sim.task import Task
-from sim.world import World
+from sim.task.objectnav import Task
+from sim.world.world import World
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,11 +20,12 @@ from typing import Any
 
 import tyro
 
-from sim import cli, tables
-from sim.comparison import Line, Run, read_run
+from sim import cli
+from sim.analysis import display
+from sim.analysis.comparison import Line, Run, read_run
+from sim.evaluation.results import NOT_COMPARED, RunDirectory
+from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError
-from sim.results import NOT_COMPARED, RunDirectory
-from sim.rollout import TIMES
 
 SHARDS = "shard_*_of_*"
 COPIED = ("trajectories", "videos", "rerun")
@@ -48,7 +49,7 @@ def main(args: Args) -> int:
     for run in runs[1:]:
         require_same_options(runs[0], run)
     lines = merged_lines(runs)
-    console = tables.make_console()
+    console = display.make_console()
     merged = RunDirectory(out, merged_config(runs))
     try:
         there = {line["episode_id"]: line for line in merged.lines}
@@ -58,7 +59,7 @@ def main(args: Args) -> int:
             elif without_times(there[episode_id]) != without_times(line):
                 raise _conflict(episode_id, out, line)
         summary = merged.write_summary({"split": merged.config["split_identity"]})
-        tables.print_results(console, merged.lines, summary)
+        display.print_results(console, merged.lines, summary)
     finally:
         merged.close()
     for folder in folders:

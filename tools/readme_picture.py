@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim import cli
-from sim.env import ObjectNavEnv
+from sim.env.objectnav import ObjectNavEnv
+from sim.evaluation.rollout import episode_seed
 from sim.interface import ConfigError
-from sim.palette import with_legend
-from sim.rollout import episode_seed
+from sim.viewers.palette import with_legend
 from stubborn import draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter

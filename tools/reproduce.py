@@ -1,4 +1,4 @@
-"""The paper's tables, each from one command: play what is missing, then write the table.
+"""The paper's display, each from one command: play what is missing, then write the table.
 
     python tools/reproduce.py ablation --episodes 200 --workers 2
     python tools/reproduce.py all --episodes 200 --workers 2 --minutes 110
@@ -26,14 +26,15 @@ from typing import Any
 import tyro
 from rich.console import Console
 
-from sim import cli, run, tables
-from sim.comparison import MIN_PAIRS, Line, Run, code_of, read_run
-from sim.episodes import Episode
-from sim.failures import cause_of_failure
+from sim import cli, run
+from sim.analysis import display
+from sim.analysis.comparison import MIN_PAIRS, Line, Run, code_of, read_run
+from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
+from sim.episodes.splits import Episode
 from sim.interface import ConfigError
-from sim.paper_tables import TABLES, PaperTable, Player, table_named
-from sim.result_tables import ResultTable, to_markdown, to_rich, write_csv
-from sim.trajectory import read_trajectory, trajectory_file
+from sim.task.failures import cause_of_failure
+from sim.task.trajectory import read_trajectory, trajectory_file
+from tools.paper_tables import TABLES, PaperTable, Player, table_named
 
 SAME_IN_ALL = ("agent", "semantics", "semantics_config", "split_identity", "seed", "noise", "noise_config")
 """Entries of a run's config that must be what the table is of."""
@@ -56,7 +57,7 @@ class Args:
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     out: Path = Path("runs/paper")
-    """Folder for the runs and tables."""
+    """Folder for the runs and display."""
     semantics: str | None = None
     """Where segmentation comes from, in place of what the table says."""
     agents: tuple[str, ...] = ()
@@ -74,7 +75,7 @@ class Args:
 def main(args: Args) -> int:
     """Play and tell; returns the exit status."""
     _check(args)
-    console = tables.make_console()
+    console = display.make_console()
     names = list(TABLES) if args.table == "all" else [args.table]
     wanted = {name: table_named(name).players(args.agents, args.semantics) for name in names}
     players = list(dict.fromkeys(player for needed in wanted.values() for player in needed))

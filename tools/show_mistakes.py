@@ -22,18 +22,18 @@ import tyro
 from numpy.typing import NDArray
 
 from sim import cli
-from sim.comparison import read_run
-from sim.failures import CAUSES
+from sim.analysis.comparison import read_run
+from sim.analysis.report.drawings import split_of
+from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, ConfigError
-from sim.palette import with_legend
-from sim.pose import Pose
-from sim.report.drawings import split_of
 from sim.segmenters import weights_file
 from sim.sensors.camera import Camera
-from sim.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.world import World
+from sim.task.failures import CAUSES
+from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.viewers.palette import with_legend
+from sim.world.world import World
+from stubborn.segmentation.dataset import tile
 from stubborn.segmentation.network import RedNetSegmenter
-from stubborn.segmentation.views import tile
 
 Picture = NDArray[np.uint8]
 PANEL_PX = 320
@@ -49,7 +49,7 @@ class Args:
     out: Path
     """The PNG file."""
     cause: str = "false_detection"
-    """Which failures (sim/failures.py): seen at the STOP, or, where there was none, where the goal was largest."""
+    """Which failures (sim/task/failures.py): seen at the STOP, or, where there was none, where the goal was largest."""
     count: int = 10
     """At most so many, the first ones."""
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from sim import cli
 from sim.interface import ConfigError
-from sim.palette import with_legend
-from stubborn.segmentation.views import LabelledView, list_shards, read_shard, tile
+from sim.viewers.palette import with_legend
+from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, tile
 
 WIDTH_PX = 400
 

@@ -28,6 +28,14 @@ from torch.utils.data import DataLoader
 from sim import cli
 from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.dataset import (
+    ViewDataset,
+    class_weights,
+    list_shards,
+    pixel_counts,
+    spread_views,
+    stored_block_px,
+)
 from stubborn.segmentation.rednet import SIZES, RedNet
 from stubborn.segmentation.training import (
     Augmentation,
@@ -37,14 +45,6 @@ from stubborn.segmentation.training import (
     evaluate,
     learning_rate,
     pyramid_loss,
-)
-from stubborn.segmentation.views import (
-    ViewDataset,
-    class_weights,
-    list_shards,
-    pixel_counts,
-    spread_views,
-    stored_block_px,
 )
 
 LOG_EVERY_STEPS = 20

@@ -11,7 +11,7 @@ command goes on where it was, and more episodes add to what is there, while spli
 rejection is met again, several times: of the true candidates of an episode within 2 m of one another only the first
 counts, and so with the false ones. Then each method of verification is fitted for each goal category, and pooled for
 those with too few candidates of either kind, and written as JSON with counts and with what it is worth on episodes left
-out (`stubborn/verifier_fit.py`). Houses of val and test are for --judge only.
+out (`stubborn/target/verifier_fit.py`). Houses of val and test are for --judge only.
 """
 
 from __future__ import annotations
@@ -25,22 +25,22 @@ from pathlib import Path
 from typing import Any
 
 from sim import cli
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode, Split, load_split
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
-from sim.executors import make_executor
+from sim.evaluation.executors import make_executor
+from sim.evaluation.results import RunDirectory
+from sim.evaluation.rollout import episode_seed
+from sim.evaluation.workers import PlayerSpec
 from sim.interface import Action, ConfigError
 from sim.paths import code_hash
-from sim.results import RunDirectory
-from sim.rollout import episode_seed
-from sim.runner import PlayerSpec
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
 from stubborn import agents
 from stubborn.agent import StubbornAgent
-from stubborn.classifiers import Features
-from stubborn.target import TargetConfig
-from stubborn.verification import FOLDER, METHODS, UNVERIFIED, FittedVerifier
-from stubborn.verifier_fit import fit, judge_by_category
+from stubborn.target.classifiers import Features
+from stubborn.target.seeker import TargetConfig
+from stubborn.target.verification import FOLDER, METHODS, UNVERIFIED, FittedVerifier
+from stubborn.target.verifier_fit import fit, judge_by_category
 
 NEVER = 1_000_000
 """A step that no episode reaches."""
@@ -182,7 +182,7 @@ def line_of(episode: Episode, steps: int, candidates: list[list[float]]) -> dict
 
 
 class Outing:
-    """One process's environment, agent and witness; see `sim.runner`."""
+    """One process's environment, agent and witness; see `sim.evaluation.workers`."""
 
     def __init__(self, args: Args) -> None:
         self._seed = args.seed

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.env import ObjectNavEnv
+from sim.env.objectnav import ObjectNavEnv
 from sim.gl import mujoco
-from sim.houses.traps.site import INVISIBLE_GROUP
+from sim.housegen.traps.site import INVISIBLE_GROUP
 from tools.trap_trial import Trial
 
 Picture = NDArray[np.uint8]

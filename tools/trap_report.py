@@ -21,11 +21,12 @@ import cv2
 import numpy as np
 from rich.table import Table
 
-from sim import cli, tables
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode
+from sim import cli
+from sim.analysis import display
+from sim.env.objectnav import ObjectNavEnv
+from sim.env.oracle import Oracle
+from sim.episodes.splits import Episode
 from sim.interface import Agent, ConfigError
-from sim.oracle import Oracle
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -65,7 +66,7 @@ class Args:
 
 def main(args: Args) -> int:
     """Play what is missing, then write the table."""
-    console = tables.make_console()
+    console = display.make_console()
     args.out.mkdir(parents=True, exist_ok=True)
     results = args.out / "results.jsonl"
     rows = [json.loads(line) for line in results.read_text().splitlines()] if results.is_file() else []

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.evaluation.rollout import episode_seed
 from sim.gl import mujoco
 from sim.interface import Action, Agent
 from sim.robot.contacts import Contact
 from sim.robot.drive import Motion
-from sim.rollout import episode_seed
 
 
 @dataclass

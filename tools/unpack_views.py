@@ -19,7 +19,7 @@ import numpy as np
 from sim import cli
 from sim.files import write_atomically
 from sim.interface import ConfigError
-from stubborn.segmentation.views import LabelledView, list_shards, read_shard
+from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard
 
 
 @dataclass(frozen=True, kw_only=True)

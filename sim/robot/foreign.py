@@ -28,8 +28,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry import geom_polytope
 from sim.gl import mujoco
+from sim.houses.geoms import geom_polytope
 from sim.interface import CameraModel, ConfigError
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 

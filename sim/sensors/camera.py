@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
+from sim.geometry.pose import Pose
 from sim.gl import INSTALL_HINT, begin_drawing, mujoco
 from sim.houses.labels import RENDERED_GROUPS, Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
-from sim.pose import Pose
 from sim.sensors.lamps import Lamps
 from sim.sensors.occlusion import Visibility
 from sim.sensors.profiles import RenderProfile, get_profile

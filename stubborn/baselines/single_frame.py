@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sim.interface import CameraModel, RobotModel, Segmenter
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.objects import LatestFrame
+from stubborn.mapping.object_layers import LatestFrame
 
 
 def single_frame_agent(

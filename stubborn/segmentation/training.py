@@ -18,9 +18,9 @@ from torch import Tensor, nn
 from torch.utils.data import Dataset
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation.dataset import LabelledView
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import CLASSES, RedNet
-from stubborn.segmentation.views import LabelledView
 
 DtypeT = TypeVar("DtypeT", bound=np.generic)
 IGNORED = -100

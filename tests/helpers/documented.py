@@ -116,7 +116,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 20 --workers 2 --record --out runs/mine": (
         f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
-    f"{PYTHON} -m sim.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    f"{PYTHON} -m sim.analysis.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.analysis.report {{tmp}}/mine"),
     f"{_RUN} --agent examples.my_agent:make --video": (
         f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
@@ -181,11 +181,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
         " --out {tmp}/harsh",
     ),
-    f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
-    f"{PYTHON} -m sim.report runs/before runs/after": (
+    f"{PYTHON} -m sim.analysis.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.analysis.report {{tmp}}/mine"),
+    f"{PYTHON} -m sim.analysis.report runs/before runs/after": (
         f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
         _RECORDED,
-        f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
+        f"{PYTHON} -m sim.analysis.report {{tmp}}/before {{tmp}}/mine",
     ),
     # docs/performance.md
     f"{PYTHON} tools/bench.py --out runs/bench.json": (
@@ -317,7 +317,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
-    f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
+    f"{PYTHON} -m sim.analysis.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.analysis.report {{tmp}}/run"),
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",

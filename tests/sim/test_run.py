@@ -12,12 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from sim.episodes import Episode, write_split
-from sim.failures import cause_of_failure
-from sim.metrics import EXPLORED_SHARE
+from sim.episodes.splits import Episode, write_split
+from sim.geometry.pose import Pose
 from sim.paths import code_hash
-from sim.pose import Pose
-from sim.trajectory import read_trajectory, trajectory_file
+from sim.task.failures import cause_of_failure
+from sim.task.metrics import EXPLORED_SHARE
+from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.worlds import room, two_storeys, with_box
 
 TIMES = ("wall_time_s", "steps_per_s")

@@ -16,13 +16,13 @@ import pytest
 from numpy.typing import NDArray
 
 from sim import teleop
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode, write_split
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, write_split
+from sim.evaluation.rollout import play_episode
+from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel, ConfigError
-from sim.pose import Pose
-from sim.rollout import play_episode
-from sim.terminal import HALF_BLOCK, Colours, Terminal, fitted, half_blocks
-from sim.trajectory import read_trajectory, trajectory_file
+from sim.task.trajectory import read_trajectory, trajectory_file
+from sim.viewers.terminal import HALF_BLOCK, Colours, Terminal, fitted, half_blocks
 from tests.helpers.worlds import room, with_box
 
 START = Pose(0.0, 0.0, 0.0)

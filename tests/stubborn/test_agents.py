@@ -11,11 +11,11 @@ from examples import my_agent
 from sim.interface import Action, Agent, ConfigError, Observation, RobotModel, Scores
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.classifiers import Features
-from stubborn.exploration import CornerExplorer
-from stubborn.mapping import Sighting
+from stubborn.exploration.corners import CornerExplorer
+from stubborn.mapping.mapper import Sighting
+from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.untrap import UntrapConfig
+from stubborn.target.classifiers import Features
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
 PLAN = """
@@ -202,7 +202,7 @@ def test_an_unknown_name_or_option_is_refused_with_what_there_is():
 def test_importing_the_mind_leaves_mujoco_out():
     code = (
         "import sys, stubborn.agents, stubborn.agent, stubborn.draw, stubborn.segmentation.ground_truth\n"
-        "import stubborn.verification, stubborn.baselines.frontier, stubborn.baselines.single_frame\n"
+        "import stubborn.target.verification, stubborn.exploration.frontier, stubborn.baselines.single_frame\n"
         "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL', 'sklearn')]\n"
         "ours = [m for m in sys.modules if m.startswith('sim.') and m != 'sim.interface']\n"
         "print(bad + ours)"

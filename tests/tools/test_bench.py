@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.episodes import load_split
+from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.houses.house import House
 from sim.interface import ConfigError
 from sim.sensors.camera import Camera
-from sim.world import World
+from sim.world.world import World
 from tools import bench
 from tools.benchmarks import figures, report
 from tools.benchmarks.calibration import Calibration

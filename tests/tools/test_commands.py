@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from sim import cli
-from sim.episodes import load_split, shipped_splits
-from sim.house_list import house_bytes
-from sim.houses.splits import SPLIT_VERSION, SPLITS
+from sim.episodes.splits import load_split, shipped_splits
+from sim.housegen.recipes import house_bytes
+from sim.housegen.shipped import SPLIT_VERSION, SPLITS
 from sim.interface import ConfigError
 from tests.helpers import documented
 from tests.helpers.documented import PYTHON, TRIALS, Only

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from sim import run
-from sim.comparison import read_run
+from sim.analysis.comparison import read_run
+from sim.geometry.grid import PlanFrame
 from sim.interface import ConfigError
-from sim.planframe import PlanFrame
-from sim.trajectory import read_trajectory, trajectory_file
+from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.worlds import room, with_box
 from tools import draw_trajectories
 

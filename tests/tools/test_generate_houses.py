@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.houses.splits import Recipe
+from sim.housegen.shipped import Recipe
 from tools import generate_houses
 
 

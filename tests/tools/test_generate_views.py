@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from sim.episodes import load_split
-from sim.houses.furniture import CATALOGUE
+from sim.episodes.splits import load_split
+from sim.housegen.furniture import CATALOGUE
 from sim.interface import ConfigError
-from stubborn.segmentation.views import list_shards, read_shard
+from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.worlds import room, with_box
 from tools import make_episodes
 from tools.generate_views import FRESH_SEEDS_FROM, Args, main, plan

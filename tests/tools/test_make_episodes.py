@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from sim import habitat
-from sim.episodes import load_split, read_unreachable
+from sim.episodes import habitat
+from sim.episodes.splits import load_split, read_unreachable
 from sim.errors import EpisodeError
 from sim.interface import ConfigError
-from sim.task import Task
-from sim.world import World
+from sim.task.objectnav import Task
+from sim.world.world import World
 from tests.helpers.worlds import room, with_box
 from tools.make_episodes import Args, main, take_turns
 

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from sim import run
+from sim.evaluation.results import RunDirectory
+from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError
-from sim.results import RunDirectory
-from sim.rollout import TIMES
 from tests.helpers.worlds import room, with_box
 from tools.merge_runs import Args, main
 

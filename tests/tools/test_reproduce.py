@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from sim import run
-from sim.comparison import read_run
-from sim.episodes import Episode, write_split
+from sim.analysis.comparison import read_run
+from sim.episodes.splits import Episode, write_split
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from sim.pose import Pose
-from sim.trajectory import FOLDER
+from sim.task.trajectory import FOLDER
 from tests.helpers.worlds import room, with_box
 from tools import compare_runs, reproduce
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from sim import run
-from sim.comparison import read_run
+from sim.analysis.comparison import read_run
 from sim.interface import MPCAT40_ID, ConfigError
-from sim.palette import PALETTE
-from sim.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
+from sim.viewers.palette import PALETTE
 from tests.helpers.worlds import room, with_box
 from tools import show_mistakes
 from tools.show_mistakes import Args

@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from sim import segmenters
-from sim.episodes import Episode, load_split, write_split
+from sim.detectors.noisy import NoisyConfig
+from sim.episodes.splits import Episode, load_split, write_split
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from sim.pose import Pose
-from sim.semantics import NoisyConfig
-from stubborn.classifiers import Features
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target import TargetSeeker
+from stubborn.target.classifiers import Features
+from stubborn.target.seeker import TargetSeeker
 from tests.helpers.worlds import room, with_box
 from tools import train_verifier
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim.env import ObjectNavEnv
-from sim.houses.traps.catalogue import TRAPS
-from sim.houses.traps.trap import START_TURNS_RAD
+from sim.env.objectnav import ObjectNavEnv
+from sim.geometry.pose import Pose
+from sim.housegen.traps.catalogue import TRAPS
+from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.interface import FORWARD_M, Action
-from sim.pose import Pose
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
 from stubborn.navmap import NavMap

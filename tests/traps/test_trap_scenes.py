@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.env import ObjectNavEnv
-from sim.episodes import load_split, one_house
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import load_split, one_house
 from sim.errors import HouseError
+from sim.geometry.pose import Pose
+from sim.housegen.traps.catalogue import TRAPS
+from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.houses.load import load_house
-from sim.houses.traps.catalogue import TRAPS
-from sim.houses.traps.trap import START_TURNS_RAD
+from sim.houses.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, write_sidecar
 from sim.interface import MPCAT40_ID
 from sim.paths import assets_dir
-from sim.pose import Pose
-from sim.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, write_sidecar
 from tests.helpers.sampling import sample
 from tools.make_traps import write_scene
 

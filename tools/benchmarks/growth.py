@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode, load_split
-from sim.executors import ProcessCrew
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, load_split
+from sim.evaluation.executors import ProcessCrew
+from sim.evaluation.rollout import play_episode
+from sim.evaluation.workers import PlayerSpec, play_with
 from sim.gl import mujoco
-from sim.house_list import copy_textures
-from sim.houses.generator import HouseConfig
-from sim.rollout import play_episode
-from sim.runner import PlayerSpec, play_with
+from sim.housegen.generator import HouseConfig
+from sim.housegen.recipes import copy_textures
 from tools.benchmarks.figures import Figure, Goal
 from tools.benchmarks.making import write_house
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
@@ -116,7 +116,7 @@ def worker_memory(setting: Setting) -> list[Figure]:
 
 
 class MemoryPlayer:
-    """Plays, and says how much memory its process has; see `sim.runner.Player`."""
+    """Plays, and says how much memory its process has; see `sim.evaluation.workers.Player`."""
 
     def __init__(self, _: None) -> None:
         self._env = ObjectNavEnv(split="val", sensors=SENSORS, max_steps=100)

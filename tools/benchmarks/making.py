@@ -10,18 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from sim.episodes import load_split
-from sim.house_list import copy_textures
-from sim.houses.generator import HouseConfig, generate_house
+from sim.datasets.shards import write_shard
+from sim.datasets.views import View, sample_views
+from sim.env.scene import Scene
+from sim.episodes.splits import load_split
+from sim.housegen.generator import HouseConfig, generate_house
+from sim.housegen.recipes import copy_textures
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.houses.writing import house_text
 from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
-from sim.scene import Scene
-from sim.shards import write_shard
-from sim.views import View, sample_views
-from sim.world import World
+from sim.world.world import World
 from tools.benchmarks.figures import Figure, timed
 from tools.benchmarks.stages import Setting
 

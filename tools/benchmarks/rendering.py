@@ -8,14 +8,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from sim.episodes import load_split
+from sim.episodes.splits import load_split
+from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS
 from sim.interface import CameraModel
-from sim.pose import Pose
 from sim.sensors.camera import Z_FAR_M, Z_NEAR_M, Camera
 from sim.sensors.profiles import get_profile
-from sim.world import World
+from sim.world.world import World
 from tools.benchmarks.figures import Figure, Goal, interleaved, speedup
 from tools.benchmarks.stages import Setting, free_poses
 

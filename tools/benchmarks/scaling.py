@@ -10,10 +10,10 @@ from typing import Any
 import cv2
 import numpy as np
 
-from sim.env import ObjectNavEnv
-from sim.episodes import load_split
-from sim.executors import Processes
-from sim.runner import PlayerSpec
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import load_split
+from sim.evaluation.executors import Processes
+from sim.evaluation.workers import PlayerSpec
 from tools.benchmarks.figures import Figure, Goal
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
@@ -22,14 +22,14 @@ ROUNDS = 2
 
 @dataclass(frozen=True)
 class Piece:
-    """So many steps in a house; see `sim.runner.Item`."""
+    """So many steps in a house; see `sim.evaluation.workers.Item`."""
 
     episode_id: str
     house: str
 
 
 class PiecePlayer:
-    """Plays pieces of equal work; see `sim.runner.Player`."""
+    """Plays pieces of equal work; see `sim.evaluation.workers.Player`."""
 
     def __init__(self, steps: int) -> None:
         cv2.setNumThreads(1)

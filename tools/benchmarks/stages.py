@@ -11,15 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from sim.env import ObjectNavEnv
-from sim.episodes import Episode
-from sim.freespace import FreeSpace
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.geometry.pose import Pose
 from sim.interface import Action, Agent
-from sim.pose import Pose
 from sim.segmenters import make_segmenter
-from sim.world import World
+from sim.world.freespace import FreeSpace
+from sim.world.world import World
 from stubborn import agents
-from stubborn.verification import verifier_for
+from stubborn.target.verification import verifier_for
 from tools.benchmarks.calibration import Calibrator
 
 SENSORS = ("depth", "semantic")

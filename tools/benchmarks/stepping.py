@@ -6,13 +6,13 @@ import time
 
 import numpy as np
 
-from sim.env import ObjectNavEnv
-from sim.rollout import play_episode
+from sim.env.objectnav import ObjectNavEnv
+from sim.evaluation.rollout import play_episode
 from sim.segmenters import SEMANTICS
 from sim.sensors.camera import Camera
-from sim.task import Task
-from sim.world import World
-from stubborn.mapping import Mapper
+from sim.task.objectnav import Task
+from sim.world.world import World
+from stubborn.mapping.mapper import Mapper
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.network import RedNetSegmenter
 from tools.benchmarks.figures import Figure, Goal, stopwatch

@@ -12,21 +12,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim import habitat
-from sim.episodes import Episode, Split, load_split, one_house, shipped_splits
+from sim.env.scene import Scene
+from sim.episodes import habitat
+from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M, sample_episode
+from sim.episodes.reachable_goals import survey
+from sim.episodes.splits import Episode, Split, load_split, one_house, shipped_splits
+from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.houses.check import check_house
-from sim.houses.furniture.item import Pool
-from sim.houses.generator import HouseConfig, generate_house
+from sim.housegen.furniture.item import Pool
+from sim.housegen.generator import HouseConfig, generate_house
 from sim.houses.labels import collidable_geoms, geoms_of, rendered_geoms
 from sim.houses.writing import house_text
 from sim.interface import CameraModel
 from sim.paths import assets_dir
-from sim.pose import Pose
 from sim.robot.config import RobotConfig
-from sim.sampling import MAX_DISTANCE_M, MIN_DISTANCE_M, sample_episode
-from sim.scene import Scene
-from sim.survey import survey
+from sim.world.check import check_house
 from tests.helpers.sampling import sample
 
 FIRST_FRESH_SEED = 900_000

@@ -8,7 +8,7 @@ import pytest
 from sim.gl import mujoco
 from sim.robot.body import HULL_MASK, MOVABLE_MASK, ROBOT_GROUP, STATIC_MASK, WHEEL_MASK, robot_spec
 from sim.robot.config import RobotConfig
-from sim.world import World
+from sim.world.world import World
 from tests.helpers.worlds import open_floor
 
 

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.interface import Action
-from sim.pose import Pose
-from sim.world import World
+from sim.world.world import World
 from tests.helpers.sampling import sample
 from tests.helpers.worlds import open_floor, random_obstacles, with_box, with_post
 

@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.geometry.pose import Pose
 from sim.houses.house import House
 from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
-from sim.pose import Pose
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.robot.profile import Trapezoid
-from sim.world import World
+from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
 
 FORWARD, LEFT, RIGHT = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT

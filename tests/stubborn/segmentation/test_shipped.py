@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.episodes import load_split
+from sim.datasets.views import sample_views
+from sim.env.scene import Scene
+from sim.episodes.splits import load_split
 from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
-from sim.scene import Scene
-from sim.views import sample_views
 from stubborn.segmentation.checkpoints import load_rednet
 from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.rednet import COMPACT

@@ -10,6 +10,7 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation.dataset import LabelledView
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.training import (
     GOAL_CHANNELS,
@@ -29,7 +30,6 @@ from stubborn.segmentation.training import (
     random_window,
     turn_hue,
 )
-from stubborn.segmentation.views import LabelledView
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 

@@ -1,0 +1,3 @@
+"""Simulated detectors that read the true labels and make the errors of a segmentation network.
+
+Imports env and the rooms below it."""

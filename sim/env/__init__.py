@@ -1,0 +1,3 @@
+"""The Gymnasium environment: world, camera and task in one loop; the shortest-path oracle.
+
+Imports episodes and the rooms below it."""

@@ -1,0 +1,100 @@
+"""Draw episodes: a start in free space from which a goal can be reached, and where the robot really fits."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.episodes.splits import Episode
+from sim.errors import EpisodeError
+from sim.geometry.pose import Pose
+from sim.interface import GOAL_CATEGORIES
+from sim.task.objectnav import Stage, Task
+from sim.world.world import World
+
+MIN_DISTANCE_M = 2.0
+"""Least geodesic distance from start to goal, where the house is large enough for it."""
+MAX_DISTANCE_M = 30.0
+"""Largest: 120 forwards, and the turns between them, are well inside 500 steps."""
+MAX_TRIES = 50
+_ROUND_M = 4
+"""Decimals of a drawn start, so that files stay short."""
+
+
+def sample_episode(
+    scene: Stage,
+    house: str,
+    rng: np.random.Generator,
+    *,
+    goal: str | None = None,
+    start: Pose | None = None,
+    episode_id: str = "drawn",
+) -> Episode:
+    """An episode in a scene; what is not given is drawn.
+
+    Raises:
+        EpisodeError: the goal is not in the house or has no way to it, or the robot does not fit at the start.
+    """
+    world, task = scene.world, scene.task
+    if start is not None:
+        world.reset(start)
+    goals = (goal,) if goal is not None else tuple(rng.permutation(np.array(task.truth.goals())).tolist())
+    if not goals:
+        raise EpisodeError(f"House '{world.house.name}' has none of the goals: {', '.join(GOAL_CATEGORIES)}.")
+    refusals = []
+    for candidate in goals:
+        try:
+            begin = start or draw_start(world, task, candidate, rng)
+            distance_m = task.distance_from(candidate, begin)
+        except EpisodeError as error:
+            refusals.append(error)
+            continue
+        if distance_m is not None:
+            return Episode(episode_id, house, candidate, begin, distance_m)
+        refusals.append(task.no_way(candidate, begin))
+    raise refusals[0]
+
+
+def draw_start(world: World, task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: float = 0.0) -> Pose:
+    """A pose, uniform over the largest connected part of the free space that is far enough from the goal.
+
+    In a house too small for `MIN_DISTANCE_M` the farther half of what there is counts as far enough.
+
+    Raises:
+        EpisodeError: the goal is not in the house, or there is no place to start from.
+    """
+    space = task.truth.space(floor_z_m)
+    distance_m = task.truth.target(goal, floor_z_m).distance_m
+    cells = np.argwhere(far_enough(np.where(space.largest_part(), distance_m, np.inf)))
+    for _ in range(MAX_TRIES if len(cells) else 0):
+        x_m, y_m = (
+            space.frame.to_metres(cells[rng.integers(len(cells))]) + rng.uniform(-0.5, 0.5, 2) * space.frame.cell_m
+        )
+        start = Pose(
+            round(float(x_m), _ROUND_M),
+            round(float(y_m), _ROUND_M),
+            round(float(rng.uniform(-np.pi, np.pi)), _ROUND_M),
+            floor_z_m,
+        )
+        if space.is_free(start.x_m, start.y_m) and _fits(world, start):
+            return start
+    raise EpisodeError(
+        f"House '{world.house.name}': no place to start a search for '{goal}' from; no instance can be reached."
+    )
+
+
+def far_enough(distance_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(rows, cols) cells from which a search is worth its name."""
+    reachable = np.isfinite(distance_m)
+    far = reachable & (distance_m >= MIN_DISTANCE_M) & (distance_m <= MAX_DISTANCE_M)
+    if far.any() or not reachable.any():
+        return far
+    return reachable & (distance_m >= 0.5 * distance_m[reachable].max())
+
+
+def _fits(world: World, start: Pose) -> bool:
+    try:
+        world.reset(start)
+    except EpisodeError:
+        return False
+    return True

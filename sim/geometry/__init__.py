@@ -1,0 +1,3 @@
+"""Plane geometry without MuJoCo: poses, grids over the floor, convex bodies.
+
+Imports `sim.errors` only."""

@@ -1,0 +1,99 @@
+"""The looks of a home's structure and its light: drawn once for a home, so that its rooms belong together."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim.housegen import materials
+from sim.housegen.floor_plan import FloorPlan
+from sim.housegen.furniture.item import Look, Pool
+from sim.housegen.mjcf import Lamp
+from sim.housegen.structure import Finish
+
+TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
+OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
+SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
+PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
+"""Rooms that may have patterned wallpaper, one of them in a home."""
+
+
+def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
+    """Paint and floors by room; rooms that flow into each other share theirs."""
+    walls, floors = {}, {}
+    paint = "heldout" if pool == "heldout" else "train"
+    main_floor = materials.floor_look("living_room", rng, pool)
+    main_wall = _wall(rng, pool, "hallway")
+    shared = _flowing(plan)
+    papered = False
+    for i, room in enumerate(plan.rooms):
+        own = _wall(rng, pool, room.kind, paper=not papered and room.kind in PAPERED)
+        papered = papered or _is_paper(own)
+        floor = materials.floor_look(room.kind, rng, pool)
+        same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
+        walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
+        floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
+    trim = Look(TRIM[paint], specular=0.2)
+    door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
+    frame = trim if rng.random() < 0.6 else door
+    return Finish(
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door, frame,
+        materials.look("metal", rng, pool), Look(SKY[paint], specular=0.0, emission=0.75),
+    )  # fmt: skip
+
+
+def _wall(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
+    """Tiles where it is wet, else paint: smooth more often than rough, patterned paper only where it is asked for."""
+    look = materials.wall_look(rng, pool, room_kind)
+    smooth = bool(rng.random() < 0.6)
+    if look.texture is None or look.texture.startswith("tiles"):
+        return look
+    plain = not paper if _is_paper(look) else smooth
+    return replace(look, texture=None) if plain else look
+
+
+def _is_paper(look: Look) -> bool:
+    return look.texture is not None and look.texture.startswith("paper")
+
+
+def _flowing(plan: FloorPlan) -> set[int]:
+    """Rooms that are open to another one without any wall between."""
+    return {room for join in plan.joins if join.kind == "open" for room in (join.a, join.b)}
+
+
+def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
+    """Daylight from three sides, a reflection from the floors, and a lamp in each room, the largest room's first.
+
+    Fixed-function OpenGL has eight lights; four shine everywhere, and `sim.sensors.camera` lights the lamp that is in
+    sight. Another viewer takes the first ones. The light that is the same everywhere casts no shadow: a ceiling would
+    swallow it. Strengths were set by looking.
+    """
+    warm = float(rng.uniform(0.0, 1.0))
+    tint = np.array([1.0, 0.99 - 0.03 * warm, 0.97 - 0.10 * warm])
+    turn = float(rng.uniform(0.0, 2 * np.pi))
+
+    def towards(angle: float, tilt: float) -> tuple[float, float, float]:
+        level = np.cos(tilt)
+        return (
+            round(float(level * np.cos(angle)), 4),
+            round(float(level * np.sin(angle)), 4),
+            round(float(np.sin(tilt)), 4),
+        )
+
+    def light(strength: float) -> tuple[float, float, float]:
+        r, g, b = (round(float(v), 3) for v in strength * tint)
+        return (r, g, b)
+
+    x, y = plan.bounds.centre
+    above = (round(x, 2), round(y, 2), ceiling_m + 2.0)
+    lamps = [
+        Lamp(above, light(0.30), towards(turn, -0.70)),
+        Lamp(above, light(0.22), towards(turn + 2.0, -0.55)),
+        Lamp(above, light(0.16), towards(turn + 4.1, -0.50)),
+        Lamp((above[0], above[1], 0.1), light(0.40), towards(turn + 1.0, 1.2)),
+    ]
+    for room in sorted(plan.rooms, key=lambda room: -room.rect.area_m2):
+        cx, cy = room.rect.centre
+        lamps.append(Lamp((round(cx, 2), round(cy, 2), round(ceiling_m - 0.25, 2)), light(0.42), shadow=True))
+    return lamps

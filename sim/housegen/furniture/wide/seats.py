@@ -1,0 +1,354 @@
+"""Benches and ottomans of the pool `wide`."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
+from sim.housegen.furniture.wide import shared
+from sim.housegen.furniture.wide.shared import BOTH
+from sim.housegen.furniture.workbench import Workbench
+
+
+def _ends(w: Workbench, width: float, depth: float, top: float, look: Look, kind: str) -> None:
+    """What carries a bench near both its ends: posts, a metal hoop, a trapezium of tube, a solid panel, a cross."""
+    for side in BOTH:
+        y, half = side * (0.5 * width - w.length(0.06, 0.14)), 0.5 * depth - 0.03
+        if kind == "hoop":
+            shared.path(w, [(-half, y, top), (-half, y, 0.012), (half, y, 0.012), (half, y, top)], 0.012, look)
+        elif kind == "trapezium":
+            for x in BOTH:
+                w.bar((x * half, y, 0.0), (0.75 * x * half, y, top), 0.045, 0.03, look)
+            w.box((-half, half), (y - 0.022, y + 0.022), (0.0, 0.022), look)
+            w.box((-half, half), (y - 0.022, y + 0.022), (top - 0.03, top), look)
+        elif kind == "panel":
+            w.box((-half, half), (y - 0.02, y + 0.02), (0.0, top), look)
+        elif kind == "cross":
+            for x in BOTH:
+                w.bar((x * half, y, 0.0), (-x * half, y, top), 0.035, 0.05, look)
+        else:
+            for x in BOTH:
+                w.bar((x * half, y + side * 0.02, 0.0), (0.9 * x * half, y, top), 0.045, 0.045, look)
+
+
+def slat_bench(w: Workbench) -> None:
+    """Long slats with gaps between them on metal or wooden end frames."""
+    width, depth, seat = w.width(0.95, 1.60), w.depth(0.34, 0.48), w.length(0.36, 0.46)
+    wood, slats = shared.timber(w, 0.2), w.whole(4, 10)
+    legs = wood if w.chance(0.4) else w.look(w.choice(("iron", "chrome", "dark")))
+    each, thick = depth / slats, w.choice((0.025, 0.04))
+    for i in range(slats):
+        x = (i + 0.5) * each - 0.5 * depth
+        w.box((x - 0.36 * each, x + 0.36 * each), (-0.5 * width, 0.5 * width), (seat - thick, seat), wood)
+    for side in BOTH:
+        y = side * (0.5 * width - 0.10)
+        w.box(
+            (-0.5 * depth + 0.01, 0.5 * depth - 0.01), (y - 0.07, y + 0.07), (seat - thick - 0.02, seat - thick), legs
+        )
+    _ends(w, width, depth, seat - thick - 0.01, legs, w.choice(("hoop", "trapezium", "posts", "panel")))
+    if w.chance(0.25):
+        shared.pad(w, (depth - 0.02, 0.45 * width, 0.06), (0.0, 0.24 * width, seat + 0.03), shared.upholstery(w), 0.02)
+    w.top((-0.45 * depth, 0.45 * depth), (-0.45 * width, 0.45 * width), seat, "seat")
+
+
+def woven_bench(w: Workbench) -> None:
+    """Turned or square posts at the corners with rails, a seat of cord or straps between them."""
+    width, depth, seat = w.width(0.90, 1.40), w.depth(0.36, 0.46), w.length(0.42, 0.48)
+    wood, t = shared.timber(w, 0.2), w.length(0.035, 0.05)
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    rise = w.choice((0.0, 0.0, 0.06, 0.16))
+    w.legs((x[0] + 0.5 * t, x[1] - 0.5 * t), (y[0] + 0.5 * t, y[1] - 0.5 * t), (0.0, seat + rise), t, wood, round_=True)
+    for side in BOTH:
+        for z in (seat - 0.03, w.length(0.12, 0.20)):
+            w.rod((side * 0.5 * (depth - t), y[0] + t, z), (side * 0.5 * (depth - t), y[1] - t, z), 0.014, wood)
+            w.rod(
+                (x[0] + t, side * 0.5 * (width - t), z + 0.02),
+                (x[1] - t, side * 0.5 * (width - t), z + 0.02),
+                0.014,
+                wood,
+            )
+        if rise > 0.1:
+            w.rod(
+                (x[0] + t, side * 0.5 * (width - t), seat + rise - 0.03),
+                (x[1] - t, side * 0.5 * (width - t), seat + rise - 0.03),
+                0.016,
+                wood,
+            )
+    cord = w.look(w.choice(("wicker", "leather", "wicker", "fabric")))
+    if w.chance(0.5):
+        w.box((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.02, y[1] - 0.02), (seat - 0.045, seat), cord)
+    else:
+        bands = w.whole(6, 9)
+        each = (width - 2 * t) / bands
+        for i in range(bands):
+            c = y[0] + t + (i + 0.5) * each
+            w.box((x[0] + 0.002, x[1] - 0.002), (c - 0.4 * each, c + 0.4 * each), (seat - 0.045, seat - 0.01), cord)
+        w.box((-0.09, 0.09), (y[0] + 0.02, y[1] - 0.02), (seat - 0.035, seat - 0.004), cord)
+    w.top((0.8 * x[0], 0.8 * x[1]), (0.85 * y[0], 0.85 * y[1]), seat, "seat")
+
+
+def roll_arm_bench(w: Workbench) -> None:
+    """Window bench: a padded seat between two scrolled or boxed arms, no back."""
+    width, depth, seat = w.width(1.0, 1.45), w.depth(0.40, 0.52), w.length(0.42, 0.48)
+    cloth, wood, half = shared.upholstery(w, 0.2), w.look(w.choice(("wood", "brass", "lacquer"))), 0.5 * width
+    arm = seat + w.length(0.14, 0.26)
+    scroll = w.chance(0.6)
+    for side in BOTH:
+        if scroll:
+            y = side * (half - 0.085)
+            w.box(
+                (-0.5 * depth, 0.5 * depth), (y - 0.03, y + 0.03), (seat - 0.10, arm - 0.03), cloth, roll=-0.12 * side
+            )
+            w.rod(
+                (-0.5 * depth, side * (half - 0.06), arm - 0.05),
+                (0.5 * depth, side * (half - 0.06), arm - 0.05),
+                0.055,
+                cloth,
+            )
+        else:
+            shared.pad(
+                w,
+                (depth, 0.10, arm - seat + 0.14),
+                (0.0, side * (half - 0.05), 0.5 * (arm + seat - 0.14)),
+                cloth,
+                0.025,
+            )
+    thick = w.length(0.10, 0.16)
+    shared.pad(w, (depth, width - 0.16, thick), (0.0, 0.0, seat - 0.5 * thick), cloth, 0.03)
+    w.box(
+        (-0.5 * depth + 0.02, 0.5 * depth - 0.02),
+        (-half + 0.06, half - 0.06),
+        (seat - thick - 0.02, seat - thick + 0.04),
+        wood,
+    )
+    if w.chance(0.3):
+        w.box((-0.5 * depth + 0.01, 0.5 * depth - 0.01), (-half + 0.05, half - 0.05), (0.0, seat - thick), cloth)
+    else:
+        splay = w.choice((0.0, 0.03))
+        w.legs(
+            (-0.5 * depth + 0.05, 0.5 * depth - 0.05),
+            (-half + 0.09, half - 0.09),
+            (0.0, seat - thick),
+            0.042,
+            wood,
+            splay=splay,
+        )
+    w.top((-0.4 * depth, 0.4 * depth), (-half + 0.15, half - 0.15), seat, "seat")
+
+
+def banquette(w: Workbench) -> None:
+    """Dining-nook bench on a closed plinth: padded seat, tall padded back in channels or panels."""
+    width, depth, seat = w.width(1.0, 1.6), w.depth(0.50, 0.60), w.length(0.44, 0.48)
+    height, cloth, body = w.length(0.84, 1.10), shared.upholstery(w, 0.4), shared.timber(w, 0.5)
+    x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
+    w.box((x0, x1 - 0.06), (-half + 0.01, half - 0.01), (0.0, 0.09), w.look("dark"))
+    w.box((x0, x1 - 0.02), (-half, half), (0.08, seat - 0.09), body)
+    w.box((x0, x0 + 0.03), (-half, half), (seat - 0.1, height - 0.02), body)
+    parts = w.whole(1, 2)
+    for i in range(parts):
+        y = (i + 0.5) * width / parts - half
+        shared.pad(w, (depth - 0.03, width / parts - 0.004, 0.10), (0.015, y, seat - 0.05), cloth, 0.03)
+    channels = w.choice((1, 2, 3, 8, 12))
+    thick = w.length(0.07, 0.11)
+    for i in range(channels):
+        y = (i + 0.5) * width / channels - half
+        size = (thick, width / channels - 0.002, height - seat + 0.02)
+        shared.pad(w, size, (x0 + 0.03 + 0.5 * thick, y, 0.5 * (height + seat) - 0.01), cloth, 0.03, tilt=-0.03)
+    w.top((x0 + 0.15, x1 - 0.03), (-half + 0.1, half - 0.1), seat, "seat")
+
+
+def garden_bench(w: Workbench) -> None:
+    """Slatted park bench: cast or wooden end frames with arms, level slats for seat and back."""
+    width, seat, height = w.width(1.0, 1.5), w.length(0.42, 0.46), w.length(0.76, 0.90)
+    wood, half = shared.timber(w, 0.25), 0.5 * width
+    frame = wood if w.chance(0.4) else w.look("iron")
+    t = 0.045 if frame == wood else 0.03
+    for side in BOTH:
+        y = side * (half - 0.5 * t - w.choice((0.0, 0.06)))
+        w.bar((0.24, y, 0.0), (0.21, y, seat + 0.20), t, t, frame)
+        w.bar((-0.24, y, 0.0), (-0.19, y, seat), t, t, frame)
+        w.bar((-0.19, y, seat - 0.03), (-0.29, y, height), t, t, frame)
+        w.bar((0.26, y, seat + 0.21), (-0.23, y, seat + 0.19), t + 0.02, 0.025, frame)
+        w.bar((0.22, y, seat - 0.04), (-0.20, y, seat - 0.05), t, 0.05, frame)
+    count = w.whole(4, 7)
+    for i in range(count):
+        x = 0.21 - 0.38 * i / (count - 1)
+        w.box((x - 0.13 / count, x + 0.13 / count), (-half, half), (seat - 0.022, seat), wood)
+    rows = w.whole(2, 5)
+    for i in range(rows):
+        z = seat + 0.12 + (height - seat - 0.15) * i / max(1, rows - 1)
+        x = -0.19 - 0.10 * (z - seat) / (height - seat) + 0.5 * t + 0.005
+        tall = 0.6 * (height - seat - 0.1) / rows
+        w.box((x - 0.011, x + 0.011), (-half, half), (z - 0.5 * tall, z + 0.5 * tall), wood, tilt=-0.24)
+    w.top((-0.12, 0.20), (-half + 0.1, half - 0.1), seat, "seat")
+
+
+def trunk_bench(w: Workbench) -> None:
+    """Lidded chest to sit on: panelled or woven body, a lid with or without a cushion, ring or cut-out handles."""
+    width, depth, seat = w.width(0.80, 1.30), w.depth(0.38, 0.50), w.length(0.40, 0.48)
+    body = w.look(w.choice(("wood", "wicker", "lacquer", "leather")))
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    foot = w.choice((0.0, 0.04, 0.08))
+    w.box((x[0] + 0.012, x[1] - 0.012), (y[0] + 0.012, y[1] - 0.012), (foot, seat - 0.03), body)
+    w.box(x, y, (seat - 0.035, seat), body)
+    if foot:
+        w.legs(x, y, (0.0, foot + 0.02), 0.06, body)
+    panels = w.choice((0, 2, 3))
+    for i in range(panels + 1 if panels else 0):
+        c = y[0] + 0.04 + i * (width - 0.08) / panels
+        w.box((x[1] - 0.014, x[1]), (c - 0.028, c + 0.028), (foot, seat - 0.03), body, solid=False)
+    if panels:
+        for z in (foot + 0.03, seat - 0.06):
+            w.box((x[1] - 0.014, x[1] - 0.001), (y[0] + 0.02, y[1] - 0.02), (z - 0.03, z + 0.03), body, solid=False)
+    else:
+        metal = w.look("brass")
+        for c in (-0.28 * width, 0.28 * width):
+            w.box((x[1] - 0.014, x[1] + 0.004), (c - 0.02, c + 0.02), (foot, seat), metal, solid=False)
+    for side in BOTH:
+        w.rod(
+            (-0.05, side * 0.5 * width, seat - 0.12),
+            (0.05, side * 0.5 * width, seat - 0.12),
+            0.009,
+            w.look("iron"),
+            solid=False,
+        )
+    top = seat
+    if w.chance(0.85):
+        shared.pad(w, (depth - 0.02, width - 0.02, 0.06), (0.0, 0.0, seat + 0.027), shared.upholstery(w, 0.2), 0.02)
+        top = seat + 0.057
+    w.top((0.8 * x[0], 0.8 * x[1]), (0.85 * y[0], 0.85 * y[1]), top, "seat")
+
+
+def footstool(w: Workbench) -> None:
+    """Small domed footstool on turned, splayed or curved legs with a wooden rim."""
+    w.mass_kg = 4.0
+    width, depth, height = w.width(0.40, 0.62), w.depth(0.34, 0.46), w.length(0.28, 0.44)
+    cloth, wood, power = shared.upholstery(w, 0.35), shared.timber(w), w.choice((2.0, 5.0, 8.0))
+    rx, ry = 0.5 * depth, 0.5 * width
+    rim = [Ring(z, rx - 0.01, ry - 0.01, power=power) for z in (0.0, 0.05)]
+    w.mesh(loft(rim, 16, hull=True), (0.0, 0.0, height - 0.16), wood)
+    dome = [
+        Ring(0.0, rx, ry, power=power),
+        Ring(0.05, rx, ry, power=power),
+        Ring(0.095, 0.85 * rx, 0.85 * ry, power=power),
+        Ring(0.115, 0.5 * rx, 0.5 * ry),
+    ]
+    w.mesh(loft(dome, 16, hull=True), (0.0, 0.0, height - 0.115), cloth)
+    reach = 0.62 if power == 2.0 else 0.80
+    splay, thick = w.choice((0.0, 0.03, 0.05)), w.length(0.028, 0.05)
+    w.legs(
+        (-reach * rx, reach * rx),
+        (-reach * ry, reach * ry),
+        (0.0, height - 0.13),
+        thick,
+        wood,
+        splay=splay,
+        round_=True,
+    )
+    if w.chance(0.4):
+        for sx, sy in itertools.product(BOTH, BOTH):
+            w.ball((sx * reach * rx, sy * reach * ry, height - 0.19), 0.8 * thick, wood)
+    w.top((-0.3 * depth, 0.3 * depth), (-0.3 * width, 0.3 * width), height, "seat")
+
+
+def storage_cube(w: Workbench) -> None:
+    """Box ottoman to the floor with a lid that overhangs, seams and pull tab, or open shelves at its side."""
+    w.mass_kg = 6.0
+    width, depth, height = w.width(0.38, 0.95), w.depth(0.38, 0.50), w.length(0.36, 0.46)
+    cover = shared.upholstery(w, 0.5)
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    w.box((x[0] + 0.012, x[1] - 0.012), (y[0] + 0.012, y[1] - 0.012), (0.0, height - 0.07), cover)
+    shared.pad(
+        w, (depth, width, 0.08), (0.0, 0.0, height - 0.04), cover if w.chance(0.7) else w.new_look("leather"), 0.02
+    )
+    kind = w.choice(("tab", "buttons", "straps"))
+    if kind == "tab":
+        w.box((x[1] - 0.005, x[1] + 0.008), (-0.03, 0.03), (height - 0.10, height - 0.05), w.look("dark"), solid=False)
+    elif kind == "straps":
+        for c in (-0.28 * width, 0.28 * width):
+            w.box((x[1] - 0.014, x[1] + 0.004), (c - 0.02, c + 0.02), (0.0, height - 0.02), w.look("dark"), solid=False)
+    else:
+        columns = max(2, round(width / 0.18))
+        for row, i in itertools.product(range(2), range(columns)):
+            at = ((row - 0.5) * 0.45 * depth, (i + 0.5) * width / columns - 0.5 * width, height)
+            w.ellipsoid(at, (0.014, 0.014, 0.006), w.look("dark"), solid=False)
+    w.top((0.8 * x[0], 0.8 * x[1]), (0.8 * y[0], 0.8 * y[1]), height, "seat")
+
+
+def lounge_ottoman(w: Workbench) -> None:
+    """Footrest of a lounge chair: a slanted cushion on a bent-wood, crossed or star base."""
+    w.mass_kg = 6.0
+    width, height = w.width(0.48, 0.66), w.length(0.36, 0.44)
+    cover, half, depth = shared.upholstery(w, 0.6), 0.5 * width, w.length(0.42, 0.54)
+    slant, thick = w.length(0.0, 0.22), w.length(0.08, 0.14)
+    shared.pad(w, (depth, width, thick), (0.0, 0.0, height - 0.5 * thick), cover, 0.035, tilt=slant)
+    under = height - thick
+    kind = w.choice(("star", "sled", "cross"))
+    if kind == "star":
+        w.mesh(chamfered_box((depth - 0.03, width - 0.03, 0.025), 0.012), (0.0, 0.0, under), w.look("wood"), tilt=slant)
+        shared.star(w, w.length(0.22, 0.28), 4, w.look("chrome"), under, castors=False)
+        return
+    frame = w.look("wood") if w.chance(0.6) else shared.tubes(w)
+    for side in BOTH:
+        y, reach = side * (half - 0.04), 0.5 * depth - 0.03
+        if kind == "sled":
+            rise = reach * math.tan(slant)
+            for a, b in itertools.pairwise(
+                [(-reach, y, under + rise), (-reach, y, 0.015), (reach, y, 0.015), (reach, y, under - rise)]
+            ):
+                w.bar(a, b, 0.045, 0.022, frame)
+        else:
+            for sx in BOTH:
+                w.bar(
+                    (sx * reach, y, 0.0),
+                    (-0.8 * sx * reach, y, under + 0.8 * sx * reach * math.tan(slant)),
+                    0.035,
+                    0.03,
+                    frame,
+                )
+    w.bar((0.0, -half + 0.04, 0.5 * under), (0.0, half - 0.04, 0.5 * under), 0.03, 0.03, frame)
+    if kind == "sled":
+        for side in BOTH:
+            w.box(
+                (-0.5 * depth + 0.03, 0.5 * depth - 0.03),
+                (side * (half - 0.04) - 0.015, side * (half - 0.04) + 0.015),
+                (0.5 * under - 0.015, 0.5 * under + 0.015),
+                frame,
+            )
+
+
+def rattan_drum(w: Workbench) -> None:
+    """Waisted or barrel-shaped basket-work seat with a round cushion on top."""
+    w.mass_kg = 4.0
+    r, height = 0.5 * w.length(0.42, 0.62), w.length(0.36, 0.46)
+    waist, cane = w.choice((0.72, 0.85, 1.12)), w.look("wicker")
+    body = height - 0.08
+    profile = ((0.0, 0.92), (0.03, 0.95), (0.5 * body, 0.95 * waist), (body - 0.03, 0.95), (body, 0.92))
+    rings = [Ring(z, share * r, share * r) for z, share in profile]
+    w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), cane)
+    for z in (0.02, body - 0.02):
+        w.cylinder((0.0, 0.0), (z - 0.012, z + 0.012), 0.97 * r, w.look("wood"), solid=False)
+    puff = [
+        Ring(0.0, 0.85 * r, 0.85 * r),
+        Ring(0.03, r, r),
+        Ring(0.06, 0.95 * r, 0.95 * r),
+        Ring(0.085, 0.6 * r, 0.6 * r),
+    ]
+    w.mesh(loft(puff, 16, hull=True), (0.0, 0.0, body - 0.005), shared.upholstery(w, 0.1))
+
+
+STYLES: tuple[Style, ...] = (
+    Style("seating", "slat_bench", "wide", slat_bench, ("bench", "plain")),
+    Style("seating", "woven_bench", "wide", woven_bench, ("bench", "plain")),
+    Style("seating", "roll_arm_bench", "wide", roll_arm_bench, ("bench", "plain")),
+    Style("seating", "banquette", "wide", banquette, ("bench",)),
+    Style("seating", "garden_bench", "wide", garden_bench, ("bench",)),
+    Style("seating", "trunk_bench", "wide", trunk_bench, ("bench", "plain")),
+    Style("seating", "footstool", "wide", footstool, ("ottoman",)),
+    Style("seating", "storage_cube", "wide", storage_cube, ("ottoman",)),
+    Style("seating", "lounge_ottoman", "wide", lounge_ottoman, ("ottoman",)),
+    Style("seating", "rattan_drum", "wide", rattan_drum, ("ottoman",)),
+)

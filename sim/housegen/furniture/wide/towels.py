@@ -1,0 +1,247 @@
+"""Towels of the pool `wide`."""
+
+from __future__ import annotations
+
+from sim.housegen.furniture import parts
+from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.shapes import chamfered_box, drape
+from sim.housegen.furniture.wide import shared
+from sim.housegen.furniture.wide.shared import BOTH
+from sim.housegen.furniture.workbench import Workbench
+
+
+def _towel(w: Workbench) -> Look:
+    return w.new_look("towel") if w.chance(0.8) else w.new_look("linen")
+
+
+def hotel_rack(w: Workbench) -> None:
+    """Shelf of thin bars high on the wall with folded towels on it and towels over the rail below."""
+    width, deep, metal = w.width(0.45, 0.75), w.length(0.20, 0.26), shared.fittings(w)
+    tall = w.length(0.45, 0.75)
+    w.mount_height_m = 1.65 - tall
+    for i in range(w.whole(3, 5)):
+        x = 0.03 + i * (deep - 0.03) / 4
+        w.rod((x, -0.5 * width, tall), (x, 0.5 * width, tall), 0.006, metal)
+    for side in BOTH:
+        y = side * (0.5 * width - 0.01)
+        w.box((0.0, deep), (y - 0.006, y + 0.006), (tall - 0.01, tall + 0.02), metal)
+        w.box((0.0, 0.012), (y - 0.02, y + 0.02), (tall - 0.12, tall + 0.04), metal)
+        w.rod((0.0, y, tall - 0.09), (0.6 * deep, y, tall - 0.09), 0.007, metal)
+    w.rod((0.6 * deep, -0.5 * width, tall - 0.09), (0.6 * deep, 0.5 * width, tall - 0.09), 0.008, metal)
+    shared.over(
+        w, 0.6 * deep, 0.0, tall - 0.09, w.length(0.5, 0.85) * width, tall - 0.11, w.length(0.5, 0.8) * tall, _towel(w)
+    )
+    z, cloth = tall + 0.004, _towel(w)
+    for i in range(w.whole(1, 4)):
+        thick = w.length(0.04, 0.07)
+        size = (0.9 * deep, width * w.length(0.5, 0.85), thick)
+        w.mesh(chamfered_box(size, 0.02), (0.03 + 0.45 * deep, 0.0, z + 0.5 * thick), cloth if i % 2 else _towel(w))
+        z += thick - 0.004
+
+
+def hanging_rungs(w: Workbench) -> None:
+    """Dowels hung on two cords or straps below each other from a wall hook rail, a towel over each."""
+    width, wood, cord = w.width(0.40, 0.70), w.look("wood"), w.look(w.choice(("leather", "fabric", "metal")))
+    count, gap = w.whole(2, 3), w.length(0.34, 0.42)
+    tall = count * gap + 0.12
+    w.mount_height_m = w.length(1.60, 1.85) - tall
+    w.box((0.0, 0.02), (-0.5 * width, 0.5 * width), (tall - 0.05, tall), wood)
+    for side in BOTH:
+        y = side * (0.5 * width - 0.04)
+        w.rod((0.0, y, tall - 0.025), (0.07, y, tall - 0.025), 0.008, wood)
+        w.box((0.062, 0.070), (y - 0.012, y + 0.012), (0.30, tall - 0.02), cord)
+    for i in range(count):
+        z = tall - 0.10 - i * gap
+        w.rod((0.068, -0.5 * width, z), (0.068, 0.5 * width, z), 0.012, wood)
+        if i == 0 or w.chance(0.75):
+            wide = w.length(0.4, 0.75) * width
+            shared.over(w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel(w))
+
+
+def panel_radiator(w: Workbench) -> None:
+    """Flat, ribbed or columned upright radiator with a bar across it and a bath towel over the bar."""
+    width, high = w.width(0.35, 0.60), w.length(1.10, 1.75)
+    look, metal = w.look(w.choice(("ceramic", "dark", "lacquer", "glass"))), w.look("chrome")
+    w.mount_height_m = w.length(0.15, 0.35)
+    kind, y = w.choice(("flat", "ribs", "columns")), 0.5 * width
+    if kind == "flat":
+        w.box((0.04, 0.06), (-y, y), (0.0, high), look)
+    else:
+        count = round(width / 0.075)
+        for i in range(count):
+            c = -y + (i + 0.5) * width / count
+            if kind == "ribs":
+                w.box((0.04, 0.055), (c - 0.032, c + 0.032), (0.0, high), look)
+            else:
+                w.rod((0.05, c, 0.0), (0.05, c, high), 0.02, look)
+        for z in (0.06, high - 0.06):
+            w.box((0.03, 0.05), (-y, y), (z - 0.02, z + 0.02), look)
+    for z in (0.1, high - 0.1):
+        w.box((0.0, 0.045), (-0.03, 0.03), (z - 0.03, z + 0.03), look)
+    for i in range(w.whole(1, 2)):
+        z = high * (0.72, 0.36)[i]
+        w.rod((0.11, -y, z), (0.11, y, z), 0.010, metal)
+        for side in BOTH:
+            w.rod((0.045, side * (y - 0.03), z), (0.11, side * (y - 0.03), z), 0.008, metal)
+        drop = w.length(0.24, 0.32) * high
+        shared.over(w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel(w))
+
+
+def towel_line(w: Workbench) -> None:
+    """Cord between two wall arms with towels pegged to it by their corners."""
+    width, metal, count = w.width(0.60, 1.10), w.look("metal"), w.whole(1, 3)
+    tall, out = w.length(0.55, 0.85), w.length(0.12, 0.25)
+    w.mount_height_m = 1.65 - tall
+    z = tall - 0.03
+    for side in BOTH:
+        y = side * (0.5 * width - 0.015)
+        w.box((0.0, 0.02), (y - 0.015, y + 0.015), (tall - 0.10, tall), metal)
+        w.rod((0.0, y, z), (out, y, z), 0.009, metal)
+    w.rod((out, -0.5 * width + 0.01, z), (out, 0.5 * width - 0.01, z), 0.004, w.look("linen"))
+    each = (width - 0.08) / count
+    low = w.whole(0, count - 1)
+    for i in range(count):
+        y, drop = -0.5 * width + 0.04 + (i + 0.5) * each, z if i == low else w.length(0.45, 0.95) * z
+        wide = min(each - 0.03, w.length(0.3, 0.7))
+        w.mesh(drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), _towel(w))
+        for side in BOTH:
+            c = y + side * (0.5 * wide - 0.02)
+            w.box((out - 0.012, out + 0.03), (c - 0.006, c + 0.006), (z - 0.04, z + 0.03), w.look("wood"), solid=False)
+
+
+def towel_tiers(w: Workbench) -> None:
+    """Two or three bars in front of each other and stepped in height between two side plates."""
+    width, metal, count = w.width(0.45, 0.75), shared.fittings(w), w.whole(2, 3)
+    tall, step = w.length(0.55, 0.80), w.length(0.06, 0.14)
+    w.mount_height_m = 1.35 - tall
+    top, last = tall - 0.015, 0.06 + 0.075 * (count - 1)
+    for side in BOTH:
+        y = side * (0.5 * width - 0.008)
+        w.box((0.0, 0.02), (y - 0.008, y + 0.008), (top - step * count, tall), metal)
+        for i in range(count):
+            z = top - i * step
+            w.rod((0.0, y, z), (0.06 + 0.075 * i, y, z), 0.008, metal)
+    for i in range(count):
+        x, z = 0.06 + 0.075 * i, top - i * step
+        w.rod((x, -0.5 * width, z), (x, 0.5 * width, z), 0.008, metal)
+        wide = w.length(0.35, 0.85) * width
+        drop = z if i == count - 1 else w.length(0.5, 0.95) * z
+        shift = w.length(-0.5, 0.5) * (width - wide - 0.04)
+        shared.over(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel(w))
+    w.box((0.0, last), (-0.5 * width, -0.5 * width + 0.01), (top - 0.01, top + 0.01), metal)
+
+
+def towel_airer(w: Workbench) -> None:
+    """Folding drying rack with crossed legs, a bed of wires and perhaps wings, towels hung over the wires."""
+    width, high, metal = w.width(0.55, 0.95), w.length(0.85, 1.05), w.look(w.choice(("plastic", "steel", "ceramic")))
+    y, half, spread = 0.5 * width, w.length(0.24, 0.32), w.length(0.22, 0.30)
+    for side in BOTH:
+        for way in BOTH:
+            w.rod((-way * spread, side * (y - 0.02), 0.0), (way * half, side * (y - 0.02), high), 0.011, metal)
+    for way in BOTH:
+        w.rod((way * spread, -y, 0.012), (way * spread, y, 0.012), 0.011, metal)
+        w.rod((way * half, -y, high), (way * half, y, high), 0.011, metal)
+    for side in BOTH:
+        w.rod((-half, side * (y - 0.02), high), (half, side * (y - 0.02), high), 0.010, metal)
+    wires = [(-half + (i + 1) * 2 * half / 6, high) for i in range(5)]
+    lift = w.length(0.0, 0.22)
+    if w.chance(0.6):
+        for way in BOTH:
+            end = (way * (half + 0.32), high + lift)
+            for side in BOTH:
+                w.rod((way * half, side * (y - 0.03), high), (end[0], side * (y - 0.03), end[1]), 0.009, metal)
+            w.rod((end[0], -y, end[1]), (end[0], y, end[1]), 0.009, metal)
+            wires.append((way * (half + 0.16), high + 0.5 * lift))
+            wires.append(end)
+    for x, z in wires:
+        w.rod((x, -y + 0.02, z), (x, y - 0.02, z), 0.004, metal)
+    for i in w.rng.permutation(len(wires))[: w.whole(2, 4)]:
+        x, z = wires[int(i)]
+        wide = w.length(0.4, 0.9) * width
+        shared.over(
+            w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), _towel(w)
+        )
+
+
+def towel_cart(w: Workbench) -> None:
+    """Narrow open shelf or trolley on feet or castors with folded towels on every tier."""
+    width, depth, high = w.width(0.35, 0.60), w.depth(0.28, 0.40), w.length(0.65, 1.30)
+    frame, tiers = w.look(w.choice(("wood", "metal", "lacquer", "steel"))), w.whole(2, 4)
+    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    wheels = w.chance(0.4)
+    low = 0.06 if wheels else 0.0
+    w.legs(x, y, (low, high), 0.022, frame)
+    if wheels:
+        for sx in BOTH:
+            for sy in BOTH:
+                cx, cy = sx * (0.5 * depth - 0.012), sy * (0.5 * width - 0.02)
+                w.rod((cx, cy - 0.01, 0.03), (cx, cy + 0.01, 0.03), 0.03, w.look("dark"))
+    for i in range(tiers):
+        z = 0.14 + i * (high - 0.18 - 0.14) / (tiers - 1)
+        w.box(x, y, (z - 0.015, z), frame)
+        room = (high - 0.32) / (tiers - 1) if i < tiers - 1 else 0.25
+        stacks = 2 if width > 0.48 and w.chance(0.6) else 1
+        for k in range(stacks):
+            c, base = (k - 0.5 * (stacks - 1)) * 0.5 * width, z
+            for _ in range(w.whole(1, 3)):
+                thick = w.length(0.05, 0.08)
+                if base + thick > z + room - 0.02:
+                    break
+                size = (depth - w.length(0.04, 0.08), width * (0.80 if stacks == 1 else 0.42), thick)
+                w.mesh(chamfered_box(size, 0.022), (0.0, c, base + 0.5 * thick), _towel(w))
+                base += thick - 0.003
+    w.rod((x[1] - 0.01, y[0], high - 0.012), (x[1] - 0.01, y[1], high - 0.012), 0.01, frame)
+    w.rod((x[0] + 0.01, y[0], high - 0.012), (x[0] + 0.01, y[1], high - 0.012), 0.01, frame)
+
+
+def towel_dropped(w: Workbench) -> None:
+    """Towels thrown on the floor: one or two rumpled sheets across each other, perhaps a flat folded one below."""
+    z = 0.0
+    if w.chance(0.4):
+        w.mesh(
+            chamfered_box((w.length(0.4, 0.6), 0.34, 0.04), 0.015), (0.0, 0.0, 0.02), _towel(w), turn=w.length(0.0, 1.5)
+        )
+        z = 0.03
+    for i in range(w.whole(1, 3)):
+        shape = shared.crumpled(w, w.length(0.35, 0.85), w.length(0.3, 0.55), w.length(0.06, 0.22))
+        at = (w.length(-0.1, 0.1), w.length(-0.1, 0.1), z)
+        w.mesh(shape, at, _towel(w), turn=w.length(0.0, 3.0), solid=i == 0)
+        z += 0.02
+
+
+def towel_tray(w: Workbench) -> None:
+    """Towels set upright side by side in a low box or wire basket, or laid folded on a tray with a flannel."""
+    wide, deep, rim = w.length(0.26, 0.42), w.length(0.20, 0.28), w.length(0.06, 0.14)
+    box = w.look(w.choice(("wicker", "wood", "metal", "plastic")))
+    x, y = (-0.5 * deep, 0.5 * deep), (-0.5 * wide, 0.5 * wide)
+    parts.basin(w, x, y, rim, rim, 0.012, box)
+    upright = w.chance(0.6)
+    if upright:
+        count = w.whole(3, 5)
+        each = (wide - 0.03) / count
+        for i in range(count):
+            c, tall = y[0] + 0.015 + (i + 0.5) * each, w.length(0.15, 0.24)
+            size = (deep - 0.03, each - 0.003, tall)
+            w.mesh(chamfered_box(size, 0.025), (0.0, c, 0.012 + 0.5 * tall), _towel(w))
+        return
+    z = 0.012
+    for i in range(w.whole(2, 4)):
+        thick, s = w.length(0.04, 0.07), 1.0 - 0.1 * i
+        w.mesh(
+            chamfered_box((s * (deep - 0.03), s * (wide - 0.03), thick), 0.02), (0.0, 0.0, z + 0.5 * thick), _towel(w)
+        )
+        z += thick - 0.004
+
+
+STYLES: tuple[Style, ...] = (
+    Style("towel", "hotel_rack", "wide", hotel_rack, ("rail",), "wall"),
+    Style("towel", "hanging_rungs", "wide", hanging_rungs, ("rail",), "wall"),
+    Style("towel", "panel_radiator", "wide", panel_radiator, ("rail",), "wall"),
+    Style("towel", "line", "wide", towel_line, ("rail",), "wall"),
+    Style("towel", "tiers", "wide", towel_tiers, ("rail",), "wall"),
+    Style("towel", "airer", "wide", towel_airer, ("floor",)),
+    Style("towel", "cart", "wide", towel_cart, ("floor",)),
+    Style("towel", "dropped", "wide", towel_dropped, ("floor",)),
+    Style("towel", "tray", "wide", towel_tray, ("top",), "top"),
+)

@@ -1,0 +1,186 @@
+"""The recipes of the shipped houses: which seed, pool, shape and size each one has; and the version of them all.
+
+Val and test houses draw from the held-out pool and are shipped as files; train houses draw from the train pool and are
+shipped as a list (`sim.housegen.recipes`). Seeds of the splits lie apart, so that no two houses share one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from sim.housegen.rooms import PLAN_AREA_M2, PlanKind
+
+if TYPE_CHECKING:  # whoever only loads a house needs no furniture
+    from sim.housegen.furniture.item import Pool
+    from sim.housegen.generator import GeneratedHouse, HouseConfig
+
+SPLIT_VERSION = "1.0.0"
+"""Of all shipped splits; results name it beside a hash over houses and episodes. What raises it:
+
+- the last number: a house or an episode changed, and what an agent can do stays the same (a colour, a file's layout);
+- the middle one: houses or episodes changed so that results can no longer be compared;
+- the first: the format changed, so that older code cannot read the files.
+
+Whoever changes the generator regenerates the splits and raises this number in one commit; the hash tells apart what
+was forgotten."""
+TRAIN_HOUSES = 200
+MAX_TRAIN_SEEDS = 1_000
+"""Seeds below this are train's; a seed that gives no house is left out, the next one comes in."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How one shipped house is made."""
+
+    name: str
+    seed: int
+    pool: Pool
+    kind: PlanKind
+    area_m2: float
+    rooms: tuple[str, ...] = ()
+    movable: bool = False
+    """Its light furniture can be pushed."""
+
+    def make(self) -> GeneratedHouse:
+        """The house; the same bytes of XML every time.
+
+        Raises:
+            HouseError: no try within the bound gave a house without a fault.
+        """
+        from sim.housegen.generator import generate_house
+
+        return generate_house(self.seed, self.config())
+
+    def config(self) -> HouseConfig:
+        """What is asked of the generator."""
+        from sim.housegen.generator import HouseConfig
+
+        return HouseConfig(
+            pool=self.pool, kind=self.kind, area_m2=self.area_m2, rooms=self.rooms, name=self.name, movable=self.movable
+        )
+
+    def to_json(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return asdict(self) | {"rooms": list(self.rooms)}
+
+    @classmethod
+    def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
+        """The recipe that `to_json` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: it did not.
+        """
+        return cls(
+            name=str(entry["name"]),
+            seed=int(entry["seed"]),
+            pool=entry["pool"],
+            kind=entry["kind"],
+            area_m2=float(entry["area_m2"]),
+            rooms=tuple(entry["rooms"]),
+            movable=bool(entry["movable"]),
+        )
+
+
+def _is_movable(number: int) -> bool:
+    """Every third house of a split has furniture that can be pushed."""
+    return number % 3 == 1
+
+
+_Shape = tuple[PlanKind, float, tuple[str, ...]]
+"""Plan kind, area in square metres, and the rooms it must have beside the usual ones."""
+
+_VAL: tuple[_Shape, ...] = (
+    ("flat", 95.0, ("gym",)),
+    ("corridor", 140.0, ("office",)),
+    ("lshape", 130.0, ("gym", "laundry")),
+    ("openplan", 130.0, ()),
+    ("studio", 55.0, ()),
+    ("large", 270.0, ("gym", "laundry", "office")),
+    ("flat", 115.0, ("office",)),
+    ("openplan", 150.0, ("gym", "closet")),
+    ("lshape", 190.0, ("laundry",)),
+    ("corridor", 260.0, ("gym",)),
+    ("large", 320.0, ("office", "laundry")),
+    ("flat", 75.0, ()),
+    ("corridor", 150.0, ("office", "gym")),
+    ("openplan", 220.0, ("laundry",)),
+    ("large", 400.0, ("gym", "office", "laundry", "closet")),
+    ("lshape", 120.0, ("gym",)),
+    ("flat", 128.0, ("gym",)),
+    ("large", 290.0, ("gym",)),
+    ("openplan", 100.0, ("office",)),
+    ("corridor", 210.0, ("laundry",)),
+)
+
+_TEST: tuple[_Shape, ...] = (
+    ("lshape", 110.0, ("gym",)),
+    ("flat", 125.0, ("office",)),
+    ("corridor", 155.0, ("gym",)),
+    ("large", 300.0, ("gym", "office")),
+    ("openplan", 145.0, ("laundry",)),
+    ("flat", 65.0, ()),
+    ("corridor", 265.0, ("office", "gym")),
+    ("studio", 50.0, ()),
+    ("lshape", 200.0, ("gym", "office")),
+    ("openplan", 185.0, ("closet",)),
+    ("large", 360.0, ("gym", "laundry", "office")),
+    ("flat", 90.0, ("gym",)),
+    ("lshape", 140.0, ("laundry",)),
+    ("corridor", 120.0, ()),
+    ("openplan", 255.0, ("gym", "laundry")),
+    ("flat", 130.0, ("gym", "office")),
+    ("large", 390.0, ("gym", "laundry", "closet")),
+    ("corridor", 268.0, ("laundry",)),
+    ("lshape", 135.0, ("office",)),
+    ("openplan", 80.0, ()),
+)
+
+
+def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
+    """The recipes of a split of held-out houses."""
+    return tuple(
+        Recipe(f"{split}_{n:02d}", first_seed + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
+        for n, (kind, area_m2, rooms) in enumerate(shapes)
+    )
+
+
+_TRAIN_SMALL: tuple[PlanKind, ...] = ("flat", "lshape", "openplan", "corridor", "flat", "studio", "corridor")
+_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "large", "large", "large")
+_TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
+    ("gym",),
+    ("office",),
+    (),
+    ("gym", "laundry"),
+    ("office", "gym"),
+    ("laundry",),
+    ("gym", "closet"),
+    ("office", "laundry"),
+    ("gym",),
+)
+_SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
+"""Areas of small and of large train houses, as far as their shape allows."""
+_ROOMY_M2 = 110.0
+"""In a smaller home a gym or an office would take the bedroom's place."""
+_GOLDEN = 0.6180339887
+"""Multiples of it, without their whole part, fill an interval evenly however many there are (Kronecker)."""
+
+
+def train_recipe(seed: int) -> Recipe:
+    """The train house of a seed; every fourth is above 250 m2."""
+    large = seed % 4 == 2
+    kinds, (smallest, largest) = (_TRAIN_LARGE, _LARGE_M2) if large else (_TRAIN_SMALL, _SMALL_M2)
+    kind = kinds[(seed // 4 if large else seed) % len(kinds)]
+    low, high = max(smallest, PLAN_AREA_M2[kind][0]), min(largest, PLAN_AREA_M2[kind][1])
+    area_m2 = round(low + (high - low) * (seed * _GOLDEN % 1.0), 0)
+    rooms = _TRAIN_ROOMS[seed % len(_TRAIN_ROOMS)] if area_m2 >= _ROOMY_M2 else ()
+    return Recipe(f"train_{seed:03d}", seed, "train", kind, area_m2, rooms, movable=_is_movable(seed))
+
+
+SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
+    {"val": _heldout("val", 10_000, _VAL), "test": _heldout("test", 20_000, _TEST)}
+)
+"""Recipes of the houses shipped as files, by split, in the order in which episodes go round the houses; a quarter of
+each is above 250 m2."""

@@ -1,0 +1,36 @@
+"""A trap: a scene, where to start in it, what to look for, and why it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from sim.geometry.pose import Pose
+from sim.housegen.traps.site import TrapSite
+from sim.houses.sidecar import Sidecar
+
+START_TURNS_RAD = (0.0, 1.8, -2.3)
+"""Start headings of the episodes of a trap, from the sidecar's: towards the goal, to its left, behind its right."""
+
+
+@dataclass(frozen=True)
+class Trap:
+    """One scene and its sidecar."""
+
+    site: TrapSite
+    sidecar: Sidecar
+
+    @property
+    def start(self) -> Pose:
+        """The sidecar's start, which every trap has."""
+        assert self.sidecar.start is not None
+        return self.sidecar.start
+
+    @property
+    def goal(self) -> str:
+        """The sidecar's goal, which every trap has."""
+        assert self.sidecar.goal is not None
+        return self.sidecar.goal
+
+
+TrapMaker = Callable[[], Trap]

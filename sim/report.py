@@ -1,0 +1,69 @@
+"""The report of a run, or of two side by side, as one HTML page.
+
+    python -m sim.report runs/mine                 # writes runs/mine/report.html
+    python -m sim.report runs/before runs/after    # writes runs/after/report_against_before.html
+
+A run made with `--record` gets a picture of each episode. Nothing is played again; the page needs no network.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import tyro
+
+from sim import cli
+from sim.analysis import display
+from sim.analysis.comparison import read_run
+from sim.analysis.report.build import build_page
+from sim.interface import ConfigError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Write the report of a run, or of two runs of the same episodes, as one HTML page."""
+
+    run: tyro.conf.Positional[Path]
+    """Folder of a run."""
+    other: tyro.conf.Positional[Path | None] = None
+    """Folder of another run of the same episodes, to be compared with the first."""
+    out: Path | None = None
+    """The page (RUN/report.html, or OTHER/report_against_RUN.html)."""
+
+
+def main(args: Args) -> int:
+    """Read, draw, write; returns the exit status."""
+    runs = [read_run(args.run), *([read_run(args.other)] if args.other is not None else [])]
+    out = args.out or _default_out(args)
+    if out.is_dir():
+        raise ConfigError(f"--out '{out}' is a folder; name the page, for example {out / 'report.html'}.")
+    paths = [str(path) for path in (args.run, args.other) if path is not None]
+    console = display.make_console()
+    console.print(
+        f"{max(len(run.lines) for run in runs)} episodes; a house takes a second, a goal in it a fraction of one."
+    )
+    page = build_page(runs, out_folder=out.parent, command=shlex.join(["python", "-m", "sim.report", *paths]))
+    part = out.with_name(f"{out.name}.part-{os.getpid()}")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        part.write_text(page, encoding="utf-8")
+        part.replace(out)
+    except OSError as error:
+        raise ConfigError(f"Cannot write the report '{out}': {error.strerror}.") from None
+    told = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
+    console.print(told, highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def _default_out(args: Args) -> Path:
+    if args.other is None:
+        return args.run / "report.html"
+    return args.other / f"report_against_{args.run.resolve().name}.html"
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))

@@ -1,0 +1,332 @@
+"""Where STOP succeeds: near a point of the goal's footprint that is in free line of sight (contract, section 2).
+
+One function, `GoalRegion.satisfied`, decides both the mask of places that the distances are measured to and the test
+at STOP. It looks at the boundary of a footprint only: a line to a point inside one crosses the boundary first, at a
+point that is nearer and in sight too. A robot inside the footprint (under a table) has its goal right there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import KDTree
+
+from sim.geometry.convex import ConvexPolygon, lines_blocked, plan_polygon
+from sim.gl import mujoco
+from sim.houses.geoms import geom_polytope, geoms_between, mesh_is_convex, mesh_triangles
+from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
+from sim.interface import MPCAT40_ID, SUCCESS_DISTANCE_M, CameraModel
+from sim.world.freespace import SAME_STOREY_M, FreeSpace
+
+SIGHT_HEIGHT_M = CameraModel().height_m
+"""Height above the floor at which the line of sight runs."""
+SIGHT_BLOCKERS = ("wall", "door", "window")
+SAMPLE_M = 0.025
+"""Largest gap between neighbouring sample points on a footprint's boundary."""
+FLOOR_CONTACT_M = 0.1
+"""How far a thing may sink into the floor it stands on."""
+_PIXEL_M = 0.005
+_BORDER_PX = 2
+
+
+class _Floor(NamedTuple):
+    """A piece of floor: the height of its top and where it lies."""
+
+    top_m: float
+    plan: ConvexPolygon | None
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """The union of the plan projections of an instance's rendered geoms."""
+
+    instance: Instance
+    parts: tuple[ConvexPolygon, ...]
+    """Convex pieces whose union it is."""
+    boundary_m: KDTree
+    """Points (n, 2) on its boundary, `SAMPLE_M` apart or nearer."""
+    bounds_m: tuple[float, float, float, float]
+    z_m: tuple[float, float]
+    """Its lowest and highest point."""
+    floor_z_m: float
+    """Height of the floor it stands on, hangs over or lies on."""
+
+    def near(self, xy_m: NDArray[np.float64], reach_m: float) -> NDArray[np.bool_]:
+        """(n,) which places (n, 2) are within reach of the bounding box."""
+        x0, y0, x1, y1 = self.bounds_m
+        return np.all((xy_m >= (x0 - reach_m, y0 - reach_m)) & (xy_m <= (x1 + reach_m, y1 + reach_m)), axis=1)
+
+    def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(n,) which places (n, 2) are in it."""
+        inside = np.zeros(len(xy_m), dtype=np.bool_)
+        candidates = np.flatnonzero(self.near(xy_m, 0.0))
+        for part in self.parts if candidates.size else ():
+            inside[candidates] |= part.contains(xy_m[candidates])
+        return inside
+
+
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """What does not hang on the goal: the floors of the house, and what hides things on one storey."""
+
+    floors: tuple[_Floor, ...]
+    blockers: tuple[ConvexPolygon, ...]
+
+    @classmethod
+    def of(
+        cls,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        labels: Labels,
+        *,
+        floor_z_m: float = 0.0,
+        sight_height_m: float = SIGHT_HEIGHT_M,
+    ) -> Surroundings:
+        """The surroundings of one storey; kinematics of `data` must be computed."""
+        blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
+        return cls(_floors(model, data, labels), blockers)
+
+
+class GoalRegion:
+    """All places of one storey at which a STOP for one goal category succeeds, for things where they now stand."""
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        data: mujoco.MjData,
+        labels: Labels,
+        goal: str,
+        *,
+        floor_z_m: float = 0.0,
+        surroundings: Surroundings | None = None,
+        reach_m: float = SUCCESS_DISTANCE_M,
+    ) -> None:
+        """Gather the footprints of a category; kinematics of `data` must be computed."""
+        self.goal = goal
+        self.reach_m = reach_m
+        around = surroundings or Surroundings.of(model, data, labels, floor_z_m=floor_z_m)
+        self._blockers = around.blockers
+        everywhere = [footprint_of(model, data, instance, around.floors) for instance in labels.of_category(goal)]
+        self.exists = any(footprint is not None for footprint in everywhere)
+        """Whether some storey of the house has an instance."""
+        self.footprints = tuple(
+            footprint
+            for footprint in everywhere
+            if footprint is not None and abs(footprint.floor_z_m - floor_z_m) < SAME_STOREY_M
+        )
+
+    def succeeds(self, x_m: float, y_m: float) -> bool:
+        """Whether a STOP at this place of the storey succeeds."""
+        return bool(self.satisfied(np.array([[x_m, y_m]], dtype=np.float64))[0])
+
+    def nearest_m(self, x_m: float, y_m: float) -> float | None:
+        """Metres in plan from a place to the nearest footprint, walls ignored; None where the storey has none."""
+        here = np.array([[x_m, y_m]], dtype=np.float64)
+        distances = [
+            0.0 if footprint.contains(here)[0] else float(footprint.boundary_m.query(here)[0][0])
+            for footprint in self.footprints
+        ]
+        return min(distances, default=None)
+
+    def satisfied(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(n,) at which of the places (n, 2) a STOP succeeds."""
+        satisfied = np.zeros(len(xy_m), dtype=np.bool_)
+        for footprint in self.footprints:
+            near = np.flatnonzero(~satisfied & footprint.near(xy_m, self.reach_m))
+            if near.size:
+                satisfied[near] = self.reaches(footprint, xy_m[near])
+        return satisfied
+
+    def mask(self, space: FreeSpace) -> NDArray[np.bool_]:
+        """(rows, cols) of a free space: the free cells at whose centre a STOP succeeds."""
+        candidates = np.zeros(space.frame.shape, dtype=np.bool_)
+        for footprint in self.footprints:
+            candidates[space.frame.window(footprint.bounds_m, self.reach_m)] = True
+        cells = np.argwhere(candidates & space.free)
+        mask = np.zeros(space.frame.shape, dtype=np.bool_)
+        mask[tuple(cells.T)] = self.satisfied(space.frame.to_metres(cells))
+        return mask
+
+    def reaches(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(n,) from which places some point of the footprint is within reach and in sight."""
+        x0, y0, x1, y1 = footprint.bounds_m
+        r = self.reach_m
+        blockers = [b for b in self._blockers if _overlap(b.bounds_m, (x0 - r, y0 - r, x1 + r, y1 + r))]
+        points = footprint.boundary_m.data
+        distance, nearest = footprint.boundary_m.query(xy_m, distance_upper_bound=r * (1.0 + 1e-12))
+        reached = footprint.contains(xy_m)
+        within = np.flatnonzero(~reached & np.isfinite(distance))
+        reached[within] = ~lines_blocked(xy_m[within], points[nearest[within]], blockers)
+        for hidden in _chunks(_not_shadowed(within[~reached[within]], xy_m, footprint.bounds_m, blockers)):
+            place, point = np.nonzero(_distances(xy_m[hidden], points) <= r)
+            seen = ~lines_blocked(xy_m[hidden][place], points[point], blockers)
+            reached[hidden[place[seen]]] = True
+        return reached
+
+
+def footprint_of(
+    model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[_Floor] = ()
+) -> Footprint | None:
+    """The footprint of an instance where it stands; None when nothing of it is rendered."""
+    rendered = rendered_geoms(model)
+    geoms = [geom for geom in instance.geom_ids if rendered[geom]]
+    parts = tuple(part for geom in geoms for part in _rendered_parts(model, data, geom))
+    if not parts:
+        return None
+    bounds = np.array([part.bounds_m for part in parts])
+    low, high = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
+    z = np.concatenate([geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2] for geom in geoms])
+    z_m = (float(z.min()), float(z.max()))
+    floor_z_m = _floor_under(floors, 0.5 * (low + high), z_m[0])
+    boundary = KDTree(_boundary_points(parts, low, high))
+    return Footprint(instance, parts, boundary, (*low.tolist(), *high.tolist()), z_m, floor_z_m)
+
+
+def sight_blockers(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, height_m: float
+) -> tuple[ConvexPolygon, ...]:
+    """Cross sections, at a height, of the rendered geoms that one cannot see through."""
+    opaque = np.isin(labels.geom_category, [MPCAT40_ID[name] for name in SIGHT_BLOCKERS]) & rendered_geoms(model)
+    sections: list[ConvexPolygon | None] = []
+    for geom in geoms_between(model, data, np.flatnonzero(opaque), height_m, height_m).tolist():
+        if _is_hollow(model, geom):
+            sections += _mesh_section(mesh_triangles(model, data, geom), height_m)
+        else:
+            body = geom_polytope(model, data, geom, rendered=True)
+            sections.append(plan_polygon(body, height_m, height_m))
+    return tuple(section for section in sections if section is not None)
+
+
+def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
+    """Convex pieces of a rendered geom's plan projection: the geom's own, or a hollow mesh's triangles."""
+    whole = plan_polygon(geom_polytope(model, data, geom, rendered=True))
+    if whole is None or not _is_hollow(model, geom):
+        return [whole] if whole is not None else []
+    corners = mesh_triangles(model, data, geom)[..., :2]
+    low = np.array(whole.bounds_m[:2])
+    drawn = _raster([whole.vertices_m], low, whole.bounds_m[2:])
+    missing = drawn & ~_raster(corners, low, whole.bounds_m[2:])
+    if not _eroded(missing, 1).any():
+        return [whole]
+    parts = (ConvexPolygon.of_corners(corner) for corner in corners)
+    return [part for part in parts if part is not None]
+
+
+def _is_hollow(model: mujoco.MjModel, geom: int) -> bool:
+    """Whether a geom shows less than its convex hull."""
+    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
+
+
+def _mesh_section(triangles_m: NDArray[np.float64], height_m: float) -> list[ConvexPolygon | None]:
+    """Thin strips along the lines in which a mesh's triangles (n, 3, 3) meet a horizontal plane."""
+    z = triangles_m[..., 2] - height_m
+    sections = []
+    for corners, above in zip(triangles_m, z >= 0.0, strict=True):
+        if above.all() or not above.any():
+            continue
+        ends = []
+        for a, b in ((0, 1), (1, 2), (2, 0)):
+            if above[a] != above[b]:
+                t = (height_m - corners[a, 2]) / (corners[b, 2] - corners[a, 2])
+                ends.append(corners[a, :2] + t * (corners[b, :2] - corners[a, :2]))
+        along = ends[1] - ends[0]
+        length = float(np.hypot(*along))
+        if length > 1e-6:
+            across = np.array([-along[1], along[0]]) * (0.001 / length)
+            sections.append(ConvexPolygon.around(np.array([e + s * across for e in ends for s in (-1.0, 1.0)])))
+    return sections
+
+
+def _floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> tuple[_Floor, ...]:
+    """All that carries wheels, on any storey."""
+    geoms = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
+    bodies = [geom_polytope(model, data, geom) for geom in geoms.tolist()]
+    return tuple(_Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies)
+
+
+def _floor_under(floors: Sequence[_Floor], xy_m: NDArray[np.float64], bottom_m: float) -> float:
+    """Height of the highest floor under a place and not above `bottom_m`, else of the highest floor below that."""
+    below = [floor for floor in floors if floor.top_m <= bottom_m + FLOOR_CONTACT_M]
+    under = [floor for floor in below if floor.plan is not None and floor.plan.contains(xy_m[None])[0]]
+    return max((floor.top_m for floor in under or below), default=0.0)
+
+
+def _boundary_points(
+    parts: Sequence[ConvexPolygon], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(n, 2) corners and points `SAMPLE_M` apart on the parts' edges, without those well inside the union."""
+    points = np.concatenate([_edge_points(part) for part in parts])
+    if len(parts) == 1:
+        return points
+    pixels = np.round((points - low) / _PIXEL_M).astype(np.int64) + _BORDER_PX
+    inner = _eroded(_raster([part.vertices_m for part in parts], low, high), _BORDER_PX)
+    points = points[~inner[pixels[:, 1], pixels[:, 0]]]
+    return points[np.unique(np.round(points / 0.001).astype(np.int64), axis=0, return_index=True)[1]]
+
+
+def _edge_points(part: ConvexPolygon) -> NDArray[np.float64]:
+    """(n, 2) the corners of a polygon and points between them."""
+    ahead = np.roll(part.vertices_m, -1, axis=0)
+    points = []
+    for start, end in zip(part.vertices_m, ahead, strict=True):
+        count = max(1, int(np.ceil(np.hypot(*(end - start)) / SAMPLE_M)))
+        points.append(start + (np.arange(count) / count)[:, None] * (end - start))
+    return np.concatenate(points)
+
+
+def _raster(
+    polygons: Sequence[NDArray[np.float64]] | NDArray[np.float64], low: NDArray[np.float64], high: ArrayLike
+) -> NDArray[np.bool_]:
+    """Convex polygons (k, 2) drawn on pixels of `_PIXEL_M` with a border around them."""
+    size = np.ceil((np.asarray(high) - low) / _PIXEL_M).astype(int) + 1 + 2 * _BORDER_PX
+    image = np.zeros((size[1], size[0]), dtype=np.uint8)
+    for polygon in polygons:
+        pixels = np.round((polygon - low) / _PIXEL_M).astype(np.int32) + _BORDER_PX
+        cv2.fillConvexPoly(image, pixels, 1)
+    return image.astype(np.bool_)
+
+
+def _eroded(image: NDArray[np.bool_], radius_px: int) -> NDArray[np.bool_]:
+    kernel = np.ones((2 * radius_px + 1, 2 * radius_px + 1), dtype=np.uint8)
+    return cv2.erode(image.astype(np.uint8), kernel, borderValue=0).astype(np.bool_)
+
+
+def _not_shadowed(
+    places: NDArray[np.int64],
+    xy_m: NDArray[np.float64],
+    bounds_m: tuple[float, float, float, float],
+    blockers: Sequence[ConvexPolygon],
+) -> NDArray[np.int64]:
+    """Those of the places, indices of points (n, 2), from which no single blocker hides a whole rectangle.
+
+    What a convex thing hides from one place is convex, so a rectangle is hidden when its four corners are.
+    """
+    x0, y0, x1, y1 = bounds_m
+    for blocker in blockers:
+        shadowed = np.ones(len(places), dtype=np.bool_)
+        for corner in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
+            lit = np.flatnonzero(shadowed)
+            ends = np.broadcast_to(np.array(corner), (len(lit), 2))
+            shadowed[lit] = lines_blocked(xy_m[places[lit]], ends, (blocker,))
+        places = places[~shadowed]
+    return places
+
+
+def _overlap(a: Sequence[float], b: Sequence[float]) -> bool:
+    return a[0] <= b[2] and a[2] >= b[0] and a[1] <= b[3] and a[3] >= b[1]
+
+
+def _distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, m) metres between points (n, 2) and (m, 2)."""
+    return np.hypot(a[:, None, 0] - b[None, :, 0], a[:, None, 1] - b[None, :, 1])
+
+
+def _chunks(indices: NDArray[np.int64], size: int = 2048) -> Iterator[NDArray[np.int64]]:
+    """The indices in pieces that keep the tables of all pairs in the cache."""
+    for start in range(0, len(indices), size):
+        yield indices[start : start + size]

@@ -1,0 +1,209 @@
+"""What the world knows of one episode, step by step: kept while it runs, written with `--record`, read back.
+
+A file `trajectories/<episode_id>.npz` holds the arrays of a `Trajectory` and, as JSON in `about`, what names the
+episode (agent, semantics, seed, house, goal, start, versions) and its scores. No pickle; 500 steps are about 10 KB.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import urllib.parse
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.pose import Pose
+from sim.interface import Action, ConfigError
+from sim.robot.drive import Ended, Motion
+
+FORMAT = 1
+"""Raised when the arrays of a file change their meaning."""
+FOLDER = "trajectories"
+ENDED: tuple[str, ...] = get_args(Ended)
+"""What the numbers of `Trajectory.ended` mean."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trajectory:
+    """An episode of n actions; index i of the poses, shares and distances is the moment before action i."""
+
+    poses: NDArray[np.float32]  # (n + 1, 4)
+    """x, y, yaw and height of the floor in the world; metres and radians."""
+    actions: NDArray[np.uint8]  # (n,)
+    """Numbers of `sim.interface.Action`."""
+    ended: NDArray[np.uint8]  # (n,)
+    """Why each motion ended: index into `ENDED`."""
+    collided: NDArray[np.bool_]  # (n,)
+    """A contact of the body stopped the motion."""
+    touched: NDArray[np.bool_]  # (n,)
+    """The body touched something, whether that stopped it or not."""
+    goal_share: NDArray[np.float32]  # (n + 1,)
+    """Share of the frame that the goal's true mask covers, in [0, 1]; nan: no frame was looked at."""
+    distance_m: NDArray[np.float32]  # (n + 1,)
+    """Geodesic distance to the nearest place where a STOP succeeds; nan: no way."""
+    contacts: NDArray[np.float32]  # (m, 3)
+    """What stopped a motion: number of the action, x and y of the contact in the world, metres."""
+    goal_on_storey: bool
+    """Whether an instance stands on the storey of the start."""
+    nearest_instance_m: float | None
+    """Metres in plan from where the episode ended to the nearest instance, walls ignored; None: storey has none."""
+    success: bool
+    end_reason: str | None
+    """`stop`, `max_steps`, `error`; None: the episode still runs."""
+    about: Mapping[str, Any] = field(default_factory=dict)
+    """What names the episode, and its scores; JSON's types."""
+
+    @property
+    def num_steps(self) -> int:
+        """Actions, STOP included."""
+        return len(self.actions)
+
+    @property
+    def positions_m(self) -> NDArray[np.float32]:
+        """(n + 1, 2) x and y of the robot's centre."""
+        return self.poses[:, :2]
+
+    @property
+    def moved_m(self) -> NDArray[np.float64]:
+        """(n,) displacement of each action in plan."""
+        return np.hypot(*np.diff(self.positions_m.astype(np.float64), axis=0).T)
+
+
+_ARRAYS: Mapping[str, tuple[type, int, int]] = {
+    "poses": (np.float32, 2, 1),
+    "actions": (np.uint8, 1, 0),
+    "ended": (np.uint8, 1, 0),
+    "collided": (np.bool_, 1, 0),
+    "touched": (np.bool_, 1, 0),
+    "goal_share": (np.float32, 1, 1),
+    "distance_m": (np.float32, 1, 1),
+}
+"""Type, number of axes, and how many entries there are more than actions."""
+_SCALARS = ("goal_on_storey", "nearest_instance_m", "success", "end_reason")
+
+
+class Recorder:
+    """Collects a trajectory while an episode runs."""
+
+    def __init__(self, start: Pose, *, distance_m: float | None, goal_on_storey: bool) -> None:
+        self._goal_on_storey = goal_on_storey
+        self._poses = [(start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)]
+        self._shares = [np.nan]
+        self._distances_m = [_or_nan(distance_m)]
+        self._motions: list[Motion] = []
+
+    def look(self, goal_share: float) -> None:
+        """The share of the goal in the frame seen from where the robot stands."""
+        self._shares[-1] = goal_share
+
+    def move(self, motion: Motion, pose: Pose, distance_m: float | None) -> None:
+        """One action was carried out."""
+        self._motions.append(motion)
+        self._poses.append((pose.x_m, pose.y_m, pose.yaw_rad, pose.floor_z_m))
+        self._shares.append(np.nan)
+        self._distances_m.append(_or_nan(distance_m))
+
+    def trajectory(
+        self, *, success: bool = False, end_reason: str | None = None, nearest_instance_m: float | None = None
+    ) -> Trajectory:
+        """All of it so far."""
+        stops = [
+            (step, *contact.position_m[:2])
+            for step, motion in enumerate(self._motions)
+            for contact in motion.contacts
+            if contact.stopped
+        ]
+        return Trajectory(
+            poses=np.array(self._poses, np.float32),
+            actions=np.array([motion.action for motion in self._motions], np.uint8),
+            ended=np.array([ENDED.index(motion.ended) for motion in self._motions], np.uint8),
+            collided=np.array([motion.collided for motion in self._motions], np.bool_),
+            touched=np.array([bool(motion.contacts) for motion in self._motions], np.bool_),
+            goal_share=np.array(self._shares, np.float32),
+            distance_m=np.array(self._distances_m, np.float32),
+            contacts=np.array(stops, np.float32).reshape(-1, 3),
+            goal_on_storey=self._goal_on_storey,
+            nearest_instance_m=nearest_instance_m,
+            success=success,
+            end_reason=end_reason,
+        )
+
+
+def trajectory_file(run: Path, episode_id: str) -> Path:
+    """Where a run keeps the trajectory of an episode; what no file name may hold is written as %xx."""
+    return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.npz"
+
+
+def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any]) -> None:
+    """Write one file, whole or not at all.
+
+    Args:
+        file: where to; its folder is made.
+        trajectory: of one episode.
+        about: what names the episode and its scores, in JSON's types.
+
+    Raises:
+        ConfigError: nothing can be written there.
+    """
+    scalars = {name: getattr(trajectory, name) for name in _SCALARS}
+    text = json.dumps({"format": FORMAT, "scalars": scalars, "about": dict(about)}, allow_nan=False)
+    arrays = {name: getattr(trajectory, name) for name in (*_ARRAYS, "contacts")}
+    part = file.with_name(f"{file.name}.part-{os.getpid()}")
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with part.open("wb") as stream:
+            np.savez_compressed(stream, about=np.frombuffer(text.encode(), np.uint8), **arrays)
+        part.replace(file)
+    except OSError as error:
+        raise ConfigError(f"Cannot write the trajectory '{file}': {error.strerror}.") from None
+    finally:  # of a write that failed; a whole one is not called that any more
+        with contextlib.suppress(OSError):
+            part.unlink()
+
+
+def read_trajectory(file: Path) -> Trajectory:
+    """The trajectory in a file.
+
+    Raises:
+        ConfigError: there is no such file, or it holds something else.
+    """
+    if not file.is_file():
+        raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
+    try:
+        with np.load(file, allow_pickle=False) as content:
+            arrays = {name: content[name] for name in (*_ARRAYS, "contacts")}
+            head = json.loads(content["about"].tobytes())
+        if head["format"] != FORMAT:
+            raise ValueError(f"its format is {head['format']}, this program reads {FORMAT}")
+        scalars = {name: head["scalars"][name] for name in _SCALARS}
+        trajectory = Trajectory(**arrays, **scalars, about=head["about"])
+        _check(trajectory)
+    except KeyError as error:
+        raise ConfigError(f"'{file}' is no trajectory: it has no {error.args[0]!r}.") from None
+    except (OSError, ValueError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise ConfigError(f"'{file}' is no trajectory: {error}.") from None
+    return trajectory
+
+
+def _check(trajectory: Trajectory) -> None:
+    """Raise ValueError where arrays do not fit one another."""
+    for name, (kind, axes, more) in _ARRAYS.items():
+        array = getattr(trajectory, name)
+        if array.dtype != kind or array.ndim != axes or len(array) != trajectory.num_steps + more:
+            raise ValueError(f"{name} is {array.dtype} {array.shape} for {trajectory.num_steps} actions")
+    if trajectory.poses.shape[1:] != (4,) or trajectory.contacts.shape[1:] != (3,):
+        raise ValueError(f"poses are {trajectory.poses.shape}, contacts {trajectory.contacts.shape}")
+    if np.any(trajectory.actions >= len(Action)) or np.any(trajectory.ended >= len(ENDED)):
+        raise ValueError("an action or the end of one has a number that has no meaning")
+
+
+def _or_nan(value: float | None) -> float:
+    return np.nan if value is None else value

@@ -1,0 +1,3 @@
+"""Viewers of running episodes: video, window, Rerun log, terminal.
+
+Imports env and the rooms below it."""

@@ -1,0 +1,1 @@
+"""Explorers: where to look for the goal while there is no candidate."""

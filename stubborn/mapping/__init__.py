@@ -1,0 +1,1 @@
+"""From observations to map layers: obstacles, collision marks, object scores."""

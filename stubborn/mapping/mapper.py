@@ -1,0 +1,297 @@
+"""From images to map layers: depth points into obstacles, class scores into object layers (paper: Mapping Module).
+
+A pixel (u, v) with depth d lies d ahead of the camera, d (c_u - u) / f to its left and d (c_v - v) / f above it. The
+camera is level, so a column of the image is a vertical plane and the ground position of a pixel needs its depth and
+its column only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from stubborn.grid import PlanarPose, Window
+from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
+from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
+from stubborn.navmap import NavMap
+
+
+@dataclass(frozen=True, kw_only=True)
+class MappingConfig:
+    """Which depth points count as what."""
+
+    obstacle_min_height_m: float = 0.10
+    """Lower surfaces are floor: rugs, thresholds, slabs the robot drives under or over."""
+    obstacle_max_height_m: float | None = None
+    """Higher surfaces are overhead; None takes the robot's height (0.88 m)."""
+    score_max_height_m: float = 2.2
+    """Object layers take points up to here: pictures, towels and wall screens hang high."""
+    eye_level_halfwidth_m: float = 0.06
+    """Surfaces this near the camera's height can hide what is behind them."""
+    obstacle_stride_px: int = 2
+    """Every so many pixels of depth, each way, go into the obstacle layer."""
+    score_stride_px: int = 4
+    """Every so many pixels, each way, go into the object layers."""
+    rim_px: int = 3
+    """How far the edges of depth may lie from those of the scores, in pixels of the image, when depth is noisy."""
+    candidate_score: float = 0.5
+    """A cell with a higher target score is a candidate."""
+    candidate_gap_m: float = 0.15
+    """A candidate goes where a frame sees through it, and sees the target only farther than this behind it."""
+    occupancy: OccupancyConfig = field(default_factory=OccupancyConfig)
+    """When points of a noisy depth image count."""
+
+    def __post_init__(self) -> None:
+        if min(self.obstacle_stride_px, self.score_stride_px) < 1:
+            raise ConfigError(
+                f"MappingConfig strides must be >= 1 px, got {self.obstacle_stride_px} and {self.score_stride_px}."
+            )
+
+
+@dataclass(frozen=True)
+class GroundPoints:
+    """Depth pixels of one frame seen from above; a pixel without a distance is left out."""
+
+    valid: NDArray[np.bool_]
+    """(h, w) True where depth is a distance; the other fields hold these pixels only, in row-major order."""
+    rows: NDArray[np.int32]
+    """Row of each point on the window's grid."""
+    cols: NDArray[np.int32]
+    """Column of each point on the window's grid."""
+    height_m: NDArray[np.float32]
+    """Height of each point above the floor."""
+
+
+class Rays:
+    """The fixed part of the projection: where every `stride_px`-th pixel looks, from pixel `first_px` on, each way."""
+
+    def __init__(self, camera: CameraModel, first_px: int, stride_px: int, top_m: float = math.inf) -> None:
+        """Rows of the image that cannot see anything below `top_m` are left out."""
+        self.camera = camera
+        u_px = np.arange(first_px, camera.width_px, stride_px)
+        v_px = np.arange(first_px, camera.height_px, stride_px)
+        self.left = ((0.5 * camera.width_px - (u_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+        up = ((0.5 * camera.height_px - (v_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
+        lowest_m = camera.height_m + np.minimum(up * camera.min_depth_m, up * camera.max_depth_m)
+        skipped = int(np.count_nonzero(lowest_m > top_m))  # rows run from top to bottom
+        self.up = up[skipped:]
+        self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
+
+    def sample(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The pixels of a full-size depth image, (height_px, width_px) metres, that are looked at; a new array."""
+        return np.ascontiguousarray(depth[self.pick])
+
+    def project(
+        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: PlanarPose, window: Window
+    ) -> GroundPoints:
+        """Cells of `window` and heights of the confirmed points of a sampled depth image.
+
+        The window must hold everything within sight: see `sight_window_cells`.
+        """
+        valid = confirmed & (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
+        cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
+        frame = window.frame
+        x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
+        y_cells = np.float32((camera_pose.y_m - frame.origin_xy_m[1]) / frame.cell_m)
+        x_slope = ((cos - sin * self.left) / frame.cell_m).astype(np.float32)
+        y_slope = ((sin + cos * self.left) / frame.cell_m).astype(np.float32)
+        # Positive throughout the window, so truncation is floor.
+        cols = (d * x_slope + x_cells)[valid].astype(np.int32)
+        rows = (d * y_slope + y_cells)[valid].astype(np.int32)
+        height_m = (d * self.up[:, None] + np.float32(self.camera.height_m))[valid]
+        return GroundPoints(valid, rows, cols, height_m)
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Target pixels of one frame, as cells of the whole map."""
+
+    rows: NDArray[np.intp]
+    cols: NDArray[np.intp]
+    distance_m: NDArray[np.float32]
+    """From the robot's centre, in plan."""
+
+    def nearest_m(self, navmap: NavMap) -> float:
+        """Distance of the nearest target point in view that was not rejected; infinite when there is none."""
+        counts = ~navmap.rejected[self.rows, self.cols]
+        return float(self.distance_m[counts].min()) if counts.any() else math.inf
+
+
+NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))
+"""A frame without a target pixel."""
+
+
+class Mapper:
+    """Writes frames into a `NavMap`. Holds precomputed rays, no memory of the episode."""
+
+    def __init__(
+        self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
+    ) -> None:
+        """`layers` is how scores are kept; by default over all frames, as in the paper."""
+        self.layers = layers or AllFrames(config.candidate_score)
+        top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
+        if config.obstacle_min_height_m >= top_m:
+            raise ConfigError(
+                "The obstacle layer needs a band of heights: obstacle_min_height_m is "
+                f"{config.obstacle_min_height_m} m, its top {top_m} m."
+            )
+        self.camera = camera
+        self.camera_forward_m = robot.camera_forward_m
+        self.config = config
+        self._obstacle_top_m = top_m
+        stride_px = config.obstacle_stride_px
+        used_top_m = max(top_m, camera.height_m + config.eye_level_halfwidth_m)
+        self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
+        self._score_rays: dict[int, Rays] = {}
+        self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
+
+    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> bool:
+        """Enter one depth image, (height_px, width_px) metres, into the obstacle layers.
+
+        Returns:
+            Whether the image is exact, that is, shows no noise.
+        """
+        camera_pose = self._camera_pose(pose)
+        window = self._sight_window(navmap, camera_pose)
+        rays, c = self._obstacle_rays, self.config
+        surfaces = Surfaces.of(rays.sample(depth), c.occupancy)
+        points = rays.project(surfaces.depth, surfaces.confirmed(c.occupancy.neighbours), camera_pose, window)
+        view = navmap.view(window)
+        solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
+        tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
+        sight = SightLines.of_frame(
+            surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+        )
+        in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
+        self._occupancy.add(view, in_band, at_eye_level, sight, exact=surfaces.exact)
+        return surfaces.exact
+
+    def add_scores(
+        self,
+        navmap: NavMap,
+        depth: NDArray[np.float32],
+        scores: Scores,
+        pose: PlanarPose,
+        step: int,
+        *,
+        exact: bool = True,
+    ) -> Sighting:
+        """Enter one frame of class scores into the object layers; returns the target points it shows.
+
+        The rim of the target does not count unless depth is `exact` (see `add_depth`) and so are the scores' outlines.
+        """
+        camera_pose = self._camera_pose(pose)
+        window = self._sight_window(navmap, camera_pose)
+        rays, score_pick = self._rays_for(scores)
+        target = scores.target[score_pick]
+        d, confirmed = self._confirm(target, rays.sample(depth))
+        if not exact:
+            confirmed &= self._inner(scores.target)[score_pick] | (target <= self.config.candidate_score)
+        points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
+        if points.rows.size == 0:
+            return NOTHING_SIGHTED
+        navmap.grow_known(_span(points.rows, window.rows.start), _span(points.cols, window.cols.start))
+        low = points.height_m <= self.config.score_max_height_m
+        flat = _cells(points, low, window)
+        target = np.where(confirmed, target, 0.0)[points.valid][low]
+        other = scores.best_other[score_pick][points.valid][low]
+        self.layers.add(navmap.view(window), FrameScores(window.frame.shape, flat, target, other), step)
+        found = target > self.config.candidate_score
+        if not found.any():
+            return NOTHING_SIGHTED
+        sure = confirmed & (scores.target[score_pick] > self.config.candidate_score)
+        self._drop_candidates(navmap.view(window), d, sure, rays, camera_pose)
+        rows, cols = np.divmod(np.unique(flat[found]), window.frame.shape[1])
+        x_m, y_m = window.frame.centres(rows, cols)
+        to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
+        distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
+        rows, cols = rows + window.rows.start, cols + window.cols.start
+        navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
+        navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
+        return Sighting(rows, cols, distance_m)
+
+    def _confirm(
+        self, target: NDArray[np.float32], d: NDArray[np.float32]
+    ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+        """Depth smoothed over the target, and False where a target pixel lies elsewhere than most of those around it.
+
+        At the rim of an object a noisy depth image shows what is behind or before it.
+        """
+        confirmed = np.ones(d.shape, np.bool_)
+        found = target > self.config.candidate_score
+        rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
+        if rows.size == 0 or self.config.occupancy.neighbours == 0:
+            return d, confirmed
+        box = slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
+        sure, smooth = agreeing(np.where(found[box], d[box], np.float32(0.0)), self.config.occupancy)
+        confirmed[box] = sure | ~found[box]
+        d[box] = np.where(found[box], smooth, d[box])
+        return d, confirmed
+
+    def _inner(self, target: NDArray[np.float32]) -> NDArray[np.bool_]:
+        """Target pixels with nothing but target around them, as far as a noisy camera shifts the edges of things.
+
+        Beyond the rim of something near, a noisy depth image has a seam where the target behind it looks as near. A
+        detector's outline that runs over what stands in front of the target has the same effect: a stop too early.
+        """
+        found = (target > self.config.candidate_score).view(np.uint8)
+        rim = -(-self.config.rim_px * target.shape[1] // self.camera.width_px)
+        kernel = np.ones((2 * rim + 1, 2 * rim + 1), np.uint8)
+        return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
+
+    def _drop_candidates(
+        self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: PlanarPose
+    ) -> None:
+        """Forget candidates in free air with the target behind: from afar a noisy image shows it too near."""
+        rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
+        target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
+        sight = SightLines.of_frame(
+            d, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
+        ).towards(target_m)
+        passed = self._occupancy.passes(view.frame, rows, cols, sight, self.config.candidate_gap_m)
+        view.score_max[rows[passed], cols[passed]] = 0.0
+        view.score_sum[rows[passed], cols[passed]] = 0.0
+
+    def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
+        x_m, y_m = pose.ahead(self.camera_forward_m)
+        return PlanarPose(x_m, y_m, pose.yaw_rad)
+
+    def _sight_window(self, navmap: NavMap, camera_pose: PlanarPose) -> Window:
+        cells = sight_window_cells(self.camera, navmap.frame.cell_m)
+        return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
+
+    def _rays_for(self, scores: Scores) -> tuple[Rays, tuple[slice, slice]]:
+        """Rays for the score pixels that are used, and the slices that pick those out of the score images."""
+        height, width = scores.target.shape
+        block_px = self.camera.width_px // max(width, 1)
+        if (height * block_px, width * block_px) != (self.camera.height_px, self.camera.width_px):
+            raise ConfigError(
+                f"Scores must be a whole fraction of the {self.camera.height_px} x {self.camera.width_px} image, "
+                f"got {height} x {width}."
+            )
+        every = max(1, self.config.score_stride_px // block_px)
+        pick = slice(every // 2, None, every)
+        if block_px not in self._score_rays:
+            first_px = (every // 2) * block_px + block_px // 2  # depth in the middle of the score's block
+            self._score_rays[block_px] = Rays(self.camera, first_px, every * block_px)
+        return self._score_rays[block_px], (pick, pick)
+
+
+def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
+    """Cells of a square around the camera that holds every point nearer than the camera's range."""
+    farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
+    return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
+
+
+def _cells(points: GroundPoints, which: NDArray[np.bool_], window: Window) -> NDArray[np.int32]:
+    """Row-major cells of some of the points."""
+    return points.rows[which] * np.int32(window.frame.shape[1]) + points.cols[which]
+
+
+def _span(indices: NDArray[np.int32], offset: int) -> slice:
+    return slice(int(indices.min()) + offset, int(indices.max()) + offset + 1)

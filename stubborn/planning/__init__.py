@@ -1,0 +1,1 @@
+"""Routes over the map: fast marching, the next action, the untrap mode."""

@@ -1,0 +1,167 @@
+"""Paired differences against numbers by hand, and runs read back."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.analysis.comparison import (
+    MIN_PAIRS,
+    Estimate,
+    code_of,
+    estimate,
+    paired_difference,
+    read_run,
+    require_same_episodes,
+)
+from sim.analysis.tables import Cell, ResultTable, to_markdown, write_csv
+from sim.interface import ConfigError
+
+
+def test_two_pairs_that_differ_by_nothing_and_by_one() -> None:
+    # Resamples of (0, 1): means 0, 1/2, 1 with chances 1/4, 1/2, 1/4.
+    assert paired_difference([1.0, 0.0], [1.0, 1.0]) == Estimate(0.5, 0.0, 1.0, 2)
+
+
+def test_a_fifth_of_a_hundred_pairs_gained() -> None:
+    first, second = [0.0] * 100, [1.0] * 20 + [0.0] * 80
+    difference = paired_difference(first, second)
+    assert difference.mean == pytest.approx(0.2)
+    # Binomial(100, 0.2): 2.5 % and 97.5 % quantiles are 12 and 28.
+    assert (difference.low, difference.high) == (pytest.approx(0.12, abs=0.011), pytest.approx(0.28, abs=0.011))
+    assert difference.resolved
+
+
+def test_the_difference_has_the_sign_of_second_minus_first() -> None:
+    first, second = [1.0, 2.0, 4.0], [2.0, 2.0, 6.0]
+    assert paired_difference(first, second).mean == pytest.approx(1.0)
+    assert paired_difference(second, first).mean == pytest.approx(-1.0)
+
+
+def test_pairing_resolves_what_separate_intervals_do_not() -> None:
+    rng = np.random.default_rng(0)
+    first = rng.random(60)
+    second = first + 0.02 + 0.01 * rng.random(60)
+    separate = estimate(list(first)), estimate(list(second))
+    assert separate[0].high is not None
+    assert separate[1].low is not None
+    assert separate[1].low < separate[0].high
+    assert paired_difference(list(first), list(second)).resolved
+
+
+def test_a_pair_without_one_of_its_values_does_not_count() -> None:
+    assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None]) == Estimate(1.0, 1.0, 1.0, 1)
+    assert paired_difference([None], [1.0]) == Estimate(None, None, None, 0)
+    with pytest.raises(ValueError, match="shorter"):
+        paired_difference([1.0, 2.0], [1.0])
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "pairs", "resolved"),
+    [
+        (0.1, 0.3, MIN_PAIRS, True),
+        (-0.3, -0.1, MIN_PAIRS, True),
+        (-0.1, 0.3, MIN_PAIRS, False),
+        (0.0, 0.3, MIN_PAIRS, False),
+        (-0.3, 0.0, MIN_PAIRS, False),
+        (0.1, 0.3, MIN_PAIRS - 1, False),
+        (None, None, 0, False),
+    ],
+)
+def test_an_interval_that_holds_zero_and_one_of_few_pairs_resolve_nothing(
+    low: float | None, high: float | None, pairs: int, resolved: bool
+) -> None:
+    cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs), difference=True)
+    assert cell.estimate.resolved == resolved
+    assert ("unresolved" in cell.text()) == (not resolved and low is not None)
+
+
+def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object) -> Path:
+    folder.mkdir()
+    config = {"split_identity": {"name": split, "version": "1", "sha256": "abc"}, "versions": {"code": "c0de"}}
+    (folder / "config.json").write_text(json.dumps(config))
+    about = {"house": "house_0", "goal": "bed", "shortest_path": 4.2, "end_reason": "stop"} | of_lines
+    lines = [{"episode_id": i, "success": 1.0} | about for i in ids]
+    (folder / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return folder
+
+
+def test_only_episodes_that_both_have_played_are_compared(tmp_path: Path) -> None:
+    first, second = (read_run(run_folder(tmp_path / name, ids)) for name, ids in (("a", "abc"), ("b", "dcb")))
+    assert require_same_episodes(first, second) == ["b", "c"]
+    assert code_of(first, "a") == "c0de"
+
+
+def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) -> None:
+    first, other, foreign = (
+        read_run(run_folder(tmp_path / name, ids, split=split))
+        for name, ids, split in (("a", "ab", "val"), ("b", "cd", "val"), ("c", "ab", "test"))
+    )
+    with pytest.raises(ConfigError, match="no episode in common"):
+        require_same_episodes(first, other)
+    with pytest.raises(ConfigError, match=r"val 1 \(abc\) and test 1 \(abc\)"):
+        require_same_episodes(first, foreign)
+
+
+@pytest.mark.parametrize(
+    ("other", "told"),
+    [
+        ({"house": "house_1"}, 'house "house_0" and "house_1"'),
+        ({"goal": "sofa"}, 'goal "bed" and "sofa"'),
+        ({"shortest_path": 4.4}, "shortest_path 4.2 and 4.4"),
+        ({"shortest_path": None}, "shortest_path 4.2 and null"),
+    ],
+)
+def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, told: str, tmp_path: Path) -> None:
+    first, second = read_run(run_folder(tmp_path / "a", "ab")), read_run(run_folder(tmp_path / "b", "bc", **other))
+    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(told)}"):
+        require_same_episodes(first, second)
+
+
+def test_an_episode_that_broke_or_whose_way_was_measured_anew_is_still_the_same(tmp_path: Path) -> None:
+    first = read_run(run_folder(tmp_path / "a", "ab"))
+    rounded = read_run(run_folder(tmp_path / "b", "ab", shortest_path=4.21))
+    broken = read_run(run_folder(tmp_path / "c", "ab", shortest_path=None, end_reason="error"))
+    nowhere = read_run(run_folder(tmp_path / "d", "ab", shortest_path=None))
+    assert require_same_episodes(first, rounded) == require_same_episodes(first, broken) == ["a", "b"]
+    assert require_same_episodes(nowhere, nowhere) == ["a", "b"]
+
+
+def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"it has no config\.json"):
+        read_run(tmp_path)
+    (tmp_path / "config.json").write_text("{}")
+    with pytest.raises(ConfigError, match=r"it has no results\.jsonl"):
+        read_run(tmp_path)
+    (tmp_path / "results.jsonl").write_text("[]\n")
+    with pytest.raises(ConfigError, match="is no run"):
+        read_run(tmp_path)
+
+
+def test_reading_a_run_that_is_being_written_leaves_its_last_line_alone(tmp_path: Path) -> None:
+    folder = run_folder(tmp_path / "a", "ab")
+    with (folder / "results.jsonl").open("a") as stream:
+        stream.write('{"episode_id": "c", "succ')
+    before = (folder / "results.jsonl").read_bytes()
+    assert list(read_run(folder).lines) == ["a", "b"]
+    assert (folder / "results.jsonl").read_bytes() == before
+
+
+def test_a_cell_is_shown_in_percent_and_written_as_a_share(tmp_path: Path) -> None:
+    mean = Cell(Estimate(0.5, 0.25, 0.75, 40), percent=True)
+    difference = Cell(Estimate(-0.125, -0.25, 0.0, 40), percent=True, difference=True)
+    table = ResultTable(
+        "t", "A title", ("who", "a|b", "gain"), [("stubborn", [mean, difference]), ("none", ["-", "-"])]
+    )
+    assert "| who | a\\|b | gain |\n| --- | ---: | ---: |\n" in to_markdown([table])
+    assert "| stubborn | 50.0 [25.0, 75.0] | -12.5 [-25.0, +0.0] unresolved |" in to_markdown([table])
+    write_csv(tmp_path / "t.csv", [table])
+    assert (tmp_path / "t.csv").read_text().splitlines() == [
+        "table,row,column,value,low95,high95,episodes,verdict",
+        "t,stubborn,a|b,0.5,0.25,0.75,40,",
+        "t,stubborn,gain,-0.125,-0.25,0.0,40,unresolved",
+    ]

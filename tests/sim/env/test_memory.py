@@ -1,0 +1,97 @@
+"""What a process holds on to: one house, no buffer that nothing is drawn into, no page of a map that nobody saw."""
+
+from __future__ import annotations
+
+import gc
+import subprocess
+import sys
+import weakref
+from pathlib import Path
+
+import pytest
+
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, write_split
+from sim.geometry.pose import Pose
+from sim.sensors.camera import Camera, describe_gl
+from sim.world.world import World
+from tests.helpers.worlds import room, with_box
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def resident_mb() -> float:
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * 4096 / 1e6
+
+
+@pytest.fixture
+def split(tmp_path: Path) -> Path:
+    furnished = with_box(room(5, 4), "bed_00", centre_m=(1.5, 0, 0.3), half_m=(0.5, 0.9, 0.3))
+    houses = ("first", "second")
+    for name in houses:
+        (tmp_path / f"{name}.xml").write_text(furnished.spec.to_xml())
+    episodes = [Episode(name, name, "bed", Pose(-1.0, 0.0, 0.0)) for name in houses]
+    write_split(tmp_path, episodes, {name: {} for name in houses}, version="1")
+    return tmp_path
+
+
+def test_the_last_house_is_let_go_when_the_next_one_comes(split: Path) -> None:
+    env = ObjectNavEnv(split=split, sensors=())
+    try:
+        env.reset(seed=0, options={"episode_id": "first"})
+        first = weakref.ref(env.scene)
+        env.reset(seed=0, options={"episode_id": "second"})
+        gc.collect()
+        assert first() is None
+    finally:
+        env.close()
+
+
+def test_a_camera_asked_for_no_colour_has_no_buffer_for_colour_or_shadows() -> None:
+    if "llvmpipe" not in describe_gl():
+        pytest.skip("the drawing memory of a card is its driver's")
+    world = World(room(5, 4))
+    cameras, grown_mb = [], 0.0
+    for _ in range(4):  # the first ones start the driver
+        before_mb = resident_mb()
+        cameras.append(Camera(world.model, world.labels, profile="good"))
+        cameras[-1].render(world.data, Pose(0.0, 0.0, 0.0), ("depth", "semantic"))
+        grown_mb = resident_mb() - before_mb
+    for camera in cameras:
+        camera.close()
+    assert grown_mb < 16, grown_mb  # a shadow map alone has 16.8
+
+
+MAPS = """
+import numpy as np
+
+from stubborn.grid import GridFrame
+from stubborn.navmap import NavMap
+from tests.sim.env.test_memory import resident_mb
+
+frame = GridFrame.around_start(1440, 0.05)
+NavMap.empty(GridFrame.around_start(10, 0.05))
+before_mb = resident_mb()
+np.ones(30_000_000, np.uint8)  # from now on malloc keeps blocks up to this size, and clears by hand what it uses again
+for _ in range(4):
+    navmap = NavMap.empty(frame)
+    navmap.score_sum[700:740, 700:740] = 1.0
+assert not navmap.visited.any()
+print(resident_mb() - before_mb)
+"""
+
+
+def test_maps_take_no_memory_where_nothing_was_seen() -> None:
+    """In a process of its own: what others have freed before would hide or add pages."""
+    ended = subprocess.run([sys.executable, "-c", MAPS], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert float(ended.stdout) < 24, ended.stdout  # all layers have 68
+
+
+@pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
+def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
+    player = f"from sim.run import Args, EpisodePlayer; player = EpisodePlayer(Args({options})); player.close()"
+    heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
+    told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
+    ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
+    assert ended.stdout.split() == []

@@ -1,0 +1,153 @@
+"""The environment keeps Gymnasium's contract and ours."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from sim.env.objectnav import ObjectNavEnv
+from sim.errors import EpisodeError, HouseError
+from sim.geometry.pose import Pose
+from sim.interface import Action, CameraModel, ConfigError
+from tests.helpers.worlds import room, with_box
+
+SMALL = CameraModel(width_px=64, height_px=48)
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A room of 6 x 6 m with a sofa at x = 2.5 m."""
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    file.write_text(furnished.spec.to_xml())
+    return file
+
+
+@pytest.fixture
+def env(house: Path) -> Iterator[ObjectNavEnv]:
+    env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.0), camera=SMALL, max_steps=20)
+    yield env
+    env.close()
+
+
+@pytest.mark.filterwarnings("error")
+def test_gymnasiums_checker_has_no_complaint(house: Path) -> None:
+    env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", house=house, camera=SMALL, render_mode="rgb_array")
+    check_env(env.unwrapped)
+    env.close()
+
+
+def test_make_needs_no_import_of_ours(house: Path) -> None:
+    code = (
+        "import gymnasium; env = gymnasium.make('sim.gym:stubborn/ObjectNav-v0', house=r'%s', sensors=('depth',));"
+        "print(sorted(env.reset(seed=0)[0])); env.close()"
+    )
+    answer = subprocess.run([sys.executable, "-c", code % house], capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.strip() == "['compass', 'depth', 'gps', 'objectgoal']"
+
+
+def test_gps_and_compass_are_relative_to_the_start_whatever_its_heading(house: Path) -> None:
+    for yaw_rad in (0.0, 2.0):
+        env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, yaw_rad), camera=SMALL)
+        observation, _ = env.reset(seed=0)
+        np.testing.assert_allclose(observation["gps"], 0.0, atol=1e-3)
+        for action in (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_LEFT, Action.TURN_LEFT, Action.MOVE_FORWARD):
+            observation, *_ = env.step(action)
+        np.testing.assert_allclose(observation["gps"], [0.25, 0.25], atol=3e-3)
+        np.testing.assert_allclose(observation["compass"], [math.pi / 2], atol=3e-3)
+        env.close()
+
+
+def test_stop_within_a_metre_of_the_goal_terminates_with_reward_1(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    for _ in range(9):
+        _, reward, terminated, truncated, _ = env.step(Action.MOVE_FORWARD)
+        assert (reward, terminated, truncated) == (0.0, False, False)
+    _, reward, terminated, truncated, info = env.step(Action.STOP)
+    assert (reward, terminated, truncated) == (1.0, True, False)
+    assert info["success"] == 1
+    assert info["end_reason"] == "stop"
+    assert info["spl"] == pytest.approx(1.0, abs=0.2)
+
+
+def test_stop_far_from_the_goal_terminates_with_reward_0(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    _, reward, terminated, _, info = env.step(Action.STOP)
+    assert (reward, terminated, info["success"], info["spl"]) == (0.0, True, 0, 0)
+    assert info["distance_to_goal"] == pytest.approx(2.1, abs=0.1)
+
+
+def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    steps = [env.step(Action.TURN_LEFT) for _ in range(20)]
+    assert [(terminated, truncated) for _, _, terminated, truncated, _ in steps] == [(False, False)] * 19 + [
+        (False, True)
+    ]
+    assert steps[-1][4]["end_reason"] == "max_steps"
+
+
+def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_none(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    infos = [env.step(action)[4] for action in [Action.TURN_RIGHT] * 3 + [Action.MOVE_FORWARD] * 16]
+    collided = [info["collided"] for info in infos]
+    assert not any(collided[:12])
+    assert all(collided[-2:])
+    assert infos[-1]["collisions"] == sum(collided)
+
+
+def test_observations_do_not_change_when_the_next_one_comes(env: ObjectNavEnv) -> None:
+    first, _ = env.reset(seed=0)
+    kept = {name: value.copy() for name, value in first.items()}
+    env.step(Action.MOVE_FORWARD)
+    for name, value in first.items():
+        np.testing.assert_array_equal(value, kept[name])
+
+
+def test_the_same_seed_gives_the_same_episode_and_another_seed_another(house: Path) -> None:
+    env = ObjectNavEnv(house=house, camera=SMALL)
+    starts = []
+    for seed in (1, 1, 2):
+        env.reset(seed=seed)
+        starts.append(env.episode.start)
+    assert starts[0] == starts[1] != starts[2]
+    env.close()
+
+
+def test_the_robot_is_in_no_image(house: Path) -> None:
+    """Looking along a wall-less floor the robot's own hull would cover the lower half."""
+    env = ObjectNavEnv(house=house, goal="sofa", start=Pose(0, 0, math.pi), camera=SMALL)
+    observation, _ = env.reset(seed=0)
+    assert set(np.unique(observation["semantic"])) <= {0, 1, 2}
+    assert observation["depth"][-1].min() > 0.5
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "told"),
+    [
+        ({"sensors": ("rgb", "thermal")}, ConfigError, "thermal"),
+        ({"profile": "best"}, ConfigError, "best"),
+        ({"goal": "spaceship"}, EpisodeError, "spaceship"),
+        ({"goal": "toilet"}, EpisodeError, "sofa"),
+        ({"start": Pose(2.9, 2.9, 0)}, EpisodeError, "Start|start"),
+        ({"house": "nowhere.xml"}, HouseError, "nowhere.xml"),
+        ({"house": None, "split": "nosplit"}, ConfigError, "val"),
+    ],
+)
+def test_what_will_not_do_is_named(house: Path, options: dict, error: type[Exception], told: str) -> None:
+    with pytest.raises(error, match=told):
+        ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
+
+
+def test_step_before_reset_is_refused(env: ObjectNavEnv) -> None:
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(Action.STOP)

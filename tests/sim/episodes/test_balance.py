@@ -1,0 +1,72 @@
+"""What the episodes of the shipped splits promise together: balanced, far and near enough, every goal in places."""
+
+from __future__ import annotations
+
+import collections
+import functools
+import math
+
+import pytest
+
+from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M
+from sim.episodes.splits import Split, load_split
+from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
+
+SPLITS = {"val": (20, 1000), "test": (20, 1000), "train": (200, 2000)}
+"""Houses and episodes of each."""
+LEAST_HOUSES = 5
+"""In how many houses each category is asked for."""
+TURNS_AT_START, LONGEST_ORACLE_STEPS = 6, 300
+
+load = functools.cache(load_split)
+every_split = pytest.mark.parametrize("split", [pytest.param(name, id=name) for name in SPLITS])
+
+
+def goals_asked(split: Split) -> collections.Counter[str]:
+    return collections.Counter(episode.goal for episode in split.episodes)
+
+
+@every_split
+def test_a_split_has_its_houses_and_episodes(split: str) -> None:
+    assert (len(load(split).houses), len(load(split).episodes)) == SPLITS[split]
+    assert len({episode.episode_id for episode in load(split).episodes}) == SPLITS[split][1]
+
+
+@every_split
+def test_each_goal_is_asked_for_equally_often_within_two(split: str) -> None:
+    asked = goals_asked(load(split))
+    assert set(asked) == set(GOAL_CATEGORIES)
+    assert max(asked.values()) - min(asked.values()) <= 2
+
+
+@every_split
+def test_the_order_goes_round_the_houses(split: str) -> None:
+    houses = load(split).houses
+    order = [episode.house for episode in load(split).episodes]
+    assert order == [houses[i % len(houses)] for i in range(len(order))]
+
+
+@every_split
+def test_any_first_episodes_ask_for_no_goal_much_more_than_for_another(split: str) -> None:
+    asked = collections.Counter[str]()
+    for number, episode in enumerate(load(split).episodes, 1):
+        asked[episode.goal] += 1
+        assert asked[episode.goal] <= math.ceil(number / len(GOAL_CATEGORIES)) + 2, number
+
+
+@every_split
+def test_each_goal_is_asked_for_in_several_houses(split: str) -> None:
+    houses = collections.defaultdict[str, set[str]](set)
+    for episode in load(split).episodes:
+        houses[episode.goal].add(episode.house)
+    assert min(len(houses[goal]) for goal in GOAL_CATEGORIES) >= LEAST_HOUSES
+
+
+@every_split
+def test_a_start_is_two_metres_from_its_goal_and_the_oracle_is_there_well_inside_the_steps(split: str) -> None:
+    for episode in load(split).episodes:
+        assert episode.shortest_path_m is not None
+        assert MIN_DISTANCE_M <= episode.shortest_path_m <= MAX_DISTANCE_M
+        forwards = math.ceil(episode.shortest_path_m / FORWARD_M)
+        steps = TURNS_AT_START + 2 * forwards + 1  # half a turn, then a turn of 30 degrees at every forward, STOP
+        assert steps <= LONGEST_ORACLE_STEPS < MAX_STEPS

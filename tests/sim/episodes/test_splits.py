@@ -1,0 +1,160 @@
+"""Splits on disk and back, and Habitat's frame against ours."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sim.episodes import habitat
+from sim.episodes.splits import Episode, load_split, one_house, shipped_splits, write_split
+from sim.errors import EpisodeError, HouseError
+from sim.geometry.pose import Pose
+from sim.interface import ConfigError, wrap_angle
+from tests.helpers.worlds import room, with_box
+
+metres = st.floats(-50.0, 50.0)
+yaws = st.floats(-math.pi, math.pi, exclude_min=True)
+
+EPISODES = (
+    Episode("tiny_0000", "b", "bed", Pose(-1.25, 0.5, 2.0), 2.5),
+    Episode("tiny_0001", "a", "bed", Pose(0.125, -0.5, -3.0, 0.0), 3.0),
+    Episode("tiny_0002", "b", "bed", Pose(-1.0, 0.0, 0.0), 2.0),
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    folder = tmp_path / "tiny"
+    folder.mkdir()
+    house = with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    for name in ("a", "b"):
+        (folder / f"{name}.xml").write_text(house.spec.to_xml())
+    write_split(folder, EPISODES, {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
+    return folder
+
+
+@given(x=metres, y=metres, z=metres, yaw=yaws)
+def test_a_pose_to_habitat_and_back_is_identity(x, y, z, yaw):
+    state = habitat.to_agent_state(Pose(x, y, yaw, z))
+    back = habitat.from_agent_state(state["position"], state["rotation"])
+    assert (back.x_m, back.y_m, back.floor_z_m) == (x, y, z)
+    assert wrap_angle(back.yaw_rad - yaw) == pytest.approx(0.0, abs=1e-12)
+
+
+@given(yaw=yaws)
+def test_a_heading_looks_the_same_way_in_both_frames(yaw):
+    x, y, z, w = habitat.to_rotation(yaw)
+    forward = np.array([0.0, 0.0, -1.0])  # Habitat's agents look along -z; v' = v + 2 q x (q x v + w v)
+    axis = np.array([x, y, z])
+    turned = forward + 2.0 * np.cross(axis, np.cross(axis, forward) + w * forward)
+    assert habitat.from_position(turned.tolist()) == pytest.approx((math.cos(yaw), math.sin(yaw), 0.0), abs=1e-9)
+
+
+def test_up_is_y_there_and_z_here_and_the_frames_have_one_handedness():
+    assert habitat.to_position(1.0, 2.0, 3.0) == [1.0, 3.0, -2.0]
+    axes = np.array([habitat.to_position(*axis) for axis in np.eye(3).tolist()])
+    assert np.linalg.det(axes) == pytest.approx(1.0)
+
+
+def test_a_split_written_and_read_is_the_same_in_the_same_order(folder):
+    split = load_split(folder)
+    assert [episode.episode_id for episode in split.episodes] == ["tiny_0000", "tiny_0001", "tiny_0002"]
+    for written, read in zip(EPISODES, split.episodes, strict=True):
+        assert (read.house, read.goal, read.shortest_path_m) == (written.house, written.goal, written.shortest_path_m)
+        assert read.start.distance_to(written.start) == 0.0
+        assert read.start.yaw_rad == pytest.approx(written.start.yaw_rad, abs=1e-12)
+    assert split.name == "tiny"
+    assert split.version == "1.2.0"
+    assert split.houses == ("a", "b")
+    assert split.load_house("a").name == "a"
+    assert split.episode("tiny_0001").house == "a"
+
+
+def test_the_files_have_what_habitats_loader_reads(folder):
+    content = json.loads(gzip.decompress((folder / "content" / "b.json.gz").read_bytes()))
+    assert set(content) == {
+        "category_to_task_category_id",
+        "category_to_mp3d_category_id",
+        "goals_by_category",
+        "episodes",
+    }
+    entry = content["episodes"][0]
+    assert f"{Path(entry['scene_id']).name}_{entry['object_category']}" in content["goals_by_category"]
+    assert len(entry["start_position"]) == 3
+    assert np.linalg.norm(entry["start_rotation"]) == pytest.approx(1.0)
+
+
+def test_the_hash_changes_with_a_house_and_with_an_episode_and_with_nothing_else(folder):
+    before = load_split(folder).sha256
+    write_split(folder, EPISODES, {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
+    assert load_split(folder).sha256 == before
+    write_split(folder, EPISODES[:2], {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
+    fewer = load_split(folder).sha256
+    (folder / "a.xml").write_text((folder / "a.xml").read_text() + "\n")
+    assert len({before, fewer, load_split(folder).sha256}) == 3
+
+
+def test_what_is_written_is_the_same_bytes_each_time(folder):
+    files = sorted(folder.rglob("*.gz"))
+    before = [file.read_bytes() for file in files]
+    write_split(folder, EPISODES, {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
+    assert [file.read_bytes() for file in files] == before
+
+
+def test_an_unknown_split_is_refused_with_what_there_is():
+    with pytest.raises(ConfigError, match="Unknown split 'nowhere'"):
+        load_split("nowhere")
+    with pytest.raises(ConfigError) as refused:
+        load_split("nowhere")
+    assert all(name in str(refused.value) for name in shipped_splits())
+
+
+def test_a_folder_without_episodes_is_refused(tmp_path):
+    with pytest.raises(ConfigError, match=r"has no .*json\.gz"):
+        load_split(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("file", "content"),
+    [
+        ("tiny.json.gz", b"not gzip"),
+        ("tiny.json.gz", gzip.compress(b"[1, 2]", mtime=0)),
+        ("tiny.json.gz", gzip.compress(b'{"order": ["no_such"]}', mtime=0)),
+        ("content/a.json.gz", gzip.compress(b'{"episodes": [{"episode_id": "x"}]}', mtime=0)),
+        ("content/a.json.gz", gzip.compress(b"{", mtime=0)),
+    ],
+)
+def test_a_broken_episode_file_is_named(folder, file, content):
+    (folder / file).write_bytes(content)
+    with pytest.raises(ConfigError, match=Path(file).name):
+        load_split(folder)
+
+
+def test_episodes_without_their_house_are_refused(folder):
+    (folder / "b.xml").unlink()
+    with pytest.raises(ConfigError, match=r"no b\.xml"):
+        load_split(folder)
+
+
+def test_an_unknown_episode_or_house_is_refused_with_what_is_near(folder):
+    split = load_split(folder)
+    with pytest.raises(EpisodeError, match=r"no episode 'tiny_00003'.*Did you mean 'tiny_000"):
+        split.episode("tiny_00003")
+    with pytest.raises(HouseError, match="It has: a, b"):
+        split.load_house("c")
+
+
+def test_one_house_is_a_split_without_episodes(folder):
+    split = one_house(folder / "a.xml")
+    assert split.houses == ("a",)
+    assert split.episodes == ()
+    assert split.load_house("a").name == "a"
+    with pytest.raises(HouseError, match="no such file"):
+        one_house(folder / "z.xml")

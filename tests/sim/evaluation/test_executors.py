@@ -1,0 +1,215 @@
+"""Where work is done changes no line: here, in processes, on a Ray cluster of which a machine dies."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim.errors import WorkersError
+from sim.evaluation import executors
+from sim.evaluation.executors import Processes, make_executor
+from sim.evaluation.parallel import Share, ordered_map
+from sim.evaluation.results import RunDirectory
+from sim.evaluation.rollout import TIMES
+from sim.evaluation.workers import MAX_FAILED_STARTS, PlayerSpec, WorkerLost, play_with
+from sim.interface import ConfigError
+from tests.helpers.players import Errand, die, die_the_first_time, slow_double
+from tests.helpers.worlds import room, with_box
+
+SPEC = PlayerSpec("tests.helpers.players:make_player", None)
+
+
+def errands(count: int) -> list[Errand]:
+    return [Errand(f"errand_{i}", f"house_{i % 3}") for i in range(count)]
+
+
+def never(item: object) -> Any:
+    raise AssertionError(f"{item} was given up")
+
+
+def test_results_come_in_the_order_of_the_things_whoever_is_quicker() -> None:
+    things = [30, 1, 20, 2, 10, 3]
+    assert list(ordered_map(slow_double, things, workers=2)) == [60, 2, 40, 4, 20, 6]
+
+
+def test_a_killed_worker_costs_a_thing_of_an_ordered_map_one_more_try(tmp_path: Path) -> None:
+    things = [tmp_path / str(i) for i in range(4)]
+    assert list(ordered_map(die_the_first_time, things, workers=2)) == [thing.name for thing in things]
+
+
+def test_a_thing_that_kills_every_worker_ends_an_ordered_map_with_its_name(tmp_path: Path) -> None:
+    with pytest.raises(WorkersError, match="died twice over deadly"):
+        list(ordered_map(die, ["deadly", "deadly"], workers=2))
+
+
+class Stillborn:
+    """A crew of which nobody is ever ready."""
+
+    hired = 0
+
+    def hire(self) -> Stillborn:
+        self.hired += 1
+        return self
+
+    def wait(self, workers: Sequence[Stillborn]) -> Sequence[Stillborn]:
+        return workers[:1]
+
+    def receive(self) -> None:
+        raise WorkerLost("No such library")
+
+    def send(self, item: object) -> None:
+        raise AssertionError("nobody was ready")
+
+    def dismiss(self, workers: Sequence[Stillborn]) -> None:
+        pass
+
+
+def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
+    crew = Stillborn()
+    with pytest.raises(WorkersError, match=r"3 workers died as they started \(No such library\)"):
+        list(play_with(crew, errands(10), size=1, on_death=never))
+    assert crew.hired == MAX_FAILED_STARTS
+
+
+class NoRoom(executors.ProcessCrew):
+    """A crew like a cluster that has room for one: the others never say anything."""
+
+    first: Any = None
+
+    def hire(self) -> Any:
+        hired = super().hire()
+        self.first = self.first or hired
+        return hired
+
+    def wait(self, workers: Sequence[Any]) -> Any:
+        assert self.first in workers, "it would wait for ever"
+        return super().wait([self.first])
+
+
+def test_work_does_not_wait_for_workers_that_never_start() -> None:
+    lines = list(play_with(NoRoom(SPEC), errands(6), size=3, on_death=never))
+    assert len({line["pid"] for line in lines}) == 1
+    assert len(lines) == 6
+
+
+def test_shares_are_everything_once() -> None:
+    things = list(range(11))
+    shares = [Share.parse(f"{i}/4") for i in range(4)]
+    assert sorted(thing for share in shares for thing in share.of(things)) == things
+    for share in shares:
+        assert list(share.of(things)) == [thing for thing in things if share.takes(thing)]
+
+
+@pytest.mark.parametrize("text", ["2/2", "1", "a/b", "-1/2", "0/0", "1/2/3"])
+def test_a_share_that_is_none_is_refused(text: str) -> None:
+    with pytest.raises(ConfigError, match='--shard must be "i/n"'):
+        Share.parse(text)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        ({"name": "cloud"}, "Unknown --executor 'cloud'. There is: local, ray."),
+        ({"name": "local", "address": "head:6379"}, "--address 'head:6379' goes with --executor ray."),
+        ({"name": "local", "workers": 0}, "--workers must be at least 1, got 0."),
+    ],
+)
+def test_options_that_do_not_go_together_are_refused(options: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ConfigError) as told:
+        make_executor(**{"workers": 1, **options})
+    assert str(told.value) == sentence
+
+
+def test_without_ray_one_sentence_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "sim.evaluation.executors_ray", raising=False)
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(ConfigError, match=r"pip install 'stubborn-objectnav\[ray\]'"):
+        make_executor("ray", workers=1)
+
+
+def test_where_no_cluster_is_one_sentence_says_how_to_start_one() -> None:
+    pytest.importorskip("ray")
+    with pytest.raises(ConfigError, match="`ray start --head`"):
+        make_executor("ray", workers=1, address="127.0.0.1:1")
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Any]:
+    """Two machines of one processor each, and a death that is noticed within two seconds."""
+    ray = pytest.importorskip("ray")
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    noticed = {f"health_check_{name}": value for name, value in HEALTH.items()}
+    head = {"num_cpus": 1, "object_store_memory": 80_000_000, "_system_config": noticed}
+    two = importlib.import_module("ray.cluster_utils").Cluster(initialize_head=True, head_node_args=head)
+    try:
+        yield two
+    finally:
+        ray.shutdown()
+        two.shutdown()
+
+
+HEALTH = {"initial_delay_ms": 0, "period_ms": 500, "timeout_ms": 500, "failure_threshold": 3}
+
+
+@pytest.mark.slow
+def test_a_cluster_loses_no_episode_with_one_of_its_machines(
+    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from sim.run import entry
+
+    machine = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)
+    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    (tmp_path / "sofa_room.xml").write_text(furnished.spec.to_xml())
+    command = ["--agent", "oracle", "--house", str(tmp_path / "sofa_room.xml"), "--episodes", "12"]
+    assert entry([*command, "--out", str(tmp_path / "here")]) == 0
+    written = RunDirectory.append
+
+    def append(run: RunDirectory, line: Any) -> None:
+        written(run, line)
+        if len(run.lines) == 4:
+            cluster.remove_node(machine, allow_graceful=False)
+
+    monkeypatch.setattr(RunDirectory, "append", append)
+    on_cluster = ["--executor", "ray", "--address", cluster.address, "--workers", "2"]
+    assert entry([*command, *on_cluster, "--out", str(tmp_path / "there")]) == 0
+    assert len(cluster.list_all_nodes()) == 1
+    assert lines_of(tmp_path / "there") == lines_of(tmp_path / "here")
+
+
+def lines_of(out: Path) -> list[dict[str, Any]]:
+    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
+    kept = [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
+    return sorted(kept, key=lambda line: line["episode_id"])
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_cluster_dies_as_a_process_does(cluster: Any, tmp_path: Path) -> None:
+    deadly = Errand("deadly", "house_0", kill=tmp_path / "died")
+    fatal = Errand("fatal", "house_0", kill=tmp_path / "fatal", always=True)
+    executor = make_executor("ray", workers=2, address=cluster.address)
+    given_up = lambda item: {"episode_id": item.episode_id, "dead": True}  # noqa: E731
+    lines = list(executor.run(SPEC, [*errands(4), deadly, fatal], on_death=given_up))
+    assert (tmp_path / "died").exists()
+    assert len(lines) == 6
+    assert [line["episode_id"] for line in lines if line.get("dead")] == ["fatal"]
+
+
+@pytest.mark.slow
+def test_machines_with_other_code_are_refused(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    from sim.evaluation import executors_ray
+
+    executor = make_executor("ray", workers=2, address=cluster.address)
+    monkeypatch.setattr(executors_ray, "code_hash", lambda: "0ther")
+    with pytest.raises(WorkersError, match=r"A machine of the Ray cluster has code .*, this one 0ther"):
+        list(executor.run(SPEC, errands(2), on_death=never))
+
+
+def test_processes_are_an_executor_of_their_own_number() -> None:
+    assert make_executor("local", workers=3) == Processes(3)

@@ -1,0 +1,153 @@
+"""Conformance of generated houses: the same for every seed, so a new rule of placement gets its tests for free."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from sim.gl import mujoco
+from sim.housegen import generate
+from sim.housegen.furniture import make_item
+from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house
+from sim.housegen.placement import RoomSpace
+from sim.housegen.rectangles import Rect
+from sim.housegen.rooms import PLAN_AREA_M2
+from sim.housegen.shipped import SPLITS
+from sim.houses.house import House, read_rooms
+from sim.houses.labels import read_labels
+from sim.houses.load import validate_house
+from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.world.check import check_house
+from tests.helpers.sampling import sample
+
+SEEDS = list(range(30))
+MAX_XML_KB = 520
+"""The shipped houses must stay below 400; homes of 400 m2 may be a little larger."""
+
+
+@pytest.mark.parametrize("seed", sample(SEEDS, 5))
+def test_a_fresh_seed_gives_a_house_that_keeps_the_format_and_the_check(seed: int) -> None:
+    house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
+    model = house.spec.compile()
+    labels = validate_house(House("fresh", house.spec), model)
+    assert labels.void_geoms == 0
+    assert check_house(house.spec) == []
+    assert len(read_rooms(model)) == len(house.plan.rooms)
+    assert len(house.spec.to_xml()) < 1000 * MAX_XML_KB
+    lamps = model.light_pos[model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value]
+    assert model.nlight - len(lamps) == 4  # shine everywhere; OpenGL has eight
+    for room in read_rooms(model):
+        assert any(room.contains(x, y) for x, y, _ in lamps.tolist()), room.name
+
+
+def small(seed: int) -> GeneratedHouse:
+    return generate_house(seed, HouseConfig(kind="studio", area_m2=55.0))
+
+
+def test_the_same_seed_gives_the_same_bytes_also_in_another_process() -> None:
+    xml = generate(3, kind="studio", area_m2=55.0).to_xml()
+    code = "from sim.housegen import generate; print(generate(3, kind='studio', area_m2=55.0).to_xml(), end='')"
+    other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert xml == other
+
+
+def test_seeds_and_pools_give_different_houses() -> None:
+    xml = {small(seed).spec.to_xml() for seed in range(3)}
+    assert len(xml) == 3
+    assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
+
+
+def test_a_wide_house_keeps_the_format_and_may_be_too_large_to_ship() -> None:
+    house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
+    assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0
+    assert check_house(house.spec) == []
+    assert len(house.spec.to_xml()) > MAX_BYTES
+
+
+def test_area_and_shape_are_as_asked() -> None:
+    house = generate_house(1, HouseConfig(kind="corridor", area_m2=120.0))
+    assert house.plan.kind == "corridor"
+    assert house.plan.area_m2 == pytest.approx(120.0, rel=0.25)
+
+
+def test_clutter_zero_leaves_no_small_objects() -> None:
+    labels = read_labels(generate_house(2, HouseConfig(clutter=0.0, kind="flat")).spec.compile())
+    assert not labels.of_category("objects")
+
+
+def test_no_pixel_of_void_is_seen_from_inside() -> None:
+    model = small(5).spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    model.vis.map.znear, model.vis.map.zfar = 0.001, 10.0
+    renderer = mujoco.Renderer(model, 60, 80)
+    renderer.enable_segmentation_rendering()
+    camera = mujoco.MjvCamera()
+    camera.type, camera.distance = mujoco.mjtCamera.mjCAMERA_FREE, 1e-3
+    for room in read_rooms(model):
+        (x, y, _), _ = room.boxes[0]
+        camera.lookat[:] = (x, y, 0.88)
+        for azimuth_deg in range(0, 360, 45):
+            camera.azimuth, camera.elevation = azimuth_deg, 0.0
+            renderer.update_scene(data, camera)
+            void = renderer.render()[..., 0] < 0
+            assert not void.any(), f"{room.name}, {azimuth_deg} deg: {void.sum()} pixels of void"
+    renderer.close()
+
+
+def test_bad_requests_say_what_would_be_right() -> None:
+    with pytest.raises(ConfigError, match="50-400 m2, got 12"):
+        HouseConfig(area_m2=12.0)
+    with pytest.raises(ConfigError, match="studio, flat"):
+        HouseConfig(kind="castle")  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match="0 or more, got -1"):
+        generate_house(-1)
+    with pytest.raises(ConfigError, match="no room kind 'ballroom'"):
+        HouseConfig(rooms=("ballroom",))
+
+
+@pytest.mark.parametrize("split", list(SPLITS))
+def test_recipes_have_their_own_seeds_and_fitting_sizes(split: str) -> None:
+    recipes = SPLITS[split]
+    assert len({recipe.seed for recipe in recipes}) == len(recipes)
+    assert len({recipe.name for recipe in recipes}) == len(recipes)
+    for recipe in recipes:
+        low, high = PLAN_AREA_M2[recipe.kind]
+        assert low <= recipe.area_m2 <= high
+
+
+@pytest.mark.slow
+def test_all_goal_categories_appear_over_the_val_houses() -> None:
+    counts = dict.fromkeys(GOAL_CATEGORIES, 0)
+    for recipe in SPLITS["val"]:
+        for category in read_labels(recipe.make().spec.compile()).categories():
+            if category in counts:
+                counts[category] += 1
+    assert min(counts.values()) >= math.ceil(len(SPLITS["val"]) / 4), counts
+
+
+def test_things_stand_inside_their_rooms() -> None:
+    model = small(4).spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    rooms = read_rooms(model)
+    labels = read_labels(model)
+    for thing in labels.instances:
+        if thing.category in ("wall", "floor", "ceiling", "door", "window"):
+            continue
+        x, y, _ = np.mean(data.geom_xpos[list(thing.geom_ids)], axis=0)
+        assert any(room.contains(x, y) for room in rooms), thing.name
+
+
+def test_a_picture_high_over_a_bed_keeps_nothing_out_of_the_room() -> None:
+    rng = np.random.default_rng(0)
+    space = RoomSpace(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
+    bed = make_item("bed", rng, pool="train", width_m=1.8)
+    picture = make_item("picture", rng, pool="train", width_m=0.3)
+    assert space.against_wall(rng, bed, sides=["west"], along="middle") is not None
+    assert space.on_wall(rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
+    assert space.against_wall(rng, make_item("cabinet", rng, pool="train", use="wardrobe"), sides=["east"]) is not None

@@ -1,0 +1,286 @@
+"""Other people's scenes and robots: taken as they are, what does not fit is told, and ours stay what they are."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim import run
+from sim.env.objectnav import ObjectNavEnv
+from sim.errors import HouseError
+from sim.geometry.pose import Pose
+from sim.houses.load import load_house
+from sim.interface import MPCAT40_ID, Action, ConfigError
+from sim.robot.config import RobotConfig
+from sim.robot.foreign import load_robot
+from sim.task.ground_truth import GroundTruth
+from sim.world.world import World
+from tests.helpers.foreign import HOLLOW, LABELS, ROBOT, SCENE, TWO_BODIES, write_robot, write_scene
+from tests.helpers.worlds import open_floor, room, with_box
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A scene in another style, and its label rules."""
+    return write_scene(tmp_path_factory.mktemp("scene") / "elsewhere")
+
+
+@pytest.fixture(scope="module")
+def world(scene: tuple[Path, Path]) -> World:
+    return World(load_house(scene[0], labels_path=scene[1]))
+
+
+def test_what_no_house_holds_is_left_out_and_told(scene: tuple[Path, Path]) -> None:
+    house = load_house(scene[0], labels_path=scene[1])
+    assert house.notes == (
+        "Left out: 1 keyframe (home), 1 sensor, 1 actuator (open), 1 camera (overview).",
+        "Standing still where the file has them: what hangs on 1 joint (sideboard_hinge).",
+        "2 visible geoms have no label and became void: Gadget.box, Widget.",
+    )
+    with pytest.raises(HouseError, match="no camera"):
+        load_house(scene[0])
+
+
+def test_the_robot_is_the_same_in_every_style_of_file(world: World) -> None:
+    """The file's compiler settings, options and default classes are its own."""
+    ours = World(room())
+    for name in ("base", "left_wheel", "right_wheel"):
+        for field in ("mass", "inertia", "ipos"):
+            np.testing.assert_allclose(*(getattr(w.model.body(f"robot/{name}"), field) for w in (world, ours)))
+    for geom in ("lower_hull", "upper_hull", "left_tyre"):
+        for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group", "size"):
+            np.testing.assert_array_equal(*(getattr(w.model.geom(f"robot/{geom}"), field) for w in (world, ours)))
+    for field in ("timestep", "integrator", "cone", "disableflags", "enableflags"):
+        assert getattr(world.model.opt, field) == getattr(ours.model.opt, field)
+
+
+def test_free_things_can_be_pushed_and_hinged_ones_stand(world: World) -> None:
+    world.reset(Pose(-2.05, 1.2, 0.0))
+    before = world.data.body("Stool_7").xpos.copy()
+    for _ in range(3):
+        world.move(Action.MOVE_FORWARD)
+    assert np.hypot(*(world.data.body("Stool_7").xpos - before)[:2]) > 0.05
+    model = world.model
+    hinged = model.geom_bodyid[[g for g in range(model.ngeom) if model.geom(g).name.startswith("Sideboard_door")]]
+    assert len(hinged)
+    assert not model.body_weldid[hinged].any()
+
+
+def test_a_doorway_in_a_mesh_is_open(world: World) -> None:
+    truth = GroundTruth(world)
+    distance_m = truth.space().distance_at(truth.target("sofa").distance_m, -1.0, 0.0)
+    assert 1.3 < distance_m < 2.6  # straight through, to within 1 m of the sofa's corner
+    assert truth.target("sofa").region.satisfied(np.array([[1.3, 0.1]])).all()
+
+
+def test_labels_reach_the_camera_and_what_has_none_is_void(scene: tuple[Path, Path]) -> None:
+    start = Pose(0.6, -0.6, -0.43)
+    env = ObjectNavEnv(house=scene[0], labels=scene[1], goal="sofa", start=start, truth=("geom",), profile="good")
+    try:
+        observation, _ = env.reset(seed=0)
+        numbers, model = env.truth_images["geom"], env.scene.world.model
+    finally:
+        env.close()
+    for geom, category in (("Gadget.box", "void"), ("Ground", "floor"), ("Shell.E", "wall")):
+        number = model.geom(geom).id
+        assert set(observation["semantic"][numbers == number]) == {MPCAT40_ID[category]}, geom
+    assert observation["rgb"].std() > 5.0
+
+
+def test_the_oracle_finds_things_and_the_run_tells_what_was_left_out(
+    scene: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--house", str(scene[0]), "--labels", str(scene[1]), "--agent", "oracle", "--episodes", "3"]
+    assert run.entry([*options, "--out", str(tmp_path / "run")]) == 0
+    told = capsys.readouterr().out
+    assert "House 'flat': 2 visible geoms have no label and became void: Gadget.box, Widget." in told
+    lines = [json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines()]
+    assert [line["success"] for line in lines] == [1.0, 1.0, 1.0]
+
+
+def test_a_scene_without_a_floor_is_refused_with_the_names_that_a_rule_could_go_by(tmp_path: Path) -> None:
+    rules = {pattern: category for pattern, category in LABELS.items() if category != "floor"}
+    house, labels = write_scene(tmp_path / "s", labels=rules)
+    with pytest.raises(HouseError, match=r"without floor.*3 visible geoms have no label.*Ground, Gadget.box, Widget"):
+        load_house(house, labels_path=labels)
+
+
+def test_a_mesh_that_is_missing_is_one_sentence(tmp_path: Path) -> None:
+    house, labels = write_scene(tmp_path / "s", scene=SCENE)
+    (house.parent / "meshes" / "arch.obj").unlink()
+    with pytest.raises(HouseError, match=r"flat\.xml.*arch\.obj") as refused:
+        load_house(house, labels_path=labels)
+    assert "\n" not in str(refused.value)
+
+
+# ---- robots
+
+
+@pytest.fixture(scope="module")
+def carrier(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A robot in another style than ours: a deck on two wheels and a castor, with a mast and a head."""
+    return write_robot(tmp_path_factory.mktemp("robot") / "carrier")
+
+
+def _tyres(world: World) -> np.ndarray:
+    return np.array([world.data.geom(f"robot/file/{side}_tyre").xpos for side in ("left", "right")])
+
+
+def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    config, camera = load_robot(carrier)
+    assert config.model.radius_m == pytest.approx(math.hypot(0.02 + 0.14, 0.12) + 0.005)  # the deck's corner and skin
+    assert config.model.height_m == pytest.approx(0.075 + 0.1 + 0.65 + 0.05 + 0.005)
+    assert camera.height_m == 0.82
+    world = World(open_floor(), robot=config)
+    world.reset(Pose(1.0, 2.0, 0.5 * math.pi))
+    base = world.model.body("robot/base").id
+    assert world.model.body_subtreemass[base] == pytest.approx(9 + 2 * 0.5 + 0.1 + 1.5 + 0.8)
+    np.testing.assert_allclose(world.data.geom("robot/file/deck").xpos, (1.0, 2.02, 0.135), atol=1e-3)
+    np.testing.assert_allclose(_tyres(world), [(0.85, 2.0, 0.075), (1.15, 2.0, 0.075)], atol=1e-3)
+    ours, hull = World(open_floor()).model.geom("robot/lower_hull"), world.model.geom("robot/file/hull_1")
+    for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
+        np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
+    assert capfd.readouterr().err == ""  # MuJoCo finds nothing to warn of
+
+
+def test_where_a_file_shows_its_robot_does_not_matter(carrier: Path, tmp_path: Path) -> None:
+    elsewhere = write_robot(tmp_path / "r", robot=ROBOT.replace('pos="0.4 0.1 0.075"', 'pos="-3 2 0.4"'))
+    (here, _), (there, _) = load_robot(carrier), load_robot(elsewhere)
+    assert there.body.height_m == pytest.approx(here.body.height_m)
+    assert there.body.radius_m == pytest.approx(here.body.radius_m)
+    worlds = [World(open_floor(), robot=config) for config in (here, there)]
+    for world in worlds:
+        world.reset(Pose(1.0, 0.0, 0.0))
+    np.testing.assert_allclose(_tyres(worlds[0]), _tyres(worlds[1]), atol=1e-6)
+
+
+def test_motors_are_as_strong_and_as_quick_for_the_weight_as_ours(carrier: Path) -> None:
+    theirs, ours = load_robot(carrier)[0], RobotConfig()
+    for of in (lambda wheels: wheels.max_push_n, lambda wheels: wheels.motor_gain_nm_s / wheels.radius_m**2):
+        assert of(theirs.wheels) / theirs.body.mass_kg == pytest.approx(of(ours.wheels) / ours.body.mass_kg)
+
+
+@pytest.mark.parametrize("box_floor", [False, True])
+def test_a_robot_from_elsewhere_drives_as_exactly_as_ours(carrier: Path, box_floor: bool) -> None:
+    world = World(room(6, 6, box_floor=box_floor), robot=load_robot(carrier)[0])
+    world.reset(Pose(0.0, 0.0, 0.3))
+    for action in (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.TURN_RIGHT) * 2:
+        motion = world.move(action)
+        assert motion.ended == "reached"
+        forward_m, turn = (0.25, 0.0) if action == Action.MOVE_FORWARD else (0.0, math.radians(30.0))
+        assert motion.displacement_m == pytest.approx(forward_m, abs=0.002)
+        assert abs(motion.yaw_change_rad) == pytest.approx(turn, abs=0.003)
+        assert motion.yaw_change_rad * (1 if action == Action.TURN_LEFT else -1) > -0.003
+    x, y = (0.5 * (trig(0.3) + trig(0.3 + math.pi / 6)) for trig in (math.cos, math.sin))
+    assert (world.pose.x_m, world.pose.y_m) == pytest.approx((x, y), abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("low_m", "high_m", "stops_at_m"),
+    [(0.0, 0.3, 1.0 - 0.165), (0.3, 0.5, 1.0 - 0.035), (0.76, 0.86, 1.0 - 0.055), (0.95, 1.2, math.inf)],
+    ids=["deck", "mast", "head", "nothing"],
+)
+def test_what_stops_a_robot_from_elsewhere_is_its_own_shape(
+    carrier: Path, low_m: float, high_m: float, stops_at_m: float
+) -> None:
+    centre, half = (1.25, 0.0, 0.5 * (low_m + high_m)), (0.25, 0.5, 0.5 * (high_m - low_m))
+    world = World(with_box(open_floor(), "table_00", centre_m=centre, half_m=half), robot=load_robot(carrier)[0])
+    world.reset(Pose(0.0, 0.0, 0.0))
+    motions = [world.move(Action.MOVE_FORWARD) for _ in range(6)]
+    if math.isinf(stops_at_m):
+        assert not any(motion.collided for motion in motions)
+        return
+    hit = next(motion for motion in motions if motion.collided)
+    assert [contact.instance for contact in hit.contacts] == ["table_00"]
+    assert world.pose.x_m == pytest.approx(stops_at_m, abs=0.012)  # it backs off by millimetres
+
+
+def test_the_free_space_is_that_of_the_robot_that_drives(carrier: Path) -> None:
+    config, _ = load_robot(carrier)
+    ours, theirs = World(room(4, 4)), World(room(4, 4), robot=config)
+    edges = [np.flatnonzero(GroundTruth(world).space().free.any(axis=0)) for world in (ours, theirs)]
+    lost_m = 0.025 * (len(edges[0]) - len(edges[1]))
+    assert lost_m == pytest.approx(2 * (config.model.radius_m - ours.robot.radius_m), abs=0.026)
+
+
+def test_the_camera_sits_where_the_sidecar_mounts_it(tmp_path: Path) -> None:
+    (tmp_path / "room.xml").write_text(
+        with_box(room(4, 4), "sofa_00", centre_m=(0, 1.5, 0.2), half_m=(0.2, 0.2, 0.2)).spec.to_xml()
+    )
+    depths = []
+    for number, forward_m in enumerate((0.0, 0.12, -0.1)):
+        config, camera = load_robot(write_robot(tmp_path / str(number), camera_forward_m=forward_m))
+        assert config.model.camera_forward_m == forward_m
+        start = Pose(-1.0, 0.0, 0.0)
+        env = ObjectNavEnv(
+            house=tmp_path / "room.xml", goal="sofa", start=start, robot=config, camera=camera, sensors=("depth",)
+        )
+        try:
+            observation, _ = env.reset(seed=0)
+            depths.append(float(observation["depth"][240, 320]))
+            assert observation["gps"] == pytest.approx((0.0, 0.0), abs=0.002)  # the robot's place, not the camera's
+        finally:
+            env.close()
+    assert depths == pytest.approx([3.0, 2.88, 3.1], abs=0.01)
+
+
+def test_a_run_with_another_robot_names_it_and_goes_on_with_no_other(
+    carrier: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    (tmp_path / "lounge.xml").write_text(house.spec.to_xml())
+    options = ["--house", str(tmp_path / "lounge.xml"), "--agent", "oracle", "--out", str(tmp_path / "run")]
+    options += ["--start-deg", "-2 0 90", "--episodes", "1"]
+    assert run.entry([*options, "--robot", str(carrier)]) == 0
+    config = json.loads((tmp_path / "run" / "config.json").read_text())
+    assert config["robot"] == str(carrier)
+    assert len(config["robot_sha256"]) == 64
+    assert run.entry(options) == 2
+    assert "robot" in capsys.readouterr().err
+    options[-3:] = ["0 1.81 53", "--episodes", "1"]  # ours fits there, a corner of the deck does not
+    assert run.entry([*options, "--robot", str(carrier), "--out", str(tmp_path / "tight")]) == 2
+    assert "the robot (radius 0.20" in capsys.readouterr().err
+
+
+WRONG = {
+    "no such joint": ({"wheel_joints": ["hub_l", "hub_x"]}, {}, "no joint 'hub_x'.*It has: hub_l, hub_r, pan"),
+    "one joint": ({"wheel_joints": ["hub_l"]}, {}, '"wheel_joints": '),
+    "swapped joints": ({"wheel_joints": ["hub_r", "hub_l"]}, {}, r"on the left \(\+y\)"),
+    "no radius of the wheels": ({"wheel_radius_m": None}, {}, '"wheel_radius_m", a number > 0; it has null'),
+    "an unknown key": ({"wheel_radius": 0.1}, {}, "'wheel_radius', which is no key. There is: wheel_joints"),
+    "an unknown caster": ({"casters": ["caster"]}, {}, "no geom and no body 'caster'"),
+    "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m.*name what slides.*casters"),
+    "a radius that is too small": ({"radius_m": 0.15}, {}, r"radius_m in the sidecar is 0\.150 m.*at least 0\.205"),
+    "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must stay inside .* 0\.205 m"),
+    "a robot that heads along y": ({}, {'"0.4 0.1 0.075"': '"0.4 0.1 0.075" euler="90 0 0"'}, "with .x ahead"),
+    "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is no hinge"),
+    "a mesh that is missing": ({}, {"cube.obj": "deck.obj"}, r"deck\.obj"),
+    "another format": ({}, {"<mujoco": "<robot"}, "no MJCF file that MuJoCo can read"),
+    "two bodies": ({"casters": None}, {ROBOT: TWO_BODIES}, "hang on different bodies of the world"),
+    "a body that nothing touches": ({}, {"</default>\n  </default>": HOLLOW}, "nothing of it collides"),
+}
+
+
+@pytest.mark.parametrize(("sidecar", "changed", "sentence"), WRONG.values(), ids=WRONG)
+def test_what_a_robot_lacks_is_said_in_one_sentence(
+    tmp_path: Path, sidecar: dict[str, object], changed: dict[str, str], sentence: str
+) -> None:
+    text = ROBOT
+    for before, after in changed.items():
+        assert before in text
+        text = text.replace(before, after)
+    file = write_robot(tmp_path / "r", robot=text, **sidecar)
+    with pytest.raises(ConfigError, match=sentence) as refused:
+        load_robot(file)
+    assert "carrier.xml" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_sidecar_that_is_missing_is_named(carrier: Path, tmp_path: Path) -> None:
+    (tmp_path / "carrier.xml").write_text(carrier.read_text())
+    with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' is not there"):
+        load_robot(tmp_path / "carrier.xml")

@@ -1,0 +1,140 @@
+"""Which lamps light a picture."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.houses.house import House
+from sim.houses.labels import rendered_geoms
+from sim.interface import CameraModel
+from sim.robot.config import RobotConfig
+from sim.sensors.camera import Z_NEAR_M, Camera
+from sim.sensors.lamps import LAMPS_LIT, Lamps
+from sim.sensors.occlusion import Visibility
+from sim.world.compile import compose
+from tests.helpers.worlds import room, with_box
+
+FORWARD = np.array([1.0, 0.0, 0.0])
+
+
+def two_rooms() -> House:
+    """A wall with a doorway at y < -1 between two halves of a room; a lamp in each half, the left one first."""
+    house = with_box(room(8, 5), "wall_10", centre_m=(0, 0.75, 1.25), half_m=(0.05, 1.75, 1.25))
+    spec = house.spec
+    for light in list(spec.lights):
+        spec.delete(light)
+    for x in (-2.0, 2.0):
+        spec.worldbody.add_light(pos=(x, 1.0, 2.3), dir=(0, 0, -1), castshadow=True, cutoff=80, exponent=1)
+    return house
+
+
+class Eye:
+    """A camera in a house, and the lamps it would choose."""
+
+    def __init__(self, house: House, *, profile: str = "fast", cull: bool = True) -> None:
+        self.model, self.labels, _ = compose(house, RobotConfig())
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_forward(self.model, self.data)
+        drawable = rendered_geoms(self.model)
+        visibility = Visibility(self.model, drawable, CameraModel(), Z_NEAR_M)
+        self.visibility = visibility
+        self.lamps = Lamps(self.model, visibility, np.flatnonzero(drawable))
+        self.profile, self.cull = profile, cull
+
+    def choose(self, x_m: float, y_m: float) -> list[int]:
+        return self.lamps.choose(self.data, np.array([x_m, y_m, 0.88]), FORWARD)
+
+    def casting(self, pose: Pose) -> np.ndarray:
+        """Ids of what is drawn for the shadow that it may throw."""
+        eye_m, axes = self._frame(pose)
+        self.visibility.visible(self.data, eye_m, pose.yaw_rad)
+        return self.lamps.casters(self.data, 0, eye_m, axes)
+
+    def _frame(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
+        c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
+        return np.array([pose.x_m, pose.y_m, 0.88]), np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    def rgb(self, pose: Pose) -> np.ndarray:
+        camera = Camera(self.model, self.labels, profile=self.profile, cull=self.cull)
+        image = camera.render(self.data, pose, ("rgb",))["rgb"]
+        camera.close()
+        return image
+
+
+def test_the_lamp_behind_a_wall_is_off_and_through_the_doorway_it_is_on() -> None:
+    eye = Eye(two_rooms())
+    assert eye.choose(-3.0, 1.0) == [0]
+    assert eye.choose(3.0, 1.0) == [1]
+    assert set(eye.choose(0.0, -1.8)) == {0, 1}
+
+
+def test_the_nearest_to_what_is_looked_at_comes_first_and_no_more_than_some_shine() -> None:
+    house = room(20, 4)
+    for x in (-8.0, -4.0, 0.0, 4.0, 8.0):
+        house.spec.worldbody.add_light(pos=(x, 0, 2.3), dir=(0, 0, -1))
+    chosen = Eye(house).choose(2.0, 0.0)
+    assert len(chosen) == LAMPS_LIT
+    assert chosen[0] == 4  # of the six, number 4 hangs 0.5 m past the place looked at
+
+
+def test_light_from_everywhere_always_shines() -> None:
+    house = two_rooms()
+    for _ in range(3):
+        house.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 0, -1))
+    eye = Eye(house)
+    eye.lamps.light(eye.choose(-3.0, 1.0))
+    assert eye.model.light_active.tolist() == [1, 0, 1, 1, 1]
+    eye.lamps.restore()
+    assert eye.model.light_active.tolist() == [1, 1, 1, 1, 1]
+
+
+def test_only_the_first_lamp_throws_shadows() -> None:
+    eye = Eye(two_rooms())
+    eye.lamps.light([1, 0])
+    assert eye.model.light_castshadow.tolist() == [0, 1]
+    eye.lamps.restore()
+    assert eye.model.light_castshadow.tolist() == [1, 1]
+
+
+def test_a_lamp_behind_a_wall_changes_no_pixel() -> None:
+    alone = two_rooms()
+    alone.spec.delete(alone.spec.lights[1])
+    pose = Pose(-1.0, 1.5, np.pi, 0.0)
+    np.testing.assert_array_equal(Eye(two_rooms()).rgb(pose), Eye(alone).rgb(pose))
+
+
+def test_what_hangs_out_of_the_picture_throws_its_shadow_into_it_and_what_is_behind_a_wall_none() -> None:
+    board = with_box(two_rooms(), "picture_00", centre_m=(-2.0, 0.5, 1.8), half_m=(0.5, 0.05, 0.3))
+    elsewhere = with_box(board, "table_00", centre_m=(2.0, 0.5, 1.8), half_m=(0.5, 0.05, 0.3))
+    pose = Pose(-2.0, 0.9, -np.pi / 2, 0.0)
+    shadow = Eye(elsewhere, profile="good").rgb(pose)
+    np.testing.assert_array_equal(shadow, Eye(elsewhere, profile="good", cull=False).rgb(pose))
+    bare = Eye(two_rooms(), profile="good").rgb(pose)
+    assert (np.abs(bare.astype(int) - shadow) > 20).any(axis=2).mean() > 0.03
+
+
+def test_what_throws_its_shadow_away_from_the_picture_is_left_out_and_no_pixel_changes() -> None:
+    house = two_rooms()
+    for i in range(12):
+        angle = 2 * np.pi * i / 12
+        centre_m = (-2.0 + 1.5 * np.cos(angle), 0.9 * np.sin(angle), 0.4 + 0.15 * (i % 5))
+        house = with_box(house, f"table_{i:02d}", centre_m=centre_m, half_m=(0.12, 0.12, 0.1))
+    eye, whole = Eye(house, profile="good"), Eye(house, profile="good", cull=False)
+    left_out = 0
+    for yaw_rad in np.linspace(-np.pi, np.pi, 8, endpoint=False):
+        pose = Pose(-2.0, 0.0, float(yaw_rad), 0.0)
+        np.testing.assert_array_equal(eye.rgb(pose), whole.rgb(pose))
+        left_out += eye.lamps.lit(eye.data, 0).sum() - len(eye.casting(pose))
+    assert left_out > 8 * 4
+
+
+def test_a_sun_that_throws_shadows_lets_all_stay_that_the_lamp_shines_on() -> None:
+    board = with_box(two_rooms(), "picture_00", centre_m=(-2.0, -2.0, 1.8), half_m=(0.5, 0.05, 0.3))
+    away = Pose(-2.0, 0.9, np.pi / 2, 0.0)
+    board.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 1, -1), castshadow=False)
+    without = len(Eye(board).casting(away))
+    board.spec.lights[-1].castshadow = True
+    sunny = Eye(board)
+    assert len(sunny.casting(away)) == sunny.lamps.lit(sunny.data, 0).sum() > without

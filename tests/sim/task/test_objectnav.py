@@ -1,0 +1,240 @@
+"""Episodes of a few actions, with the real robot in rooms of a few boxes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.episodes.drawing import draw_start
+from sim.errors import EpisodeError
+from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.interface import MPCAT40_ID, Action, ConfigError
+from sim.task.objectnav import Task
+from sim.world.world import World
+from tests.helpers.worlds import room, two_storeys, with_box, with_movable
+
+FORWARD, LEFT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP
+
+
+def bed_room() -> World:
+    """8 x 4 m; a bed whose near edge is at x = 2."""
+    return World(with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25)))
+
+
+def begin(world: World, goal: str, start: Pose, **options) -> Task:
+    task = Task(world, **options)
+    world.reset(start)
+    task.begin(goal, start)
+    return task
+
+
+def act(world: World, task: Task, *actions: Action) -> dict:
+    for action in actions:
+        task.observe(action, world.move(action), np.zeros((4, 4), np.uint8))
+    return task.metrics()
+
+
+def test_the_straight_way_to_the_goal_has_success_and_spl_one():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    assert task.metrics()["distance_to_goal"] == pytest.approx(2.0, abs=0.02)
+    result = act(world, task, *[FORWARD] * 8, STOP)
+    assert result["success"] == 1.0
+    assert result["spl"] == pytest.approx(1.0, abs=0.01)
+    assert result["soft_spl"] == pytest.approx(result["spl"])
+    assert result["distance_to_goal"] == 0.0
+    assert result["num_steps"] == 9
+    assert result["path_length"] == pytest.approx(2.0, abs=0.01)
+    assert result["end_reason"] == "stop"
+    assert task.terminated
+    assert not task.truncated
+
+
+def test_a_stop_one_step_too_early_fails_with_the_distance_that_was_left():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    result = act(world, task, *[FORWARD] * 7, STOP)
+    assert result["success"] == result["spl"] == 0.0
+    assert result["distance_to_goal"] == pytest.approx(0.25, abs=0.02)
+    assert result["soft_spl"] == pytest.approx(1.75 / 2.0, abs=0.02)
+
+
+def test_standing_where_the_goal_is_without_stop_is_no_success():
+    world = bed_room()
+    task = begin(world, "bed", Pose(1.2, 0.0, 0.0))
+    result = act(world, task, LEFT)
+    assert result["success"] == 0.0
+    assert result["distance_to_goal"] == 0.0
+
+
+def test_a_stop_at_once_where_the_goal_is_has_spl_one():
+    world = bed_room()
+    result = act(world, begin(world, "bed", Pose(1.2, 0.0, 0.0)), STOP)
+    assert result["success"] == result["spl"] == result["soft_spl"] == 1.0
+    assert result["path_length"] == 0.0
+
+
+def test_the_last_step_truncates_and_no_action_counts_after_it():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0), max_steps=3)
+    assert act(world, task, LEFT, LEFT, LEFT)["end_reason"] == "max_steps"
+    assert task.truncated
+    assert not task.terminated
+    with pytest.raises(EpisodeError, match="has ended"):
+        act(world, task, LEFT)
+
+
+def test_a_stop_as_the_last_step_is_a_stop():
+    world = bed_room()
+    task = begin(world, "bed", Pose(1.2, 0.0, 0.0), max_steps=1)
+    assert act(world, task, STOP)["end_reason"] == "stop"
+    assert task.success
+
+
+def test_blocked_motions_are_collisions_and_the_way_is_what_was_really_moved():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
+    result = act(world, task, FORWARD, FORWARD)
+    assert (result["collisions"], result["touches"]) == (2, 0)
+    assert result["path_length"] < 0.2
+    assert result["distance_to_goal"] == pytest.approx(4.8, abs=0.03)
+
+
+def test_a_thing_that_is_pushed_along_is_touched_and_no_collision():
+    world = World(with_movable(bed_room().house, "stool_00", xy_m=(-0.4, 0.0), mass_kg=1.0))
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    result = act(world, task, FORWARD, FORWARD, LEFT)
+    assert result["collisions"] == 0
+    assert 1 <= result["touches"] <= 2
+
+
+def test_a_new_episode_starts_from_nothing():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
+    act(world, task, FORWARD, FORWARD, STOP)
+    world.reset(Pose(-1.0, 0.0, 0.0))
+    task.begin("bed", Pose(-1.0, 0.0, 0.0))
+    result = task.metrics()
+    assert not task.done
+    assert (result["collisions"], result["num_steps"], result["path_length"]) == (0, 0, 0.0)
+
+
+def test_the_goal_seen_once_in_any_frame_counts_as_explored():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    assert task.metrics()["gt_explored"] is False
+    task.look(np.full((4, 4), MPCAT40_ID["bed"], np.uint8))
+    assert act(world, task, LEFT)["gt_explored"] is True
+
+
+def test_a_robot_that_turns_on_the_spot_for_a_hundred_steps_is_trapped():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
+    still = world.move(STOP)
+    for _ in range(99):
+        task.observe(LEFT, still)
+    assert task.metrics()["trapped"] is False
+    task.observe(LEFT, still)
+    assert task.metrics()["trapped"] is True
+
+
+def test_a_goal_that_was_pushed_counts_where_it_was_pushed_to():
+    world = World(with_movable(room(8, 4), "stool_00", xy_m=(0.0, 0.0)))
+    task = begin(world, "stool", Pose(-3.0, 0.0, 0.0))
+    joint = world.model.jnt_qposadr[world.model.body_jntadr[world.model.body("stool_00").id]]
+    world.data.qpos[joint] = -2.0
+    mujoco.mj_forward(world.model, world.data)
+    result = act(world, task, STOP)
+    assert result["success"] == 1.0
+    assert result["distance_to_goal"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ("spaceship", "Unknown goal 'spaceship'. There is: chair, table"),
+        ("sofa", "House 'room' has no 'sofa'. It has: bed."),
+    ],
+)
+def test_a_goal_that_cannot_be_is_refused_with_what_there_is(goal, message):
+    with pytest.raises(EpisodeError, match=message):
+        begin(bed_room(), goal, Pose(-1.0, 0.0, 0.0))
+
+
+def test_a_goal_without_a_way_to_it_is_refused():
+    house = with_box(room(8, 4), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    house = with_box(house, "wall_10", centre_m=(0, 0, 1.25), half_m=(0.05, 2.0, 1.25))
+    with pytest.raises(EpisodeError, match="no way from"):
+        begin(World(house), "bed", Pose(-1.0, 0.0, 0.0))
+
+
+UPSTAIRS = Pose(0.5, 0.0, 0.0, floor_z_m=3.0)
+
+
+def test_a_goal_on_another_storey_can_be_asked_for_and_fails_by_stairs():
+    world = World(two_storeys())
+    task = begin(world, "sofa", Pose(1.5, 1.4, 0.0), max_steps=3)
+    assert task.metrics()["shortest_path"] is None
+    result = act(world, task, FORWARD, LEFT, LEFT)
+    assert (result["failure"], result["end_reason"]) == ("stairs", "max_steps")
+    assert result["distance_to_goal"] is None
+    assert (result["success"], result["spl"], result["soft_spl"]) == (0.0, 0.0, 0.0)
+
+
+def test_a_stop_right_under_the_goal_is_no_success():
+    world = World(two_storeys())
+    result = act(world, begin(world, "sofa", Pose(1.5, 1.4, 0.0)), STOP)
+    assert (result["success"], result["failure"]) == (0.0, "false_detection")
+
+
+def test_the_goal_of_the_storey_one_stands_on_is_found_there():
+    world = World(two_storeys())
+    for goal, start in (("sofa", UPSTAIRS), ("bed", Pose(0.5, 0.0, 0.0))):
+        result = act(world, begin(world, goal, start), FORWARD, FORWARD, STOP)
+        assert result["success"] == 1.0, goal
+        assert result["failure"] is None
+        assert result["spl"] > 0.7
+
+
+def test_each_storey_looks_for_the_other_ones_goal_in_vain():
+    world = World(two_storeys())
+    result = act(world, begin(world, "bed", UPSTAIRS, max_steps=2), FORWARD, LEFT)
+    assert (result["success"], result["failure"]) == (0.0, "stairs")
+
+
+def test_an_episode_is_never_drawn_with_its_goal_on_another_storey():
+    with_sofa = World(two_storeys())
+    with pytest.raises(EpisodeError, match="no instance can be reached"):
+        draw_start(with_sofa, Task(with_sofa), "sofa", np.random.default_rng(0))
+
+
+def test_the_trajectory_has_a_line_for_each_moment_and_action():
+    world = bed_room()
+    task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
+    task.look(np.full((4, 4), MPCAT40_ID["bed"], np.uint8))
+    result = act(world, task, FORWARD, LEFT, STOP)
+    walked = task.trajectory()
+    assert walked.actions.tolist() == [FORWARD, LEFT, STOP]
+    assert walked.goal_share.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert walked.collided.tolist() == [True, False, False]
+    assert walked.contacts[0] == pytest.approx([0.0, -4.0, 0.0], abs=0.05)
+    assert walked.poses[0] == pytest.approx([-3.7, 0.0, math.pi, 0.0])
+    assert walked.poses[-1] == pytest.approx([world.pose.x_m, world.pose.y_m, world.pose.yaw_rad, 0.0], abs=1e-5)
+    assert walked.moved_m.sum() == pytest.approx(result["path_length"], abs=1e-5)
+    assert walked.distance_m[-1] == pytest.approx(result["distance_to_goal"], abs=1e-5)
+    assert walked.nearest_instance_m == pytest.approx(2.0 - world.pose.x_m, abs=1e-3)
+    assert (walked.end_reason, walked.success, walked.goal_on_storey) == ("stop", False, True)
+
+
+def test_nothing_counts_before_an_episode_has_begun():
+    task = Task(bed_room())
+    with pytest.raises(EpisodeError, match="begin"):
+        task.metrics()
+
+
+def test_an_episode_needs_a_step():
+    with pytest.raises(ConfigError, match="max_steps"):
+        Task(bed_room(), max_steps=0)

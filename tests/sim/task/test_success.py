@@ -1,0 +1,222 @@
+"""Where a STOP succeeds, in rooms of a few boxes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sim.geometry.convex import lines_blocked
+from sim.gl import mujoco
+from sim.houses.house import House, read_rooms
+from sim.houses.labels import read_labels
+from sim.task.success import GoalRegion, sight_blockers
+from sim.world.freespace import FreeSpace
+from tests.helpers.worlds import room, with_box, with_movable
+
+
+def compiled(house: House):
+    model = house.spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return model, data, read_labels(model)
+
+
+def region(house: House, goal: str, **options) -> GoalRegion:
+    return GoalRegion(*compiled(house), goal, **options)
+
+
+def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5, group: int = 0) -> House:
+    """6 x 4 m, cut along x = 0 by a wall from `low_m` to `high_m`; a bed against it on the right side."""
+    half = 0.5 * (high_m - low_m)
+    house = with_box(room(6, 4), wall, centre_m=(0, 0, low_m + half), half_m=(0.05, 2.0, half), group=group)
+    return with_box(house, "bed_00", centre_m=(0.55, 0, 0.25), half_m=(0.5, 0.5, 0.25))
+
+
+@given(angle=st.floats(0, 6.28), excess=st.sampled_from([-0.002, 0.002]))
+@settings(max_examples=30, deadline=None)
+def test_a_stop_succeeds_up_to_one_metre_from_the_footprint(angle, excess):
+    c, s = np.cos(angle), np.sin(angle)
+    corner = np.array([np.copysign(0.3, c), np.copysign(0.2, s)])
+    x, y = corner + (1.0 + excess) * np.array([c, s])
+    assert TABLE_REGION.succeeds(float(x), float(y)) == (excess < 0)
+
+
+TABLE_REGION = region(with_box(room(6, 6), "table_00", centre_m=(0, 0, 0.4), half_m=(0.3, 0.2, 0.4)), "table")
+
+
+def test_a_robot_under_a_table_has_found_it_though_its_edge_is_far():
+    house = with_box(room(8, 8), "table_00", centre_m=(0, 0, 1.2), half_m=(2.5, 2.5, 0.02))
+    assert region(house, "table").succeeds(0.1, 0.0)
+
+
+def test_a_wall_between_hides_the_goal():
+    there = region(two_rooms(), "bed")
+    assert there.succeeds(1.5, 0.0)
+    assert not there.succeeds(-0.4, 0.0)
+
+
+@pytest.mark.parametrize("wall", ["wall_10", "door_00", "window_00"])
+def test_walls_doors_and_windows_hide_it(wall):
+    assert not region(two_rooms(wall), "bed").succeeds(-0.4, 0.0)
+
+
+@pytest.mark.parametrize("thing", ["cabinet_10", "curtain_00", "mirror_00"])
+def test_other_things_do_not_hide_it(thing):
+    assert region(two_rooms(thing), "bed").succeeds(-0.4, 0.0)
+
+
+@pytest.mark.parametrize(("low_m", "high_m", "hides"), [(0.0, 0.87, False), (0.0, 0.89, True), (0.9, 2.5, False)])
+def test_only_what_spans_the_height_of_the_camera_hides(low_m, high_m, hides):
+    assert region(two_rooms(low_m=low_m, high_m=high_m), "bed").succeeds(-0.4, 0.0) != hides
+
+
+def test_a_wall_that_is_not_rendered_hides_nothing():
+    assert region(two_rooms(group=3), "bed").succeeds(-0.4, 0.0)
+
+
+def test_a_wall_of_two_pieces_has_no_slit_where_they_meet():
+    house = room(6, 4)
+    for number, y in ((10, 1.0), (11, -1.0)):
+        house = with_box(house, f"wall_{number}", centre_m=(0, y, 1.25), half_m=(0.05, 1.0, 1.25))
+    house = with_box(house, "bed_00", centre_m=(0.55, 0, 0.25), half_m=(0.5, 0.5, 0.25))
+    assert not region(house, "bed").succeeds(-0.4, 0.0)
+
+
+def test_a_picture_on_a_wall_is_found_from_its_own_room_only():
+    house = with_box(two_rooms(), "picture_00", centre_m=(0.06, 1.2, 1.5), half_m=(0.01, 0.3, 0.2))
+    there = region(house, "picture")
+    assert there.succeeds(0.9, 1.2)
+    assert there.succeeds(0.3, 0.5)
+    assert not there.succeeds(-0.3, 1.2)
+    assert not there.succeeds(1.2, 1.2)
+
+
+def test_a_picture_sunk_into_the_wall_is_found_by_what_stands_out():
+    house = with_box(two_rooms(), "picture_00", centre_m=(0.05, 1.2, 1.5), half_m=(0.02, 0.3, 0.2))
+    there = region(house, "picture")
+    assert there.succeeds(0.9, 1.2)
+    assert not there.succeeds(-0.3, 1.2)
+
+
+def test_a_shower_in_a_corner_is_found_though_two_of_its_sides_lie_in_walls():
+    house = with_box(room(4, 4), "shower_00", centre_m=(1.6, 1.6, 1.0), half_m=(0.45, 0.45, 1.0))
+    there = region(house, "shower")
+    assert there.succeeds(0.5, 1.5)
+    assert not there.succeeds(0.0, 1.5)
+    assert not there.succeeds(2.3, 1.6)
+
+
+def test_a_goal_seen_round_the_end_of_a_wall_counts_at_the_distance_of_what_is_seen():
+    # The wall ends at y = 0; from (-0.3, -0.25) the near side of the bed is hidden, its far part is not.
+    house = with_box(room(6, 6), "wall_10", centre_m=(0, -1.5, 1.25), half_m=(0.05, 1.5, 1.25))
+    house = with_box(house, "bed_00", centre_m=(0.55, 0.0, 0.25), half_m=(0.5, 0.5, 0.25))
+    there = region(house, "bed")
+    assert there.succeeds(-0.3, -0.25)
+    assert not there.succeeds(-0.3, -1.2)
+
+
+def test_the_boundary_alone_says_what_all_points_of_the_footprint_say():
+    house = two_rooms()
+    house = with_box(house, "wall_11", centre_m=(1.4, 0.6, 1.25), half_m=(0.05, 0.5, 1.25), yaw_rad=0.4)
+    house = with_box(house, "bed_01", centre_m=(1.7, -0.9, 0.2), half_m=(0.5, 0.2, 0.2), yaw_rad=0.7)
+    model, data, labels = compiled(house)
+    there = GoalRegion(model, data, labels, "bed")
+    grid = np.stack(np.meshgrid(np.arange(-1, 3, 0.02), np.arange(-2, 2, 0.02)), axis=-1).reshape(-1, 2)
+    points = np.concatenate([fp.boundary_m.data for fp in there.footprints])
+    inside = grid[np.any([fp.contains(grid) for fp in there.footprints], axis=0)]
+    points = np.concatenate([points, inside])
+    blockers = sight_blockers(model, data, labels, 0.88)
+    rng = np.random.default_rng(0)
+    places = rng.uniform((-1.5, -1.9), (2.9, 1.9), (150, 2))
+    for place in places:
+        near = points[np.hypot(*(points - place).T) <= 1.0]
+        expected = bool((~lines_blocked(np.broadcast_to(place, near.shape), near, blockers)).any())
+        assert there.succeeds(*place) == expected, place
+
+
+def test_the_mask_says_of_each_free_cell_what_the_test_at_stop_says_of_its_centre():
+    house = two_rooms()
+    model, data, labels = compiled(house)
+    space = FreeSpace(model, data, labels, rooms=read_rooms(model))
+    there = GoalRegion(model, data, labels, "bed")
+    mask = there.mask(space)
+    assert not (mask & ~space.free).any()
+    assert mask.any()
+    cells = np.argwhere(space.free)[::97]
+    assert [there.succeeds(*space.frame.to_metres(cell)) for cell in cells] == [bool(mask[tuple(c)]) for c in cells]
+
+
+def test_an_instance_on_another_storey_does_not_count():
+    house = with_box(room(6, 4), "floor_01", centre_m=(0, 0, 2.95), half_m=(3, 2, 0.05))
+    house = with_box(house, "sofa_00", centre_m=(1, 0, 3.3), half_m=(0.4, 0.4, 0.3))
+    assert not region(house, "sofa").succeeds(1.0, 1.0)
+    assert region(house, "sofa", floor_z_m=3.0).succeeds(1.0, 1.0)
+    assert region(house, "sofa", floor_z_m=2.1).succeeds(1.0, 1.0)
+
+
+def test_what_is_not_rendered_is_no_part_of_the_footprint():
+    spec = with_box(room(8, 4), "sofa_00", centre_m=(0, 0, 0.3), half_m=(0.3, 0.3, 0.3)).spec
+    spec.worldbody.add_geom(name="hull", type=mujoco.mjtGeom.mjGEOM_BOX, size=(2, 0.3, 0.3), pos=(0, 0, 0.3), group=3)
+    assert not region(House("hull", spec), "sofa").succeeds(1.9, 0.0)
+
+
+def test_the_footprint_of_a_ring_is_not_its_middle():
+    # A square frame of four boxes as one concave mesh would project its hull; its triangles leave the middle out.
+    spec = room(12, 12).spec
+    corners = [(x, y, z) for r in (3.0, 2.8) for x, y in ((r, r), (-r, r), (-r, -r), (r, -r)) for z in (0.3, 0.5)]
+    outer, inner = range(0, 8), range(8, 16)
+    faces = []
+    for i in range(4):
+        a, b = 2 * i, 2 * ((i + 1) % 4)
+        for ring, flip in ((outer, False), (inner, True)):
+            q = [ring[a], ring[b], ring[b + 1], ring[a + 1]]
+            faces += _quad(q[::-1] if flip else q)
+        faces += _quad([outer[a + 1], outer[b + 1], inner[b + 1], inner[a + 1]])
+        faces += _quad([outer[b], outer[a], inner[a], inner[b]])
+    spec.add_mesh(name="ring", uservert=np.ravel(corners).tolist(), userface=np.ravel(faces).tolist())
+    spec.worldbody.add_geom(
+        name="seating_00", type=mujoco.mjtGeom.mjGEOM_MESH, meshname="ring", contype=0, conaffinity=0
+    )
+    there = region(House("ring", spec), "seating")
+    assert not there.succeeds(0.0, 0.0)
+    assert there.succeeds(0.0, 1.9)
+    assert there.succeeds(0.0, 2.9)
+    assert not there.succeeds(0.0, 4.1)
+
+
+def _show_mesh(spec: mujoco.MjSpec, name: str, mesh: str) -> None:
+    spec.worldbody.add_geom(name=name, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=mesh, contype=0, conaffinity=0)
+
+
+def _quad(q: list[int]) -> list[tuple[int, int, int]]:
+    return [(q[0], q[1], q[2]), (q[0], q[2], q[3])]
+
+
+def test_a_wall_that_is_a_mesh_hides_where_it_is_and_not_where_its_doorway_is():
+    spec = room(6, 4).spec
+    vertices, faces = [], []
+    for y0, y1, z0 in ((-2.0, -0.5, 0.0), (0.5, 2.0, 0.0), (-0.5, 0.5, 2.0)):  # left, right, lintel
+        base = len(vertices)
+        vertices += [(x, y, z) for x in (-0.05, 0.05) for y in (y0, y1) for z in (z0, 2.5)]
+        for q in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+            faces += _quad([base + i for i in q])
+    spec.add_mesh(name="wall", uservert=np.ravel(vertices).tolist(), userface=np.ravel(faces).tolist())
+    _show_mesh(spec, "wall_10", "wall")
+    house = House("mesh_wall", spec)
+    for number, y in ((0, 0.0), (1, 1.4)):
+        house = with_box(house, f"stool_{number:02d}", centre_m=(0.5, y, 0.2), half_m=(0.1, 0.1, 0.2))
+    there = region(house, "stool")
+    assert there.succeeds(-0.4, 0.0)
+    assert not there.succeeds(-0.4, 1.4)
+
+
+def test_a_goal_counts_where_it_stands_now():
+    house = with_movable(room(8, 4), "stool_00", xy_m=(2.0, 0.0))
+    model, data, labels = compiled(house)
+    data.qpos[0] = -2.0
+    mujoco.mj_kinematics(model, data)
+    moved = GoalRegion(model, data, labels, "stool")
+    assert moved.succeeds(-1.2, 0.0)
+    assert not moved.succeeds(1.2, 0.0)

@@ -1,0 +1,138 @@
+"""A trajectory's file: comes back as it was, is small, and says clearly what it is not."""
+
+from __future__ import annotations
+
+import errno
+import json
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+import pytest
+
+from sim.geometry.pose import Pose
+from sim.interface import Action, ConfigError
+from sim.robot.contacts import Contact
+from sim.robot.drive import Motion
+from sim.task.trajectory import Recorder, Trajectory, read_trajectory, trajectory_file, write_trajectory
+
+STOPPED = Contact("chair_00", "leg", (1.0, 2.0, 0.3), (-1.0, 0.0, 0.0), 0.2, stopped=True)
+
+
+def walked(steps: int) -> Trajectory:
+    """A random walk with a collision each third action."""
+    rng = np.random.default_rng(steps)
+    recorder = Recorder(Pose(0.0, 0.0, 0.0), distance_m=8.0, goal_on_storey=True)
+    recorder.look(0.0)
+    for step in range(steps):
+        contacts = (STOPPED,) if step % 3 == 0 else ()
+        x, y, yaw, moved, share = rng.uniform(0, 1, 5).tolist()
+        recorder.move(
+            Motion(Action.MOVE_FORWARD, moved, 0.0, 1.0, "blocked" if contacts else "reached", contacts),
+            Pose(10 * x, 10 * y, yaw),
+            None if step == 1 else 5 * share,
+        )
+        recorder.look(share)
+    return recorder.trajectory(end_reason="max_steps", nearest_instance_m=1.25)
+
+
+def test_a_trajectory_comes_back_as_it_was_written(tmp_path: Path) -> None:
+    before, about = walked(30), {"agent": "stubborn", "goal": "chair", "start": [0.0, 1.0], "versions": {"a": "1"}}
+    write_trajectory(tmp_path / "t" / "e.npz", before, about)
+    after = read_trajectory(tmp_path / "t" / "e.npz")
+    for name, value in vars(before).items():
+        if isinstance(value, np.ndarray):
+            np.testing.assert_array_equal(getattr(after, name), value)
+        elif name != "about":
+            assert getattr(after, name) == value
+    assert after.about == about
+    assert np.isnan(after.distance_m[2])
+
+
+def test_five_hundred_steps_fit_into_fifty_kilobytes(tmp_path: Path) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(500), {})
+    assert (tmp_path / "e.npz").stat().st_size < 50_000
+
+
+def test_no_half_written_file_is_left(tmp_path: Path) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(3), {})
+    before = (tmp_path / "e.npz").read_bytes()
+    with pytest.raises(ValueError, match="JSON"):
+        write_trajectory(tmp_path / "e.npz", walked(4), {"bad": float("nan")})
+    assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
+    assert (tmp_path / "e.npz").read_bytes() == before
+
+
+def test_a_write_that_fails_half_way_leaves_only_what_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(3), {})
+    before = (tmp_path / "e.npz").read_bytes()
+
+    def full_disk(stream: IO[bytes], **_: object) -> None:
+        stream.write(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", full_disk)
+    with pytest.raises(ConfigError, match="No space left"):
+        write_trajectory(tmp_path / "e.npz", walked(4), {})
+    assert [file.name for file in tmp_path.iterdir()] == ["e.npz"]
+    assert (tmp_path / "e.npz").read_bytes() == before
+
+
+def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigError, match="Cannot write the trajectory"):
+        write_trajectory(tmp_path / "file" / "e.npz", walked(3), {})
+
+
+def test_episodes_whose_ids_differ_have_files_that_differ() -> None:
+    names = ["a/b", "a%2Fb", "a_b", "../a", "a b", "ä"]
+    files = {trajectory_file(Path("run"), name) for name in names}
+    assert len(files) == len(names)
+    assert all(file.parent == Path("run/trajectories") for file in files)
+
+
+def _truncated(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:-300])
+
+
+def _arrays(file: Path) -> dict:
+    with np.load(file) as content:
+        return dict(content)
+
+
+def _another_format(file: Path) -> None:
+    arrays = _arrays(file)
+    head = json.loads(arrays["about"].tobytes()) | {"format": 99}
+    np.savez(file, allow_pickle=False, **arrays | {"about": np.frombuffer(json.dumps(head).encode(), np.uint8)})
+
+
+def _shorter_actions(file: Path) -> None:
+    arrays = _arrays(file)
+    np.savez(file, allow_pickle=False, **arrays | {"actions": arrays["actions"][:-1]})
+
+
+def _pickled(file: Path) -> None:
+    np.savez(file, poses=np.array([{}], dtype=object))
+
+
+@pytest.mark.parametrize(
+    ("harm", "told"),
+    [
+        (lambda file: file.unlink(), "--record"),
+        (lambda file: file.write_text("no archive"), "is no trajectory"),
+        (_truncated, "is no trajectory"),
+        (lambda file: np.savez(file, poses=np.zeros(3)), "has no 'actions'|has no"),
+        (_pickled, "is no trajectory"),
+        (_another_format, "its format is 99"),
+        (_shorter_actions, "for 4 actions"),
+    ],
+)
+def test_what_is_no_trajectory_is_told_with_its_name(harm, told: str, tmp_path: Path) -> None:
+    file = tmp_path / "e.npz"
+    write_trajectory(file, walked(5), {})
+    harm(file)
+    with pytest.raises(ConfigError, match=told) as complaint:
+        read_trajectory(file)
+    assert "e.npz" in str(complaint.value)

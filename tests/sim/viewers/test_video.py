@@ -1,0 +1,280 @@
+"""Videos of episodes: whole, readable, and without a trace in the results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.evaluation.results import WATCHED
+from sim.evaluation.rollout import play_episode
+from sim.geometry.pose import Pose
+from sim.interface import MPCAT40, Action, CameraModel, ConfigError
+from sim.run import entry
+from sim.viewers import overlay
+from sim.viewers.topview import TopView
+from sim.viewers.video import END_FRAMES, FRAMES_PER_S, VideoWatcher, VideoWriter, video_file
+from sim.viewers.viewer import WATCHED_IMAGES, Moment
+from stubborn.draw import BeliefPainter
+from tests.helpers import browser
+from tests.helpers.worlds import room, with_box
+
+TIMES = ("wall_time_s", "steps_per_s")
+EPISODE = Episode("sofa room/0", "sofa_room", "sofa", Pose(-1.0, 0.0, 0.0))
+AHEAD = [Action.MOVE_FORWARD] * 3
+
+
+@dataclass
+class Script:
+    """An agent that reads its actions from a list."""
+
+    actions: list[Action]
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.left = list(self.actions)
+
+    def act(self, observation: object) -> Action:
+        return self.left.pop(0)
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    file.write_text(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml())
+    return file
+
+
+@pytest.fixture
+def env(house: Path) -> Iterator[ObjectNavEnv]:
+    env = ObjectNavEnv(house=house, sensors=(), truth=WATCHED_IMAGES, camera=CameraModel(width_px=64, height_px=48))
+    yield env
+    env.close()
+
+
+def frames_of(file: Path) -> list[NDArray[np.uint8]]:
+    capture = cv2.VideoCapture(str(file))
+    frames = []
+    while (read := capture.read())[0]:
+        frames.append(np.asarray(read[1], np.uint8))
+    return frames
+
+
+def lines_of(out: Path) -> list[dict]:
+    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
+    return [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
+
+
+def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tmp_path: Path) -> None:
+    options = ["--semantics", "gt", "--house", str(house), "--noise", "realsense", "--episodes", "1", "--out"]
+    assert entry([*options, str(tmp_path / "plain")]) == 0
+    assert entry([*options, str(tmp_path / "filmed"), "--video"]) == 0
+    assert lines_of(tmp_path / "plain") == lines_of(tmp_path / "filmed")
+    (line,) = lines_of(tmp_path / "filmed")
+    assert line["num_steps"] > 5
+    assert len(frames_of(video_file(tmp_path / "filmed", line["episode_id"]))) == line["num_steps"] + END_FRAMES
+
+
+def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp_path: Path) -> None:
+    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+    assert entry([*options, "--episodes", "1"]) == 0
+    assert not (tmp_path / "videos").exists()
+    assert entry([*options, "--episodes", "3", "--video", "--workers", "2"]) == 0
+    first, *left = lines_of(tmp_path)
+    filmed = {video_file(tmp_path, line["episode_id"]) for line in left}
+    assert set((tmp_path / "videos").iterdir()) == filmed
+    assert all(len(frames_of(file)) == 1 + END_FRAMES for file in filmed)
+    assert first["episode_id"] not in {line["episode_id"] for line in left}
+    assert set(WATCHED) <= set(json.loads((tmp_path / "config.json").read_text()))
+
+
+def test_a_video_is_vp9_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(
+    env: ObjectNavEnv, tmp_path: Path
+) -> None:
+    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    (file,) = (tmp_path / "videos").iterdir()
+    assert file == video_file(tmp_path, EPISODE.episode_id)
+    assert file.name == "sofa room%2F0.mp4"
+    content = file.read_bytes()
+    assert content[4:8] == b"ftyp"
+    assert b"vp09" in content
+    frames = frames_of(file)
+    assert {frame.shape for frame in frames} == {(720, 1280, 3)}
+    stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-END_FRAMES - 1, -1))
+    assert np.abs(stop - outcome).mean() > 3.0  # the outcome stands where the step stood
+
+
+def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
+    if browser.missing():
+        pytest.skip(str(browser.missing()))
+    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    page = tmp_path / "page.html"
+    page.write_text("<video muted src='videos/sofa room%252F0.mp4'></video>")
+    window = browser.Browser(tmp_path / "profile")
+    try:
+        window.open(page)
+        seen = window.run("""
+            const video = document.querySelector("video");
+            const wait = (event) => new Promise((done, fail) => {
+                video.addEventListener(event, done, {once: true});
+                video.addEventListener("error", () => fail(video.error.message), {once: true});
+            });
+            return (async () => {
+                if (video.readyState < 3) await wait("canplay");
+                video.currentTime = 1.0;
+                await wait("seeked");
+                video.playbackRate = 4;
+                const ended = wait("ended");
+                await video.play();
+                await ended;
+                return [video.videoWidth, video.videoHeight, video.duration];
+            })();
+        """)
+    finally:
+        window.close()
+    assert seen == [1280, 720, pytest.approx((4 + END_FRAMES) / FRAMES_PER_S, abs=0.05)]
+
+
+def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path: Path) -> None:
+    def break_it(step: int, agent: object, info: dict) -> None:
+        if step == 2:
+            env.scene.world.data.qvel[:] = np.nan
+
+    line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, watchers=[VideoWatcher(tmp_path)])
+    assert line["end_reason"] == "error"
+    assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + END_FRAMES
+
+
+def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path: Path) -> None:
+    watcher = VideoWatcher(tmp_path)
+    with pytest.raises(IndexError):  # the script is over before the episode
+        play_episode(env, Script(AHEAD), EPISODE, seed=0, watchers=[watcher])
+    watcher.close()
+    assert list((tmp_path / "videos").iterdir()) == []
+
+
+def test_what_a_killed_process_left_behind_goes_when_its_episode_is_filmed_again(
+    env: ObjectNavEnv, tmp_path: Path
+) -> None:
+    (tmp_path / "videos").mkdir()
+    left_over = tmp_path / "videos" / f".{video_file(tmp_path, EPISODE.episode_id).stem}.part-99999.mp4"
+    left_over.touch()
+    play_episode(env, Script([Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    assert list((tmp_path / "videos").iterdir()) == [video_file(tmp_path, EPISODE.episode_id)]
+
+
+def test_a_folder_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
+    (tmp_path / "videos").write_text("a file where the folder should be")
+    with pytest.raises(ConfigError, match="Cannot write the video"):
+        VideoWriter(video_file(tmp_path, "e"), size_px=(64, 48))
+
+
+Box = tuple[int, int, int, int]
+
+
+@pytest.fixture
+def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
+    """Every text that is written into a frame, and where."""
+    boxes: list[tuple[str, Box]] = []
+    real = cv2.putText
+
+    def put(image, text, org, font, scale, colour, thickness, line):
+        (width, height), below = cv2.getTextSize(text, font, scale, thickness)
+        if image.shape[1] == overlay.WIDTH_PX:
+            boxes.append((text, (org[0], org[1] - height, org[0] + width, org[1] + below // 2)))
+        return real(image, text, org, font, scale, colour, thickness, line)
+
+    monkeypatch.setattr(cv2, "putText", put)
+    return boxes
+
+
+def crowded_moment() -> Moment:
+    """All categories in sight at once."""
+    semantic = np.repeat(np.arange(len(MPCAT40), dtype=np.uint8), 20)[None].repeat(615, axis=0)
+    images = {
+        "semantic": semantic,
+        "rgb": np.zeros((*semantic.shape, 3), np.uint8),
+        "depth": np.full(semantic.shape, 2.0, np.float32),
+    }
+    return Moment(step=500, observation={}, images=images, action=Action.TURN_RIGHT)
+
+
+@pytest.mark.parametrize("painter", [BeliefPainter, TopView])
+def test_no_text_leaves_the_frame_or_lies_on_another(
+    painter: type[BeliefPainter] | type[TopView], written: list[tuple[str, Box]]
+) -> None:
+    panel = overlay.MapPanel(
+        image=np.zeros((overlay.MAP_PX, overlay.MAP_PX, 3), np.uint8),
+        legend=painter.legend,
+        title="the agent's map",
+        words="gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video",
+    )
+    line = {"num_steps": 500, "success": 0.0, "spl": 0.0, "failure": "missed_detection"}
+    info = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_length": 123.4}
+    for goal in ("bed", "chest_of_drawers", "gym_equipment"):
+        written.clear()
+        frame = overlay.compose(crowded_moment(), goal, CameraModel(), panel)
+        overlay.add_outcome(frame, crowded_moment(), {**info, "episode_id": "an_episode_with_a_long_name_0123456789"})
+        names = [text for text, _ in written]
+        assert f"{goal.replace('_', ' ')} (the goal)" in names
+        for i, (text, (left, top, right, bottom)) in enumerate(written):
+            assert min(left, top) >= 0, text
+            assert right <= overlay.WIDTH_PX, text
+            assert bottom <= overlay.HEIGHT_PX, text
+            for other, (left2, top2, right2, bottom2) in written[:i]:
+                assert right <= left2 or right2 <= left or bottom <= top2 or bottom2 <= top, (text, other)
+    written.clear()
+    overlay.add_end(frame, line | {"error": "House 'val_03' at 12.34 s: a position is not finite. " * 3})
+    assert all(right <= overlay.WIDTH_PX for _, (_, _, right, _) in written)
+
+
+@pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
+def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int]) -> None:
+    images = {
+        "rgb": np.full((*shape, 3), 9, np.uint8),
+        "semantic": np.zeros(shape, np.uint8),
+        "depth": np.zeros(shape, np.float32),
+    }
+    moment = Moment(step=1, observation={}, images=images, action=Action.STOP)
+    map_image = np.full((overlay.MAP_PX, overlay.MAP_PX, 3), 50, np.uint8)
+    panel = overlay.MapPanel(image=map_image, legend=(), title="", words="")
+    camera = CameraModel(width_px=shape[1], height_px=shape[0])
+    frame = overlay.compose(moment, "bed", camera, panel)
+    rows, cols = np.nonzero((frame == 9).all(axis=2))
+    assert np.ptp(cols) / np.ptp(rows) == pytest.approx(shape[1] / shape[0], rel=0.02)
+
+
+def test_what_the_agent_saw_is_shown_and_the_truth_where_it_saw_nothing() -> None:
+    truth = {"rgb": np.zeros((2, 2, 3), np.uint8), "depth": np.ones((2, 2), np.float32)}
+    noisy = np.full((2, 2), 2.0, np.float32)
+    moment = Moment(step=1, observation={"depth": noisy}, images=truth, action=Action.STOP)
+    assert moment.seen("depth") is noisy
+    assert moment.seen("rgb") is truth["rgb"]
+
+
+def test_no_return_is_black_and_near_is_brighter_than_far() -> None:
+    camera = CameraModel()
+    near, far, nothing = overlay.colour_depth(np.array([[0.5, 5.0, 0.0]], np.float32), camera)[0].astype(int)
+    assert nothing.sum() == 0
+    assert near.sum() > far.sum() > 0
+
+
+def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(env: ObjectNavEnv) -> None:
+    env.reset(options={"episode": EPISODE})
+    view = TopView(env)
+    before = view.paint(300)
+    colours = {tuple(colour) for colour in before.reshape(-1, 3).tolist()}
+    assert {(252, 252, 250), (150, 150, 150), (56, 158, 80), (205, 236, 196)} <= colours
+    for _ in range(4):
+        env.step(Action.MOVE_FORWARD)
+    assert (32, 84, 190) in {tuple(colour) for colour in view.paint(300).reshape(-1, 3).tolist()}
+    sofa = np.argwhere((before == (56, 158, 80)).all(axis=2)).mean(axis=0)
+    assert sofa[1] > 200  # in the east, which is right
+    assert sofa[0] == pytest.approx(150, abs=8)

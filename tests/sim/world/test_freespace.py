@@ -1,0 +1,219 @@
+"""Free space against areas and ways worked out by hand."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sim.geometry.grid import PlanFrame
+from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.houses.house import House, read_rooms
+from sim.houses.labels import read_labels
+from sim.world.freespace import FreeSpace
+from sim.world.world import World
+from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
+
+RADIUS_M = 0.18
+
+
+def free_space(house: House, **options) -> FreeSpace:
+    model = house.spec.copy().compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return FreeSpace(model, data, read_labels(model), rooms=read_rooms(model), **options)
+
+
+def point(space: FreeSpace, x_m: float, y_m: float) -> np.ndarray:
+    mask = np.zeros(space.frame.shape, dtype=bool)
+    row, col = space.frame.to_cells((x_m, y_m))
+    mask[row, col] = True
+    return mask
+
+
+def divided_room(gap_m: float) -> House:
+    """6 x 4 m, a wall along x = 0 with a gap of `gap_m` in its middle."""
+    length = 0.5 * (4.0 - gap_m)
+    house = room(6, 4)
+    for number, side in ((10, 1), (11, -1)):
+        centre = (0.0, side * (0.5 * gap_m + 0.5 * length), 1.25)
+        house = with_box(house, f"wall_{number}", centre_m=centre, half_m=(0.05, 0.5 * length, 1.25))
+    return house
+
+
+@given(row=st.integers(-50, 50), col=st.integers(-50, 50))
+def test_cell_to_world_and_back_is_identity(row, col):
+    frame = PlanFrame(origin_xy_m=(-3.7, 1.2), shape=(10, 20))
+    assert frame.to_cells(frame.to_metres((row, col))).tolist() == [row, col]
+
+
+def test_rows_are_y_and_columns_are_x():
+    frame = PlanFrame(origin_xy_m=(0.0, 0.0), shape=(4, 8), cell_m=0.5)
+    assert frame.to_cells((3.9, 0.1)).tolist() == [0, 7]
+
+
+def test_an_empty_room_is_free_up_to_the_radius_from_its_walls():
+    space = free_space(room(4, 3))
+    assert space.free.sum() * space.frame.cell_m**2 == pytest.approx((4 - 0.36) * (3 - 0.36), rel=0.01)
+    assert space.is_free(2.0 - RADIUS_M - 0.001, 0.0)
+    assert not space.is_free(2.0 - RADIUS_M + 0.001, 0.0)
+
+
+@given(x=st.floats(-1.9, 1.9), y=st.floats(-1.4, 1.4))
+@settings(max_examples=50, deadline=None)
+def test_a_place_is_free_exactly_when_its_distance_to_a_turned_box_is_the_radius(x, y):
+    yaw = 0.6
+    space = TURNED_BOX_SPACE
+    c, s = math.cos(yaw), math.sin(yaw)
+    u, v = c * (x - 0.2) + s * y, -s * (x - 0.2) + c * y
+    distance = math.hypot(max(abs(u) - 0.5, 0), max(abs(v) - 0.1, 0))
+    if min(abs(distance - RADIUS_M), abs(abs(x) - 1.82), abs(abs(y) - 1.32)) > 1e-4:
+        assert space.is_free(x, y) == (distance > RADIUS_M and abs(x) < 1.82 and abs(y) < 1.32)
+
+
+TURNED_BOX_SPACE = free_space(
+    with_box(room(4, 3), "table_00", centre_m=(0.2, 0, 0.4), half_m=(0.5, 0.1, 0.4), yaw_rad=0.6)
+)
+
+
+def test_the_grid_says_of_each_cell_what_the_exact_test_says_of_its_centre():
+    space = TURNED_BOX_SPACE
+    rng = np.random.default_rng(0)
+    cells = np.stack([rng.integers(0, n, 300) for n in space.frame.shape], axis=1)
+    inside = [cell for cell in cells if np.all(np.abs(space.frame.to_metres(cell)) < (2.0, 1.5))]
+    assert [space.is_free(*space.frame.to_metres(cell)) for cell in inside] == [space.free[tuple(c)] for c in inside]
+
+
+@pytest.mark.parametrize(
+    ("bottom_m", "top_m", "free"),
+    [(0.0, 0.029, True), (0.0, 0.031, False), (0.879, 1.2, False), (0.881, 1.2, True), (0.5, 0.6, False)],
+)
+def test_only_what_lies_between_step_height_and_robot_height_blocks(bottom_m, top_m, free):
+    half = 0.5 * (top_m - bottom_m)
+    house = with_box(room(), "shelving_00", centre_m=(0, 0, bottom_m + half), half_m=(0.3, 0.3, half))
+    assert free_space(house).is_free(0.0, 0.0) == free
+
+
+def test_what_only_collides_blocks_and_what_is_only_seen_does_not():
+    glass = with_box(room(), "window_00", centre_m=(0, 0, 0.5), half_m=(0.3, 0.3, 0.5), group=3)
+    assert not free_space(glass).is_free(0.0, 0.0)
+    spec = with_box(room(), "plant_00", centre_m=(0, 0, 0.5), half_m=(0.3, 0.3, 0.5)).spec
+    spec.geom("plant_00").contype = spec.geom("plant_00").conaffinity = 0
+    assert free_space(House("leaves", spec)).is_free(0.0, 0.0)
+
+
+def test_a_movable_thing_blocks_where_it_stands_and_the_robot_itself_never():
+    world = World(with_movable(room(), "stool_00", xy_m=(1.0, 0.0)))
+    world.reset(Pose(-1.0, 0.0, 0.0))
+    space = FreeSpace.from_world(world)
+    assert not space.is_free(1.0, 0.0)
+    assert space.is_free(-1.0, 0.0)
+    stool = world.model.body("stool_00").id
+    joint = world.model.jnt_qposadr[world.model.body_jntadr[stool]]
+    world.data.qpos[joint] = -0.2
+    mujoco.mj_kinematics(world.model, world.data)
+    moved = FreeSpace.from_world(world)
+    assert moved.is_free(1.0, 0.0)
+    assert not moved.is_free(-0.2, 0.0)
+
+
+def test_outdoors_is_not_free_though_the_floor_goes_on():
+    space = free_space(room(4, 3))
+    assert not space.is_free(2.6, 0.0)
+    assert not space.is_free(30.0, 0.0)
+    x, y = space.frame.centres()
+    assert not space.free[:, np.abs(x) > 2.0].any()
+    assert not space.free[np.abs(y) > 1.5].any()
+
+
+def test_a_place_without_floor_is_not_free():
+    spec = room(4, 3, box_floor=True).spec
+    spec.geom("floor_00").size[0], spec.geom("floor_00").pos[0] = 1.0, -1.0  # x from -2 to 0
+    space = free_space(House("half_floor", spec))
+    assert space.is_free(-0.5, 0.0)
+    assert not space.is_free(0.5, 0.0)
+
+
+def test_a_floor_without_walls_is_charted_around_the_origin():
+    space = free_space(open_floor())
+    assert space.free.all()
+    assert space.is_free(5.0, -5.0)
+
+
+def test_geodesic_on_an_open_floor_is_the_straight_line():
+    space = free_space(open_floor())
+    x, y = space.frame.centres()
+    row, col = space.frame.to_cells((0.0, 0.0))
+    straight = np.hypot(x[None, :] - x[col], y[:, None] - y[row])
+    assert np.abs(space.geodesic(point(space, 0.0, 0.0)) - straight).max() < 0.01
+
+
+def test_geodesic_bends_around_the_corner_of_a_wall():
+    # A wall along x = 0 from y = -2 to 1: the disc's centre goes round the wall's end on an arc of its radius.
+    house = with_box(room(6, 4), "wall_10", centre_m=(0, -0.5, 1.25), half_m=(0.001, 1.5, 1.25))
+    space = free_space(house)
+    distance = space.geodesic(point(space, -1.5, 0.0))
+    tangent = math.hypot(1.5, 1.0) ** 2 - RADIUS_M**2
+    to_end = math.atan2(1.0, 1.5)
+    lean = math.asin(RADIUS_M / math.hypot(1.5, 1.0))
+    arc = RADIUS_M * 2 * (to_end + lean)
+    expected = 2 * math.sqrt(tangent) + arc
+    assert space.distance_at(distance, 1.5, 0.0) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize(("gap_m", "passes"), [(0.30, False), (0.35, False), (0.40, True), (0.80, True)])
+def test_a_gap_is_a_way_only_when_the_disc_fits(gap_m, passes):
+    space = free_space(divided_room(gap_m))
+    distance = space.geodesic(point(space, -1.5, 0.0))
+    there = space.distance_at(distance, 1.5, 0.0)
+    assert math.isfinite(there) == passes
+    if passes:
+        assert there == pytest.approx(3.0, abs=0.03)
+
+
+@given(x=st.floats(-2.5, 2.5), y=st.floats(-1.6, 1.6))
+@settings(max_examples=30, deadline=None)
+def test_distance_between_cells_follows_the_way_and_not_the_cell(x, y):
+    space = OPEN_SPACE
+    assert space.distance_at(OPEN_DISTANCE, x, y) == pytest.approx(math.hypot(x - 0.0125, y - 0.0125), abs=0.015)
+
+
+OPEN_SPACE = free_space(room(6, 4))
+OPEN_DISTANCE = OPEN_SPACE.geodesic(point(OPEN_SPACE, 0.001, 0.001))
+
+
+def test_a_robot_pushed_into_an_obstacle_keeps_a_distance_and_one_in_the_middle_of_it_has_none():
+    space = free_space(with_box(room(6, 4), "bed_00", centre_m=(1.5, 0, 0.3), half_m=(1.0, 1.0, 0.3)))
+    distance = space.geodesic(point(space, -1.0, 0.0))
+    assert space.distance_at(distance, 0.5 - 0.12, 0.0) == pytest.approx(1.38, abs=0.03)
+    assert math.isinf(space.distance_at(distance, 1.5, 0.0))
+
+
+def test_no_source_means_no_way_and_all_sources_mean_no_distance():
+    space = free_space(room())
+    assert np.isinf(space.geodesic(np.zeros_like(space.free))).all()
+    distance = space.geodesic(np.ones_like(space.free))
+    assert (distance[space.free] == 0.0).all()
+    assert np.isinf(distance[~space.free]).all()
+
+
+def test_the_largest_part_is_the_larger_side_of_a_wall():
+    space = free_space(with_box(room(6, 4), "wall_10", centre_m=(1, 0, 1.25), half_m=(0.05, 2.0, 1.25)))
+    part = space.largest_part()
+    x, _ = space.frame.centres()
+    assert (part == (space.free & (x < 1.0))).all()
+
+
+def test_a_storey_has_its_own_obstacles():
+    house = with_box(room(4, 4, height_m=2.5), "floor_01", centre_m=(0, 0, 2.95), half_m=(2, 2, 0.05))
+    house = with_box(house, "table_00", centre_m=(0, 0, 3.4), half_m=(0.3, 0.3, 0.4))
+    house = with_post(house, "column_00", xy_m=(1.0, 0.0), radius_m=0.1, height_m=2.5)
+    ground, upper = free_space(house), free_space(house, floor_z_m=3.0)
+    assert ground.is_free(0.0, 0.0)
+    assert not upper.is_free(0.0, 0.0)
+    assert upper.is_free(1.0, 0.0)
+    assert not ground.is_free(1.0, 0.0)

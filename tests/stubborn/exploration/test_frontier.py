@@ -1,0 +1,214 @@
+import numpy as np
+import pytest
+
+from sim.interface import Action, ConfigError, RobotModel
+from stubborn import agents
+from stubborn.agent import StubbornAgent
+from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer, frontier_cells
+from stubborn.grid import GridFrame, PlanarPose, Window
+from stubborn.navmap import NavMap
+from stubborn.planning.planner import Planner, PlanningConfig
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tests.helpers.asciimap import grid_of
+from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+
+PLANNER = Planner(PlanningConfig(), trust_visited=True)
+HERE = PlanarPose(0.0, 0.0, 0.0)
+
+
+def explorer(**options: float) -> FrontierExplorer:
+    return FrontierExplorer(FrontierConfig(**options), PLANNER, averse=True, bumps=True)  # type: ignore[arg-type]
+
+
+def square(half_m: float) -> NavMap:
+    """Ground seen in a square around the start, the robot in its middle."""
+    navmap = NavMap.empty(GridFrame.around_start(400))
+    see(navmap, (-half_m, half_m), (-half_m, half_m))
+    navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
+    return navmap
+
+
+def area(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> tuple[slice, slice]:
+    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(x_m[0], y_m[0]), navmap.frame.cell(x_m[1], y_m[1])
+    return slice(row_0, row_1 + 1), slice(col_0, col_1 + 1)
+
+
+def see(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> None:
+    cells = area(navmap, x_m, y_m)
+    navmap.frames_in_view[cells] = 1
+    navmap.grow_known(*cells)
+
+
+def wall(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> None:
+    see(navmap, x_m, y_m)
+    navmap.seen_obstacle[area(navmap, x_m, y_m)] = True
+
+
+def window(navmap: NavMap) -> Window:
+    return navmap.frame.window_at(0.0, 0.0, 240)
+
+
+def goal_xy(explore: FrontierExplorer, navmap: NavMap, pose: PlanarPose = HERE) -> tuple[float, float] | None:
+    route = explore.route(navmap, window(navmap), pose)
+    if route is None:
+        return None
+    x_m, y_m = route.plan.frame.centres(*np.nonzero(route.plan.goal))
+    return float(x_m.mean()), float(y_m.mean())
+
+
+def test_frontier_cells_are_known_free_ones_next_to_open_unknown():
+    plan = """
+????????
+??#..??#
+#......#
+#.....??
+"""
+    letters = grid_of(plan)
+    cells = frontier_cells(letters == ".", letters == "?")
+    brute = np.zeros_like(cells)
+    for row, col in np.argwhere(letters == "."):
+        around = letters[max(row - 1, 0) : row + 2, max(col - 1, 0) : col + 2]
+        brute[row, col] = (around == "?").any()
+    assert brute.sum() == 8
+    np.testing.assert_array_equal(cells, brute)
+
+
+def closed_but(navmap: NavMap, half_m: float, doors: list[tuple[str, float]]) -> None:
+    """Walls around the square, with doors of 1 m at the side `n`, `s`, `e` or `w` and a place along it."""
+    for side in "nsew":
+        at = half_m if side in "ne" else -half_m
+        along = [-half_m, *sorted(v for s, place in doors if s == side for v in (place - 0.5, place + 0.5)), half_m]
+        for low, high in zip(along[::2], along[1::2], strict=True):
+            if side in "ew":
+                wall(navmap, (at - 0.05, at + 0.05), (low, high))
+            else:
+                wall(navmap, (low, high), (at - 0.05, at + 0.05))
+
+
+def test_it_goes_to_the_frontier_that_is_nearest_by_way():
+    navmap = square(3.0)
+    closed_but(navmap, 3.0, [("e", 0.0), ("w", 2.0)])
+    goal = goal_xy(explorer(), navmap)
+    assert goal is not None
+    assert goal == pytest.approx((3.1, 0.0), abs=0.3)
+    wall(navmap, (2.0, 2.1), (-3.0, 3.0))  # now the east door cannot be reached, though it is nearer
+    goal = goal_xy(explorer(), navmap)
+    assert goal is not None
+    assert goal == pytest.approx((-3.1, 2.0), abs=0.3)
+
+
+def test_it_keeps_to_a_frontier_until_that_has_become_known():
+    navmap = square(3.0)
+    closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
+    explore = explorer()
+    first = goal_xy(explore, navmap, PlanarPose(0.3, 0.0, 0.0))
+    assert first is not None
+    assert first[0] > 2.5
+    kept = goal_xy(explore, navmap, PlanarPose(-0.3, 0.0, 0.0))  # the other one is nearer from here
+    assert kept is not None
+    assert kept[0] > 2.5
+    see(navmap, (3.0, 6.0), (-2.0, 2.0))
+    closed = [((6.0, 6.1), (-2.0, 2.0)), ((3.0, 6.0), (-2.1, -2.0)), ((3.0, 6.0), (2.0, 2.1))]
+    for x_m, y_m in closed:
+        wall(navmap, x_m, y_m)
+    after = goal_xy(explore, navmap, PlanarPose(-0.3, 0.0, 0.0))
+    assert after is not None
+    assert after[0] < -2.5
+
+
+def test_a_frontier_reached_without_becoming_known_is_left_for_another():
+    navmap = square(3.0)
+    closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
+    explore = explorer(own_known_m=0.0)
+    assert goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0)) == pytest.approx((3.1, 0.0), abs=0.3)
+    there = goal_xy(explore, navmap, PlanarPose(3.05, 0.0, 0.0))
+    assert there is not None
+    assert there[0] < -2.5
+
+
+def test_a_short_frontier_is_left_for_last():
+    def narrow_in_the_east(*wide: tuple[str, float]) -> NavMap:
+        navmap = square(3.0)
+        closed_but(navmap, 3.0, [("e", 0.0), *wide])
+        for y_m in ((-0.5, -0.3), (0.3, 0.5)):
+            wall(navmap, (2.95, 3.05), y_m)
+        return navmap
+
+    near_east = PlanarPose(1.0, 0.0, 0.0)
+    any_length = goal_xy(explorer(least_length_m=0.05, own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
+    assert any_length == pytest.approx((3.1, 0.0), abs=0.3)
+    goal = goal_xy(explorer(own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
+    assert goal == pytest.approx((-3.1, 0.0), abs=0.3)
+    last = goal_xy(explorer(own_known_m=0.0), narrow_in_the_east(), near_east)
+    assert last == pytest.approx((3.1, 0.0), abs=0.3)
+
+
+def test_where_nothing_is_unknown_it_goes_where_it_was_least():
+    navmap = square(3.0)
+    closed_but(navmap, 3.0, [])
+    route = explorer().route(navmap, window(navmap), HERE)
+    assert route is not None
+    x_m, y_m = route.plan.frame.centres(*np.nonzero(route.plan.goal))
+    assert np.hypot(x_m, y_m).min() > 2.5
+
+
+def test_reset_forgets_frontiers_reached():
+    navmap = square(3.0)
+    closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
+    explore = explorer(own_known_m=0.0)
+    first = goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0))
+    goal_xy(explore, navmap, PlanarPose(3.05, 0.0, 0.0))
+    explore.reset()
+    assert goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0)) == first
+
+
+APARTMENT = boxes_from_plan(
+    """
+################################
+#          #         #         #
+#          #         #    bbb  #
+#                         bbb  #
+#                              #
+#                              #
+#          #         #         #
+####   #########################
+#                              #
+#                              #
+#                              #
+#                              #
+################################
+""",
+    0.3,
+)
+START = (8.0, 0.9, 0.2)
+
+
+def test_the_frontier_agent_finds_a_bed_two_rooms_away():
+    agent = agents.make("frontier-avoid", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    assert isinstance(agent, StubbornAgent)
+    assert isinstance(agent.explorer, FrontierExplorer)
+    trace = run_episode(GridWorld(APARTMENT, START, camera=SMALL_CAMERA), agent, "bed", max_steps=250)
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
+
+
+def test_avoidance_is_all_or_nothing():
+    for name, on in (("frontier", False), ("frontier-avoid", True)):
+        agent = agents.make(name, camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter())
+        assert isinstance(agent, StubbornAgent)
+        assert set(vars(agent.config.avoidance).values()) == {on}
+
+
+def test_options_reach_the_explorer_and_sweeps_are_counted():
+    agent = agents.make(
+        "frontier",
+        camera=SMALL_CAMERA,
+        robot=RobotModel(),
+        segmenter=GroundTruthSegmenter(),
+        frontier=FrontierConfig(look_around_turns=3),
+    )
+    world = GridWorld(APARTMENT, START, camera=SMALL_CAMERA)
+    trace = run_episode(world, agent, "sofa", max_steps=3)
+    assert trace.actions == [Action.TURN_LEFT] * 3
+    with pytest.raises(ConfigError, match=r"0 < arrived_m <= spent_m, got 0\.5 and 0\.1"):
+        FrontierConfig(arrived_m=0.5, spent_m=0.1)

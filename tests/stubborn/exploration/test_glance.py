@@ -1,0 +1,90 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
+from stubborn.exploration.glance import GlanceConfig, Glancer
+from stubborn.grid import GridFrame, PlanarPose
+from stubborn.navmap import NavMap
+
+FRAME = GridFrame.around_start(240)
+START = PlanarPose(0.0, 0.0, 0.0)
+
+
+def glancer(**options: float) -> Glancer:
+    return Glancer(GlanceConfig(**{"gain_per_turn_m2": 0.75, **options}), CameraModel())
+
+
+def corridor() -> NavMap:
+    """Seen ground along x between two walls; a door in the left one, at x = 0, behind which nothing was seen."""
+    navmap = NavMap.empty(FRAME)
+    (right, _), (left, middle) = FRAME.cell(0.0, -0.7), FRAME.cell(0.0, 0.7)
+    navmap.frames_in_view[right : left + 1] = 1
+    navmap.seen_obstacle[[right, left]] = True
+    navmap.seen_obstacle[left, middle - 12 : middle + 13] = False
+    return navmap
+
+
+def turned(pose: PlanarPose, action: Action) -> PlanarPose:
+    turn_rad = TURN_RAD if action is Action.TURN_LEFT else -TURN_RAD
+    return pose._replace(yaw_rad=wrap_angle(pose.yaw_rad + turn_rad))
+
+
+def look_in(navmap: NavMap, pose: PlanarPose) -> None:
+    """Mark what a camera that sees through walls would show."""
+    x_m, y_m = FRAME.mesh()
+    bearing_rad = np.arctan2(y_m - pose.y_m, x_m - pose.x_m)
+    off_rad = np.abs(np.arctan2(np.sin(bearing_rad - pose.yaw_rad), np.cos(bearing_rad - pose.yaw_rad)))
+    navmap.frames_in_view[off_rad <= 0.5 * CameraModel().hfov_rad] += 1
+
+
+def test_an_open_door_at_the_side_is_worth_a_look():
+    navmap, glance, pose, turns = corridor(), glancer(), START, []
+    while (action := glance.next_action(navmap, pose)) is not None:
+        turns.append(action)
+        pose = turned(pose, action)
+        look_in(navmap, pose)
+    assert 1 <= len(turns) <= 4
+    assert set(turns) == {Action.TURN_LEFT}
+
+
+def test_walls_and_seen_ground_are_not():
+    navmap = corridor()
+    left, middle = FRAME.cell(0.0, 0.7)
+    navmap.seen_obstacle[left, middle - 12 : middle + 13] = True
+    assert glancer().next_action(navmap, START) is None
+    assert glancer().hidden_area_m2(navmap, START).sum() < 0.3
+    seen = corridor()
+    seen.frames_in_view[:] = 1
+    assert glancer().next_action(seen, START) is None
+
+
+def test_hidden_ground_is_measured_in_square_metres():
+    nothing_known = NavMap.empty(FRAME)
+    camera = CameraModel()
+    nearest_m = camera.height_m / math.tan(0.5 * camera.vfov_rad)
+    hidden_m2 = glancer(range_m=3.0).hidden_area_m2(nothing_known, START)
+    assert hidden_m2.sum() == pytest.approx(math.pi * (3.0**2 - nearest_m**2), rel=0.08)
+
+
+def test_it_does_not_look_twice_from_the_same_place():
+    """Not even where the look showed nothing, as behind glass."""
+    navmap, glance, pose = corridor(), glancer(), START
+    turns = 0
+    while (action := glance.next_action(navmap, pose)) is not None:
+        pose, turns = turned(pose, action), turns + 1
+        assert turns < 12
+    assert glance.next_action(navmap, START) is None
+    glance.reset()
+    assert glance.next_action(navmap, START) is not None
+
+
+def test_a_price_without_bound_switches_it_off():
+    assert glancer(gain_per_turn_m2=math.inf).next_action(NavMap.empty(FRAME), START) is None
+    assert glancer().next_action(NavMap.empty(FRAME), START) is not None
+
+
+def test_a_range_of_zero_is_refused():
+    with pytest.raises(ConfigError, match="got 0"):
+        GlanceConfig(range_m=0.0)

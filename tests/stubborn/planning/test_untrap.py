@@ -1,0 +1,74 @@
+import pytest
+
+from sim.interface import Action, ConfigError
+from stubborn.planning.untrap import Untrap, UntrapConfig
+
+F, L, R = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT
+
+
+def fail(untrap: Untrap, times: int) -> None:
+    for _ in range(times):
+        untrap.observe(F, True)
+
+
+def dictated(untrap: Untrap, steps: int) -> list[Action | None]:
+    """Actions of a robot that never gets free."""
+    actions = []
+    for _ in range(steps):
+        action = untrap.next_action()
+        actions.append(action)
+        untrap.observe(action, action is F)
+    return actions
+
+
+def test_ten_failed_forwards_start_it_and_nine_do_not():
+    untrap = Untrap(UntrapConfig())
+    fail(untrap, 9)
+    assert untrap.next_action() is None
+    fail(untrap, 1)
+    assert untrap.next_action() is L
+
+
+def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
+    untrap = Untrap(UntrapConfig())
+    for _ in range(9):
+        untrap.observe(F, True)
+        untrap.observe(L, False)
+    assert not untrap.active
+    untrap.observe(F, True)
+    assert untrap.active
+    untrap.observe(F, False)
+    fail(untrap, 5)
+    untrap.observe(F, False)
+    fail(untrap, 9)
+    assert not untrap.active
+    fail(untrap, 1)
+    assert untrap.active
+
+
+def test_it_turns_and_pushes_until_a_forward_moves():
+    untrap = Untrap(UntrapConfig())
+    fail(untrap, 10)
+    assert dictated(untrap, 7) == [L, F, L, F, L, F, L]
+    assert untrap.next_action() is F
+    untrap.observe(F, False)
+    assert untrap.next_action() is None
+
+
+def test_the_side_alternates_from_entry_to_entry_and_a_new_episode_begins_left():
+    untrap = Untrap(UntrapConfig())
+    for side in (L, R, L):
+        fail(untrap, 10)
+        assert dictated(untrap, 4) == [side, F, side, F]
+        untrap.observe(F, False)
+    fail(untrap, 5)
+    untrap.reset()
+    fail(untrap, 9)
+    assert not untrap.active
+    fail(untrap, 1)
+    assert dictated(untrap, 2) == [L, F]
+
+
+def test_a_count_below_one_is_refused():
+    with pytest.raises(ConfigError, match=">= 1, got 0"):
+        UntrapConfig(failed_forwards=0)

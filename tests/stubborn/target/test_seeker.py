@@ -1,0 +1,465 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.interface import ConfigError
+from stubborn.grid import GridFrame, PlanarPose, Window
+from stubborn.mapping.mapper import Sighting
+from stubborn.navmap import NavMap
+from stubborn.planning.planner import Planner, PlanningConfig
+from stubborn.raster import distance_to, nearest, sight_is_clear
+from stubborn.target.classifiers import Features
+from stubborn.target.seeker import TargetConfig, TargetSeeker
+from stubborn.target.verification import AcceptAll
+from tests.helpers.asciimap import map_of
+
+PLANNER = Planner(PlanningConfig(), trust_visited=True)
+
+
+class RefuseAll:
+    """A verifier that keeps what it was asked."""
+
+    may_refuse = True
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[str, Features]] = []
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        self.asked.append((goal, features))
+        return False
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        return False
+
+
+class Doubtful:
+    """A verifier that accepts what was seen with a mean score above 0.7."""
+
+    may_refuse = True
+
+    def accepts(self, goal: str, features: Features) -> bool:
+        return features.cumulative / features.total_view > 0.7
+
+    would_accept = accepts
+
+
+def seeker(verifier: AcceptAll | RefuseAll | Doubtful | None = None, **options: float) -> TargetSeeker:
+    made = TargetSeeker(TargetConfig(**options), PLANNER, verifier or AcceptAll(), bumps=True)  # type: ignore[arg-type]
+    made.reset("sofa")
+    return made
+
+
+def whole(navmap: NavMap) -> Window:
+    return navmap.frame.part(slice(None), slice(None))
+
+
+def known(text: str) -> tuple[NavMap, PlanarPose]:
+    """A drawn map on which everything has been in view once."""
+    navmap, pose = map_of(text)
+    navmap.frames_in_view[:] = 1
+    navmap.grow_known(*(slice(0, n) for n in navmap.frame.shape))
+    return navmap, pose
+
+
+def room(width: int = 80, height: int = 60, **places: tuple[int, int]) -> list[list[str]]:
+    """A walled room with letters at (row from below, column)."""
+    rows = [["#" if c in (0, width - 1) else "." for c in range(width)] for _ in range(height)]
+    rows[0] = rows[-1] = ["#"] * width
+    for letter, (row, col) in places.items():
+        rows[height - 1 - row][col] = letter
+    return rows
+
+
+def text_of(rows: list[list[str]]) -> str:
+    return "\n".join("".join(r) for r in rows)
+
+
+def test_without_a_candidate_there_is_no_approach():
+    navmap, pose = known(text_of(room(R=(30, 10))))
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None
+
+
+def test_the_way_leads_to_a_stand_near_the_candidate():
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.cell == (30, 60)
+    rows, cols = np.nonzero(approach.route.plan.goal)
+    assert np.hypot(rows - 30, cols - 60).max() * 0.05 <= 0.85 * 1.03  # the fast distance is good to 2 %
+    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
+
+
+def test_on_a_stand_there_is_nothing_left_to_walk():
+    navmap, pose = known(text_of(room(R=(30, 46), T=(30, 60))))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is None
+    assert approach.bearing_rad == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_detector_that_errs_is_followed_nearer():
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    config = TargetConfig(outline_margin_m=0.3)
+    careful = TargetSeeker(config, PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    approach = careful.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
+    for distance_m, near_enough in ((0.80, False), (0.60, True)):
+        sighting = Sighting(np.array([30]), np.array([60]), np.array([distance_m], np.float32))
+        assert seeker().in_reach(navmap, sighting) == (30, 60)
+        assert (careful.in_reach(navmap, sighting) is not None) == near_enough
+
+
+def test_where_there_is_no_nearer_stand_the_usual_one_will_do():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in range(48, 60):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    careful = TargetSeeker(TargetConfig(), PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    approach = careful.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.near_enough
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.min() >= 60 - 0.85 / 0.05  # not from farther away than with true outlines
+
+
+def test_a_margin_as_large_as_the_distance_is_refused():
+    with pytest.raises(ConfigError, match=r"0 <= outline_margin_m < stand_m and stop_in_view_m, got 0\.9, 0\.85"):
+        TargetConfig(outline_margin_m=0.9)
+
+
+def doubtful_one_first() -> tuple[NavMap, PlanarPose]:
+    """A candidate nearby that was mostly scored low, and a plain one farther away."""
+    navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
+    navmap.score_max[30, 35] = 0.6
+    navmap.score_sum[30, 35], navmap.score_sum[30, 60] = 3.0, 9.0
+    navmap.frames_in_view[30, 35] = navmap.frames_in_view[30, 60] = 10
+    return navmap, pose
+
+
+def test_candidates_that_would_be_accepted_are_approached_first():
+    navmap, pose = doubtful_one_first()
+    for verifier, cell in ((AcceptAll(), (30, 35)), (Doubtful(), (30, 60))):
+        approach = seeker(verifier).approach(navmap, whole(navmap), pose, 0)
+        assert approach is not None
+        assert approach.cell == cell
+
+
+def test_doubtful_candidates_are_approached_when_there_is_no_other():
+    navmap, pose = doubtful_one_first()
+    navmap.rejected[30, 60] = True
+    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.cell == (30, 35)
+
+
+def test_a_likely_candidate_that_cannot_be_got_near_does_not_hold_up_the_others():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(60):
+        for col in range(40, 80):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    navmap.score_max[30, 25], navmap.score_sum[30, 25], navmap.score_sum[30, 60] = 0.6, 3.0, 9.0
+    navmap.frames_in_view[:] = 10
+    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.cell == (30, 25)
+
+
+class Wavering(Doubtful):
+    """It would accept now the one and then the other."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def would_accept(self, goal: str, features: Features) -> bool:
+        self.asked += 1
+        return self.asked % 4 in (0, 1)
+
+
+def test_what_is_pursued_as_likely_is_pursued_to_the_end():
+    navmap, pose = doubtful_one_first()
+    wavering = seeker(Wavering())
+    approaches = [wavering.approach(navmap, whole(navmap), pose, step) for step in range(6)]
+    assert len({approach.cell for approach in approaches if approach}) == 1
+
+
+def test_a_part_is_likely_as_its_cell_seen_best():
+    navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
+    navmap.score_max[30, 61] = navmap.score_max[30, 35] = 0.6
+    navmap.frames_in_view[:] = 10
+    navmap.score_sum[30, 60], navmap.score_sum[30, 61], navmap.score_sum[30, 35] = 9.0, 2.0, 3.0
+    assert np.argwhere(seeker(Doubtful()).likely(navmap)).tolist() == [[30, 60], [30, 61]]
+
+
+def test_no_stand_lies_behind_a_wall_however_near():
+    rows = room(R=(30, 30), T=(30, 41))
+    for row in range(60):
+        rows[row][39] = "#"
+    for row in range(2, 14):
+        rows[row][39] = "."
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None  # 0.55 m away in a straight line, and yet the way goes round
+    assert approach.route.plan.length_m > 1.5
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.min() > 39
+
+
+def test_no_stand_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
+    """The wall behind a picture is hidden by it, and the ground behind that wall was never in view."""
+    rows = room(R=(30, 10), T=(30, 40))
+    for row in range(20, 40):
+        for col in range(30, 41):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "#" if col == 40 else "o"
+    navmap, pose = known(text_of(rows))
+    navmap.frames_in_view[:, 41:] = 0
+    navmap.shown_x[30, 40] = -1.0  # it was seen from the left
+    seek = seeker()
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.max() <= 40
+    navmap.frames_in_view[:, 41:] = 1  # now the ground behind is known to be open
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.plan.goal)
+    assert cols.max() > 40
+
+
+def test_low_furniture_hides_nothing():
+    rows = room(R=(30, 20), T=(30, 45))
+    for row in range(20, 40):
+        for col in range(36, 45):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m < 1.0
+
+
+def enclosed_target() -> tuple[NavMap, PlanarPose]:
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(5, 55):
+        for col in range(35, 79):
+            if row < 8 or row > 51 or col < 38:
+                rows[row][col] = "#"
+    return known(text_of(rows))
+
+
+def test_an_unreachable_candidate_is_set_aside_and_tried_again_later():
+    navmap, pose = enclosed_target()
+    seek = seeker(retry_after_steps=10)
+    assert seek.approach(navmap, whole(navmap), pose, 0) is None
+    assert navmap.set_aside[30, 60]
+    assert not navmap.rejected.any()
+    navmap.seen_obstacle[20:40, 35:38] = navmap.seen_at_eye_level[20:40, 35:38] = False
+    assert seek.approach(navmap, whole(navmap), pose, 9) is None
+    assert seek.approach(navmap, whole(navmap), pose, 10) is not None
+
+
+def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
+    navmap, pose = enclosed_target()
+    seek, tried = seeker(retry_after_steps=10), []
+    for step in range(80):
+        navmap.set_aside[0, 0] = True  # gone when all that was set aside is tried again
+        assert seek.approach(navmap, whole(navmap), pose, step) is None
+        if not navmap.set_aside[0, 0]:
+            tried.append(step)
+    assert tried == [0, 10, 30, 70]
+
+
+def test_late_in_the_episode_the_nearest_reachable_place_will_do():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in range(35, 79):
+            rows[row][col] = "o"
+    navmap, pose = known(text_of(rows))
+    navmap.score_max[30, 60] = 1.0
+    seek = seeker(last_resort_step=100)
+    assert seek.approach(navmap, whole(navmap), pose, 99) is None
+    late = seek.approach(navmap, whole(navmap), pose, 200)
+    assert late is not None
+    assert late.route is not None
+
+
+def far_target() -> tuple[NavMap, PlanarPose]:
+    """A candidate in the middle of a large piece of furniture, 1.35 m from where a robot fits."""
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(6, 54):
+        for col in range(36, 79):
+            if rows[59 - row][col] == ".":
+                rows[59 - row][col] = "o"
+    return known(text_of(rows))
+
+
+def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reachable_place():
+    navmap, pose = far_target()
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None  # there is nothing to verify
+    navmap, pose = far_target()
+    seek = seeker(RefuseAll())
+    approach = seek.approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert not approach.near_enough
+    rows, cols = np.nonzero(approach.route.plan.goal)
+    reachable = approach.route.free.reachable
+    gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
+    assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
+    x_m, y_m = navmap.frame.centres(rows[0], cols[0])
+    there = PlanarPose(float(x_m), float(y_m), 0.0)
+    approach = seek.approach(navmap, whole(navmap), there, 1)
+    assert approach is not None
+    assert approach.route is None
+    assert not approach.near_enough
+    assert seek.judge(navmap, approach.cell) is False
+    assert seek.approach(navmap, whole(navmap), there, 2) is None
+
+
+def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
+    navmap, pose = far_target()
+    seek = seeker(RefuseAll(), last_resort_step=100, retry_after_steps=10)
+    approach = seek.approach(navmap, whole(navmap), pose, 5)
+    assert approach is not None
+    assert not approach.near_enough
+    seek.postpone(navmap, 5)
+    assert seek.approach(navmap, whole(navmap), pose, 14) is None
+    assert seek.approach(navmap, whole(navmap), pose, 15) is not None
+    late = seek.approach(navmap, whole(navmap), pose, 100)
+    assert late is not None
+    assert late.near_enough
+
+
+def test_pessimistic_marks_that_close_the_way_to_a_target_give_way_to_optimistic_ones():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(1, 59):
+        for col in (30, 31, 32):
+            rows[row][col] = "w"
+    navmap, pose = known(text_of(rows))
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.route.plan.length_m < 2.0
+    navmap.bumped_narrow[:] = navmap.bumped_wide
+    assert seeker().approach(navmap, whole(navmap), pose, 0) is None
+
+
+def test_a_candidate_outside_the_local_window_is_still_approached():
+    navmap, pose = known(text_of(room(width=300, R=(30, 10), T=(30, 280))))
+    window = navmap.frame.window_at(pose.x_m, pose.y_m, 100)
+    approach = seeker().approach(navmap, window, pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    assert approach.cell == (30, 280)
+    assert approach.route.plan.length_m > 12.0
+
+
+def sighting_at(*places: tuple[int, int, float]) -> Sighting:
+    rows, cols, distance_m = (np.array(v) for v in zip(*places, strict=True))
+    return Sighting(rows, cols, distance_m.astype(np.float32))
+
+
+def test_a_target_point_in_view_within_reach_ends_the_approach():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    seek = seeker()
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2))) is None
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) == (30, 26)
+    navmap.rejected[30, 26] = True
+    assert seek.in_reach(navmap, sighting_at((30, 31, 0.9), (30, 26, 0.8))) == (30, 31)
+    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) is None
+
+
+def test_a_verifier_is_asked_with_the_four_features_and_refusal_takes_the_connected_cells_and_a_margin():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    navmap.score_max[20:25, 40:50] = 0.9
+    navmap.score_max[20:25, 60] = 0.9
+    navmap.score_sum[22, 44], navmap.other_max[22, 44], navmap.frames_in_view[22, 44] = 3.5, 0.4, 7
+    navmap.score_sum[22, 60] = 9.0  # another candidate
+    refuse = RefuseAll()
+    seek = seeker(refuse)
+    assert seek.judge(navmap, (20, 40)) is False  # approached at its edge, judged by its cell seen best
+    [(goal, features)] = refuse.asked
+    assert goal == "sofa"
+    assert tuple(features) == pytest.approx((7, 3.5, 0.9, 0.4))
+    assert navmap.rejected[20:25, 40:50].all()
+    assert navmap.rejected[22, 40 - 5]
+    assert not navmap.rejected[22, 40 - 6]
+    assert not navmap.rejected[22, 60]
+    left = seek.candidates(navmap)
+    assert left.any()
+    assert not left[:, :56].any()
+
+
+def test_a_candidate_first_found_after_step_200_is_not_verified():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    navmap.score_max[20:25, 40:50] = 0.9
+    navmap.found_step[20:25, 40:50] = 201
+    refuse = RefuseAll()
+    assert seeker(refuse).judge(navmap, (22, 44)) is True
+    assert refuse.asked == []
+    navmap.found_step[24, 49] = 200
+    assert seeker(refuse).judge(navmap, (22, 44)) is False
+
+
+def test_reset_forgets_what_was_set_aside_and_how_long_it_would_have_waited():
+    navmap, pose = enclosed_target()
+    seek = seeker(retry_after_steps=10)
+    for step in (0, 10, 30):
+        assert seek.approach(navmap, whole(navmap), pose, step) is None
+    seek.reset("sofa")
+    fresh, pose = enclosed_target()
+    assert seek.approach(fresh, whole(fresh), pose, 0) is None
+    assert fresh.set_aside.any()
+    fresh.seen_obstacle[:] = False  # the way opens
+    fresh.seen_at_eye_level[:] = False
+    assert seek.approach(fresh, whole(fresh), pose, 9) is None
+    assert seek.approach(fresh, whole(fresh), pose, 10) is not None
+
+
+def test_stands_in_the_wrong_order_are_refused():
+    with pytest.raises(ConfigError, match="stand_m <= far_stand_m"):
+        TargetConfig(stand_m=1.2)
+
+
+def test_sight_ends_at_the_first_blocked_cell_but_not_at_the_targets_own_edge():
+    blocked = np.zeros((20, 20), bool)
+    blocked[10, 12] = True
+    starts, ends = (np.array([10, 10, 5]), np.array([2, 2, 2])), (np.array([10, 10, 5]), np.array([18, 13, 18]))
+    np.testing.assert_array_equal(sight_is_clear(blocked, starts, ends, 1.6), [False, True, True])
+    nothing = np.zeros(0, int)
+    assert sight_is_clear(blocked, (nothing, nothing), (nothing, nothing), 1.0).size == 0
+
+
+def test_nearest_cell_and_distance_agree_with_brute_force():
+    mask = np.zeros((30, 40), bool)
+    cells = [(3, 4), (25, 30), (12, 39)]
+    for cell in cells:
+        mask[cell] = True
+    distance, rows, cols = nearest(mask)
+    exact = distance_to(mask)
+    for row in range(0, 30, 3):
+        for col in range(0, 40, 3):
+            gaps = [math.hypot(row - r, col - c) for r, c in cells]
+            assert exact[row, col] == pytest.approx(min(gaps), abs=1e-3)
+            assert distance[row, col] == pytest.approx(min(gaps), rel=0.03)
+            assert math.hypot(row - rows[row, col], col - cols[row, col]) <= min(gaps) * 1.05 + 1e-6
+
+
+def test_the_known_window_holds_all_that_was_seen_and_a_margin():
+    navmap = NavMap.empty(GridFrame.around_start(101))
+    assert navmap.known_window(5).frame.shape == (11, 11)
+    navmap.grow_known(slice(20, 25), slice(30, 31))
+    navmap.grow_known(slice(60, 61), slice(28, 91))
+    window = navmap.known_window(5)
+    assert (window.rows, window.cols) == (slice(15, 66), slice(23, 96))

@@ -1,0 +1,181 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sklearn.linear_model import LogisticRegression
+from sklearn.naive_bayes import GaussianNB
+from sklearn.preprocessing import StandardScaler
+
+from sim.interface import GOAL_CATEGORIES, ConfigError
+from stubborn.target.classifiers import Features, Logistic, NaiveBayes
+from stubborn.target.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
+from stubborn.target.verifier_fit import fit, judge_by_category
+
+
+def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Candidates as the layers might hold them: true ones were seen oftener and with less of another score."""
+    rng = np.random.default_rng(seed)
+    truth = rng.random(count) < true_share
+    views = rng.gamma(3.0, 8.0, count) + 5.0 * truth + shift
+    share = np.where(truth, rng.beta(6, 2, count), rng.beta(2, 5, count))
+    top = np.clip(share + rng.normal(0.1, 0.1, count), 0.5, 1.0)
+    other = np.clip(1.1 - share + rng.normal(0, 0.15, count), 0.0, 1.0)
+    return np.column_stack([np.round(views), views * share, top, other]), truth
+
+
+def log_of(by_goal: dict[str, tuple[np.ndarray, np.ndarray]]) -> list[dict]:
+    """Lines as the tool logs them, one candidate an episode."""
+    return [
+        {"goal": goal, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
+        for goal, (features, truth) in by_goal.items()
+        for row, true in zip(features, truth, strict=True)
+    ]
+
+
+def written(content: dict, folder: Path) -> FittedVerifier:
+    file = folder / "kind.json"
+    file.write_text(json.dumps(content))
+    return FittedVerifier.read(file)
+
+
+def test_probabilities_are_those_of_scikit_learn(tmp_path: Path):
+    features, truth = examples(300, 0.4, seed=1)
+    verifier = written(fit(log_of({"chair": (features, truth)}), 20), tmp_path)
+    expected = GaussianNB().fit(features, truth).predict_proba(features)[:, 1]
+    ours = [verifier.probability("chair", Features(*row)) for row in features]
+    np.testing.assert_allclose(ours, expected, atol=1e-4)
+    accepted = [verifier.accepts("chair", Features(*row)) for row in features]
+    sure = np.abs(expected - 0.5) > 1e-3
+    np.testing.assert_array_equal(np.array(accepted)[sure], (expected > 0.5)[sure])
+
+
+def test_the_other_methods_are_logistic_regressions_one_of_the_mean_score_alone(tmp_path: Path):
+    features, truth = examples(400, 0.4, seed=6)
+    content = fit(log_of({"chair": (features, truth)}), 20)
+    file = tmp_path / "kind.json"
+    file.write_text(json.dumps(content))
+    threshold, logistic = FittedVerifier.read(file, "threshold"), FittedVerifier.read(file, "logistic")
+    share = features[:, 1] / features[:, 0]
+    probability = np.array([threshold.probability("chair", Features(*row)) for row in features])
+    order = np.argsort(share)
+    assert (np.diff(probability[order]) >= 0).all()
+    accepted = [logistic.accepts("chair", Features(*row)) for row in features]
+    assert np.mean(np.array(accepted) == truth) > 0.9
+    x = np.column_stack([np.log1p(features[:, 0]), share, features[:, 2], features[:, 3]])
+    scaler = StandardScaler().fit(x)
+    expected = LogisticRegression().fit(scaler.transform(x), truth).predict_proba(scaler.transform(x))[:, 1]
+    ours = [logistic.probability("chair", Features(*row)) for row in features]
+    np.testing.assert_allclose(ours, expected, atol=1e-3)
+
+
+def test_methods_are_judged_on_the_same_candidates_left_out():
+    features, truth = examples(300, 0.5, seed=7)
+    methods = fit(log_of({"bed": (features, truth)}), 20)["methods"]
+    assert set(methods) == set(METHODS)
+    for fitted in methods.values():
+        left_out = fitted["left_out"]
+        assert left_out["candidates"] == 300
+        assert left_out["precision_before"] == pytest.approx(truth.mean(), abs=1e-3)
+        assert left_out["precision"] > left_out["precision_before"]
+
+
+def test_a_verifier_is_judged_by_category(tmp_path: Path):
+    chairs, beds = examples(200, 0.3, seed=8), examples(100, 0.6, seed=9)
+    verifier = written(fit(log_of({"chair": chairs, "bed": beds}), 20), tmp_path)
+    found = judge_by_category(log_of({"chair": chairs, "bed": beds}), verifier)
+    assert list(found) == ["all", "chair", "bed"]
+    assert [each["candidates"] for each in found.values()] == [300, 200, 100]
+    accepted = np.array([verifier.accepts("bed", Features(*row)) for row in beds[0]])
+    assert found["bed"]["true_accepted"] == pytest.approx(accepted[beds[1]].mean(), abs=1e-4)
+    assert found["bed"]["precision"] == pytest.approx(beds[1][accepted].mean(), abs=1e-4)
+
+
+def test_who_does_not_verify_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
+    assert isinstance(verifier_for("noisy", method="none"), AcceptAll)
+    with pytest.raises(ConfigError, match="Unknown verification 'hunch'"):
+        verifier_for("noisy", method="hunch")
+    with pytest.raises(ConfigError, match="cannot be read"):
+        verifier_for("noisy", tmp_path / "none.json")
+    with pytest.raises(ConfigError, match="a coefficient for each of its inputs"):
+        Logistic.from_dict({"inputs": ["maximum", "smell"], "coefficients": [1.0, 2.0], "intercept": 0.0})
+
+
+def test_extreme_features_give_a_probability_and_no_overflow():
+    bayes = NaiveBayes.from_dict({"prior": [0.5, 0.5], "mean": [[0.0] * 4, [1.0] * 4], "variance": [[1e-6] * 4] * 2})
+    with np.errstate(all="raise"):
+        assert bayes.probability((500, 500.0, 1.0, 0.0)) == pytest.approx(1.0)
+        assert bayes.probability((-500, -500.0, 0.0, 0.0)) == pytest.approx(0.0)
+
+
+def test_a_category_with_too_few_of_either_kind_shares_the_pooled_classifier(tmp_path: Path):
+    many, few_false = examples(200, 0.5, seed=2), examples(200, 0.95, seed=3, shift=30.0)
+    assert 0 < (~few_false[1]).sum() < 20 < few_false[1].sum()
+    content = fit(log_of({"chair": many, "sofa": few_false}), 20)
+    assert set(content["methods"]["naive-bayes"]["categories"]) == {"chair"}
+    assert content["candidates"]["sofa"] == {"false": int((~few_false[1]).sum()), "true": int(few_false[1].sum())}
+    verifier = written(content, tmp_path)
+    row = Features(40, 14.0, 0.7, 0.65)
+    both = [np.concatenate(pair) for pair in zip(many, few_false, strict=True)]
+    pooled = GaussianNB().fit(*both).predict_proba([row])[0, 1]
+    own = GaussianNB().fit(*many).predict_proba([row])[0, 1]
+    assert abs(pooled - own) > 0.01
+    assert verifier.probability("sofa", row) == pytest.approx(pooled, abs=1e-4)
+    assert verifier.probability("toilet", row) == pytest.approx(pooled, abs=1e-4)
+    assert verifier.probability("chair", row) == pytest.approx(own, abs=1e-4)
+
+
+def test_calibration_counts_every_candidate_once_and_is_right_where_classes_are_apart():
+    features, truth = examples(400, 0.5, seed=4)
+    features[:, 3] = np.where(truth, 0.1, 0.9) + 0.01 * np.random.default_rng(0).standard_normal(400)
+    calibration = fit(log_of({"bed": (features, truth)}), 20)["methods"]["naive-bayes"]["left_out"]
+    assert sum(row["candidates"] for row in calibration["by_probability"]) == 400
+    assert calibration["accuracy"] > 0.99
+    assert all(row["from"] <= row["mean_probability"] <= row["to"] for row in calibration["by_probability"])
+
+
+def test_what_is_left_of_a_candidate_does_not_count_again():
+    strong, weak = [20.0, 18.0, 0.98, 0.3], [12.0, 1.0, 0.6, 0.9]
+    here, near, far = (0.0, 0.0), (1.0, 1.0), (4.0, 0.0)
+    met = [(strong, 1.0, here), (weak, 1.0, near), (weak, 0.0, near), (weak, 0.0, here), (strong, 1.0, far)]
+    line = {"goal": "bed", "candidates": [[*features, truth, *place] for features, truth, place in met]}
+    content = fit([line, line], 2)
+    assert content["candidates"]["bed"] == {"false": 2, "true": 4}
+    np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
+
+
+def test_too_few_candidates_in_all_are_refused_with_the_numbers():
+    features, truth = examples(30, 0.3, seed=5)
+    with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of either"):
+        fit(log_of({"bed": (features, truth)}), 20)
+
+
+def test_ground_truth_has_nothing_to_verify():
+    verifier = verifier_for("gt")
+    assert isinstance(verifier, AcceptAll)
+    assert not verifier.may_refuse
+    assert verifier.accepts("chair", Features(0, 0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str):
+    verifier = verifier_for("noisy", method=method)
+    assert isinstance(verifier, FittedVerifier)
+    for goal in GOAL_CATEGORIES:
+        seldom = verifier.probability(goal, Features(20, 3.0, 0.62, 0.88))
+        always = verifier.probability(goal, Features(25, 21.0, 0.95, 0.3))
+        assert seldom < 0.5 < always, goal
+
+
+def test_an_unknown_kind_or_goal_and_a_broken_file_are_refused(tmp_path: Path):
+    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. There is: gt, noisy"):
+        verifier_for("dreams")
+    with pytest.raises(ConfigError, match="Unknown goal 'unicorn'"):
+        FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4)))).probability(
+            "unicorn", Features(1, 1.0, 1.0, 0.0)
+        )
+    broken = tmp_path / "broken.json"
+    for content in ("[]", "{", '{"pooled": {"prior": [1], "mean": [], "variance": []}, "categories": {}}'):
+        broken.write_text(content)
+        with pytest.raises(ConfigError, match=r"broken\.json"):
+            FittedVerifier.read(broken)
