@@ -11,8 +11,7 @@ from typing import TypeVar
 
 import tyro
 
-from sim.errors import EpisodeError, HouseError, RenderError, WorkersError
-from sim.interface import ConfigError
+from sim.errors import ConfigError, EpisodeError, HouseError, RenderError, WorkersError
 
 ArgsT = TypeVar("ArgsT")
 USAGE_ERRORS = (ConfigError, EpisodeError, HouseError, RenderError, WorkersError)

@@ -1,23 +1,31 @@
-"""What can go wrong in the world, one class a kind; every message names what was given and what would do."""
+"""Errors of this project, one class per kind. A message says what was given and what is allowed."""
 
 from __future__ import annotations
 
 
-class HouseError(ValueError):
+class ObjectNavError(Exception):
+    """Base class of all errors that this project raises on purpose."""
+
+
+class ConfigError(ObjectNavError, ValueError):
+    """A value given by the user is not allowed; the message names the value and what is allowed."""
+
+
+class HouseError(ObjectNavError, ValueError):
     """A house file is missing, unreadable, or breaks a rule of the house format."""
 
 
-class EpisodeError(ValueError):
-    """An episode cannot be set up: an unknown goal, a start inside a wall, no way to the goal."""
+class EpisodeError(ObjectNavError, ValueError):
+    """An episode cannot be set up: an unknown goal, a start inside a wall, no path to the goal."""
 
 
-class PhysicsError(RuntimeError):
-    """The simulation left the physical: NaN, an unstable state, a robot that fell."""
+class PhysicsError(ObjectNavError, RuntimeError):
+    """The simulation reached an unphysical state: NaN, an unstable state, a robot that fell."""
 
 
-class RenderError(RuntimeError):
-    """No OpenGL could be had, or the frame buffer is too small."""
+class RenderError(ObjectNavError, RuntimeError):
+    """OpenGL is not available, or the frame buffer is too small."""
 
 
-class WorkersError(RuntimeError):
-    """Workers cannot start, or one piece of work kills every worker."""
+class WorkersError(ObjectNavError, RuntimeError):
+    """Workers cannot start, or one item of work makes every worker fail."""

@@ -7,7 +7,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 
 
 def write_atomically(path: Path, content: bytes) -> None:

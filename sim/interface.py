@@ -11,17 +11,22 @@ from __future__ import annotations
 
 import enum
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.errors import ConfigError
+from sim.geometry.pose import wrap_angle
 
-class ConfigError(ValueError):
-    """A value that a user gave is outside what is allowed; the message says what was given and what would do."""
+__all__ = [
+    "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS", "TURN_RAD",
+    "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation", "RobotModel", "Scores",
+    "Segmenter", "SegmenterSpec", "SuccessRule", "wrap_angle",
+]  # fmt: skip
 
 
 class Action(enum.IntEnum):
@@ -39,8 +44,6 @@ TURN_RAD = math.radians(30.0)
 """Commanded rotation of TURN_LEFT (positive) and TURN_RIGHT (negative)."""
 MAX_STEPS = 500
 """Actions after which an episode is truncated."""
-SUCCESS_DISTANCE_M = 1.0
-"""STOP succeeds where a visible point of the goal's footprint is at most this far from the robot's centre."""
 
 # fmt: off
 MPCAT40: tuple[str, ...] = (
@@ -113,6 +116,31 @@ class RobotModel:
             raise ConfigError(f"RobotModel needs positive sizes, got {self.radius_m} m and {self.height_m} m.")
 
 
+@dataclass(frozen=True, kw_only=True)
+class SuccessRule:
+    """When a STOP succeeds: a visible point of an instance is near enough, on the same storey (contract, section 2)."""
+
+    distance_m: float = 1.0
+    """Largest distance in plan from the robot's centre to a visible point of the instance's footprint."""
+    sight_height_m: float | None = None
+    """Height above the floor of the line of sight; None takes the camera's height."""
+    same_storey_m: float = 1.0
+    """Floors less than this apart are one storey."""
+
+    def __post_init__(self) -> None:
+        if self.distance_m <= 0 or self.same_storey_m <= 0:
+            raise ConfigError(
+                f"SuccessRule needs distance_m > 0 and same_storey_m > 0, got {self.distance_m} and "
+                f"{self.same_storey_m} m."
+            )
+        if self.sight_height_m is not None and self.sight_height_m <= 0:
+            raise ConfigError(f"SuccessRule.sight_height_m must be > 0 m or None, got {self.sight_height_m}.")
+
+    def sight_height_with(self, camera: CameraModel) -> float:
+        """Returns the height of the line of sight above the floor, metres, for a robot with this camera."""
+        return camera.height_m if self.sight_height_m is None else self.sight_height_m
+
+
 Observation = Mapping[str, NDArray]
 """What an agent sees at one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
 
@@ -144,30 +172,79 @@ class Scores(NamedTuple):
     """Highest probability of any other category."""
 
 
-class Segmenter(Protocol):
-    """Where segmentation comes from: ground truth, a noisy oracle, a network."""
+@dataclass(frozen=True, kw_only=True)
+class SegmenterSpec:
+    """What a segmenter declares about itself."""
 
-    sensors: tuple[str, ...]
-    """The image sensors that `scores` reads, beside the depth that every agent asks for."""
+    sensors: tuple[str, ...] = ("rgb",)
+    """Image sensors that `scores` reads in the observation, besides `depth`."""
+    truth: tuple[str, ...] = ()
+    """Ground-truth images that it reads in the environment and that the agent does not get (`semantic`, `geom`)."""
+    exact_outlines: bool = False
+    """Whether the outlines of its scores are exact to the pixel. With inexact outlines an agent must not trust the
+    rim of a target."""
+
+
+class Segmenter(Protocol):
+    """Where segmentation comes from: ground truth, a simulated detector, a network."""
+
+    @property
+    def spec(self) -> SegmenterSpec:
+        """What it reads and how exact it is."""
+        ...
 
     def scores(self, observation: Observation, goal: str) -> Scores:
-        """Scores of one frame for the goal category."""
+        """Returns the scores of one frame for the goal category."""
         ...
 
 
 class Agent(Protocol):
-    """What `sim` drives: anything with these two methods, built by a factory (see `stubborn.agents.make`)."""
+    """What `sim` runs: any object with these two methods, built by an `AgentFactory`."""
 
     def reset(self, goal: str, seed: int) -> None:
         """Start a new episode; nothing of the last one may remain."""
         ...
 
     def act(self, observation: Observation) -> Action:
-        """Choose the next action. The observation must not be changed."""
+        """Returns the next action. The observation must not be changed."""
         ...
 
 
-def wrap_angle(angle_rad: float) -> float:
-    """The same angle in (-pi, pi]."""
-    wrapped = math.remainder(angle_rad, math.tau)
-    return math.pi if wrapped == -math.pi else wrapped
+AgentFactory = Callable[..., Agent]
+"""Builds an agent from keyword arguments:
+
+| argument | type | meaning |
+|---|---|---|
+| camera | `CameraModel` | camera of the observations |
+| robot | `RobotModel` | the robot that the agent drives |
+| success | `SuccessRule` | when a STOP counts |
+| segmenter | `Segmenter` | source of the scores |
+| verifier | `stubborn.target.verification.Verifier` | judges candidates of the goal |
+| config | type of `AgentSpec.config` | the agent's configuration |
+| truth | `sim.env.objectnav.ObjectNavEnv` | only with `uses_ground_truth`: the running environment |
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AgentSpec:
+    """What an agent declares: how it is built, and what it needs. `--agent package.module:NAME` takes one."""
+
+    make: AgentFactory
+    description: str = ""
+    """One line for `--list-agents`."""
+    config: Any = None
+    """Default configuration, a frozen dataclass whose fields `--config agent.FIELD=VALUE` sets; None: it has none."""
+    sensors: tuple[str, ...] = ("rgb", "depth")
+    """Image sensors that the agent reads itself. What its segmenter reads is added."""
+    uses_segmentation: bool = True
+    """False: its results do not depend on `--semantics`."""
+    uses_ground_truth: bool = False
+    """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
+    painter: Callable[[Agent], Any] | None = None
+    """Returns a `sim.viewers.viewer.MapPainter` that draws the agent's map; None: viewers draw the true floor plan."""
+
+    def __post_init__(self) -> None:
+        if "semantic" in self.sensors and not self.uses_ground_truth:
+            raise ConfigError(
+                "An agent that reads the 'semantic' sensor reads ground truth: declare uses_ground_truth=True."
+            )

@@ -20,7 +20,7 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
 from sim.analysis.report.build import build_page
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 SEMANTICS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {"gt": GroundTruthSegmenter.sensors, "noisy": NoisySegmenter.sensors, "rednet": ("rgb",)}
+    {"gt": GroundTruthSegmenter.spec.sensors, "noisy": NoisySegmenter.spec.sensors, "rednet": ("rgb",)}
 )
 """Each kind, and the image sensors that it reads beside depth."""
 

@@ -106,7 +106,7 @@ class StubbornAgent:
         self.config = config
         self.robot = robot
         self.segmenter = segmenter
-        self._true_outlines = bool(getattr(segmenter, "exact", False))
+        self._true_outlines = segmenter.spec.exact_outlines
         avoidance = config.avoidance
         self.mapper = Mapper(camera, robot, config.mapping, layers)
         self.planner = Planner(config.planning, trust_visited=avoidance.visited_is_free)

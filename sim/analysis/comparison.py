@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from sim.errors import ConfigError
 from sim.evaluation.results import bootstrap_interval, read_whole_lines
-from sim.interface import ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 Line = Mapping[str, Any]

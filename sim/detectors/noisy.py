@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from sim.detectors.confusions import CONFUSIONS
 from sim.env.scene import Scene
 from sim.gl import mujoco
-from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores
+from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
 from sim.world.world import World
 
 
@@ -106,7 +106,7 @@ class Seen(NamedTuple):
 class NoisySegmenter:
     """See the module. Reads what is true of the running episode; keeps nothing from frame to frame."""
 
-    sensors: tuple[str, ...] = ()
+    spec = SegmenterSpec(sensors=(), truth=("geom",))
 
     def __init__(self, episode: Watched, config: NoisyConfig = NoisyConfig()) -> None:
         self.config = config

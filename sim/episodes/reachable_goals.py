@@ -12,7 +12,7 @@ from sim.episodes import habitat
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.interface import SUCCESS_DISTANCE_M
+from sim.interface import SuccessRule
 from sim.task.objectnav import Task
 from sim.task.success import Footprint, GoalRegion, Surroundings
 from sim.world.freespace import FreeSpace
@@ -70,7 +70,7 @@ def view_points(
 
 def _near(space: FreeSpace, inside: NDArray[np.bool_], footprint: Footprint) -> NDArray[np.float64]:
     """(n, 2) centres of all the cells of a mask around a footprint, metres."""
-    rows, cols = space.frame.window(footprint.bounds_m, SUCCESS_DISTANCE_M)
+    rows, cols = space.frame.window(footprint.bounds_m, SuccessRule().distance_m)
     corner = np.array([rows.start, cols.start])
     return space.frame.to_metres(np.argwhere(inside[rows, cols]) + corner)
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
+from sim.errors import ConfigError
 from sim.evaluation.workers import Bench, ItemT, PlayerSpec, WorkerLost, play_here, play_with
-from sim.interface import ConfigError
 
 EXECUTORS = ("local", "ray")
 """Names of `--executor`."""

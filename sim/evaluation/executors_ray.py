@@ -16,9 +16,8 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
-from sim.errors import WorkersError
+from sim.errors import ConfigError, WorkersError
 from sim.evaluation.workers import Bench, ItemT, PlayerSpec, WorkerLost, play_with
-from sim.interface import ConfigError
 from sim.paths import code_hash
 
 try:

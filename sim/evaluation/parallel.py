@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from sim.errors import WorkersError
+from sim.errors import ConfigError, WorkersError
 from sim.evaluation.executors import Executor, Processes
 from sim.evaluation.workers import PlayerSpec
-from sim.interface import ConfigError
 
 ThingT = TypeVar("ThingT")
 ResultT = TypeVar("ResultT")

@@ -17,7 +17,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""

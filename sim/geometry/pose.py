@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sim.interface import wrap_angle
-
 
 @dataclass(frozen=True)
 class Pose:
@@ -31,3 +29,9 @@ class Pose:
     def distance_to(self, other: Pose) -> float:
         """Distance in plan, metres."""
         return math.hypot(self.x_m - other.x_m, self.y_m - other.y_m)
+
+
+def wrap_angle(angle_rad: float) -> float:
+    """Returns the same angle in (-pi, pi]."""
+    wrapped = math.remainder(angle_rad, math.tau)
+    return math.pi if wrapped == -math.pi else wrapped

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.errors import HouseError
+from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
 from sim.housegen.decoration import draw_finish, draw_lamps
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floorplan
@@ -24,7 +24,6 @@ from sim.housegen.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, d
 from sim.housegen.selection import Kit
 from sim.housegen.structure import build_structure
 from sim.houses.writing import house_text
-from sim.interface import ConfigError
 from sim.world.check import check_house
 
 GENERATOR_VERSION = 2

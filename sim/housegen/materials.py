@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.errors import ConfigError
 from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.textures import TEXTURES
-from sim.interface import ConfigError
 
 
 @dataclass(frozen=True)

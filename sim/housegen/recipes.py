@@ -18,10 +18,9 @@ from importlib.metadata import version as package_version
 from pathlib import Path
 from typing import Any
 
-from sim.errors import HouseError
+from sim.errors import ConfigError, HouseError
 from sim.files import write_atomically
 from sim.housegen.shipped import Recipe
-from sim.interface import ConfigError
 from sim.paths import assets_dir
 
 LIST_FILE = "houses.json"

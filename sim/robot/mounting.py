@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from sim.errors import HouseError
+from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
-from sim.interface import ConfigError
 from sim.robot.body import (
     HULL_MASK,
     HULL_PRIORITY,

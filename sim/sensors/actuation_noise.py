@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 from sim.robot.conditions import NOMINAL, Conditions
 
 _BOUNDS = (0.01, 10.0)

@@ -20,7 +20,7 @@ from sim.geometry.convex import ConvexPolygon, lines_blocked, plan_polygon
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
-from sim.interface import MPCAT40_ID, SUCCESS_DISTANCE_M, CameraModel
+from sim.interface import MPCAT40_ID, SuccessRule, CameraModel
 from sim.world.freespace import SAME_STOREY_M, FreeSpace
 
 SIGHT_HEIGHT_M = CameraModel().height_m
@@ -104,7 +104,7 @@ class GoalRegion:
         *,
         floor_z_m: float = 0.0,
         surroundings: Surroundings | None = None,
-        reach_m: float = SUCCESS_DISTANCE_M,
+        reach_m: float = SuccessRule().distance_m,
     ) -> None:
         """Gather the footprints of a category; kinematics of `data` must be computed."""
         self.goal = goal

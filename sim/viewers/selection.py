@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 from sim.viewers.video import VideoWatcher
 from sim.viewers.viewer import MapPainter, Watcher
 

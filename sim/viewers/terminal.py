@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 
 Colours = Literal["true", "256"]
 HALF_BLOCK = "\u2580"

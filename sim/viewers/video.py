@@ -30,8 +30,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
+from sim.errors import ConfigError
 from sim.files import part_file
-from sim.interface import ConfigError
 from sim.viewers import overlay
 from sim.viewers.topview import TopView
 from sim.viewers.viewer import MapPainter, Moment

@@ -16,7 +16,7 @@ from sim.errors import HouseError
 from sim.gl import mujoco
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import Labels, collidable_geoms, read_labels
-from sim.interface import GOAL_CATEGORIES, SUCCESS_DISTANCE_M
+from sim.interface import GOAL_CATEGORIES, SuccessRule
 from sim.world.freespace import FreeSpace
 
 MAX_OVERLAP_M = 0.01
@@ -150,7 +150,7 @@ def _near(
     low, high = geom_boxes(model, data, np.array(list(geoms)))
     dx = np.maximum(np.maximum(low[:, 0].min() - px, px - high[:, 0].max()), 0.0)
     dy = np.maximum(np.maximum(low[:, 1].min() - py, py - high[:, 1].max()), 0.0)
-    return bool((np.hypot(dx, dy) < SUCCESS_DISTANCE_M - 0.1).any())
+    return bool((np.hypot(dx, dy) < SuccessRule().distance_m - 0.1).any())
 
 
 def geom_boxes(

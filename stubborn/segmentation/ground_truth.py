@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim.interface import MPCAT40_ID, ConfigError, Observation, Scores
+from sim.interface import MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
 
 
 class GroundTruthSegmenter:
     """Score 1 where the pixel's category is the goal's, else 0."""
 
-    sensors: tuple[str, ...] = ("semantic",)
-    exact = True
-    """Outlines are true to the pixel."""
+    spec = SegmenterSpec(sensors=("semantic",), exact_outlines=True)
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Scores at the image's own resolution; void pixels score 0 for everything."""

@@ -9,7 +9,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores, SegmenterSpec
 from stubborn.segmentation.checkpoints import load_rednet
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import RedNet, folded
@@ -27,7 +27,7 @@ class RedNetSegmenter:
         threads: of PyTorch in this process; None leaves its choice.
     """
 
-    sensors: tuple[str, ...] = ("rgb",)
+    spec = SegmenterSpec(sensors=("rgb",))
 
     def __init__(
         self,

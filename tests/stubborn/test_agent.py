@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.interface import Action, CameraModel, Observation, RobotModel, Scores
+from sim.interface import Action, CameraModel, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -132,10 +132,8 @@ def test_a_picture_can_be_drawn_before_the_first_step():
 class Smeared:
     """A segmenter whose outlines run over what is beside the target."""
 
-    sensors: tuple[str, ...] = ("semantic",)
-
     def __init__(self, *, exact: bool) -> None:
-        self.exact = exact
+        self.spec = SegmenterSpec(sensors=("semantic",), exact_outlines=exact)
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         true = GroundTruthSegmenter().scores(observation, goal)

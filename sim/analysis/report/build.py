@@ -21,7 +21,7 @@ from sim.analysis.comparison import MIN_PAIRS, Line, Run, require_same_episodes
 from sim.analysis.report.drawings import Ways, draw_episodes, read_ways, video_of
 from sim.analysis.report.figures import causes, groups, means, verdict
 from sim.analysis.report.words import explain, outcome
-from sim.interface import ConfigError
+from sim.errors import ConfigError
 
 NO_DEFAULT = ("agent", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg", "episodes")
 DEFAULTS: Mapping[str, Any] = {"semantics": "gt", "seed": 0, "profile": "fast", "noise": "none", "workers": 1}

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.errors import ConfigError
 from sim.housegen.furniture import (
     appliances,
     armchairs,
@@ -51,7 +52,6 @@ from sim.housegen.furniture import (
 from sim.housegen.furniture.catalogue import HINTS, Style
 from sim.housegen.furniture.item import Item, Pool
 from sim.housegen.furniture.workbench import Workbench
-from sim.interface import ConfigError
 
 _MODULES = (
     appliances,
