@@ -1,0 +1,104 @@
+"""Agents by name: those of `stubborn`, the oracle of `sim`, and anybody's own as `package.module:NAME`."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import inspect
+import sys
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from sim.env.objectnav import ObjectNavEnv
+from sim.env.oracle import Oracle
+from sim.errors import ConfigError
+from sim.interface import Agent, AgentSpec, Segmenter
+from stubborn import agents
+from stubborn.target.verification import Verifier
+
+
+def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Oracle:
+    return Oracle(truth)
+
+
+SPECS: Mapping[str, AgentSpec] = MappingProxyType(
+    {
+        **agents.SPECS,
+        "oracle": AgentSpec(
+            make=_make_oracle,
+            description="follows the true shortest path; an upper bound",
+            sensors=(),
+            uses_segmentation=False,
+            uses_ground_truth=True,
+        ),
+    }
+)
+"""The agents that `--agent` takes by name."""
+
+
+def find_agent(name: str) -> AgentSpec:
+    """Returns the specification of an agent.
+
+    Args:
+        name: one of `SPECS`, or `package.module:NAME`, where NAME is an `AgentSpec` or a factory. A plain factory
+            declares nothing, so its agent gets RGB and depth and no ground truth.
+
+    Raises:
+        ConfigError: there is no such agent.
+    """
+    if name in SPECS:
+        return SPECS[name]
+    module_name, separator, attribute = name.partition(":")
+    if not separator or not attribute:
+        near = difflib.get_close_matches(name, SPECS, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"Unknown agent '{name}'.{hint} There is: {', '.join(SPECS)}, or your own as package.module:NAME."
+        )
+    found = _import_attribute(name, module_name, attribute)
+    if isinstance(found, AgentSpec):
+        return found
+    if not callable(found):
+        raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
+    return AgentSpec(make=found, description=(inspect.getdoc(found) or "").partition("\n")[0])
+
+
+def build_agent(
+    name: str, spec: AgentSpec, env: ObjectNavEnv, *, segmenter: Segmenter, verifier: Verifier, config: Any
+) -> Agent:
+    """Returns the agent of a specification, for an environment.
+
+    Raises:
+        ConfigError: the factory does not take the arguments of `sim.interface.AgentFactory`.
+    """
+    parts: dict[str, Any] = {
+        "camera": env.camera_model,
+        "robot": env.robot_model,
+        "success": env.success_rule,
+        "segmenter": segmenter,
+        "verifier": verifier,
+        "config": config,
+    }
+    if spec.uses_ground_truth:
+        parts["truth"] = env
+    try:
+        inspect.signature(spec.make).bind(**parts)
+    except TypeError as error:
+        raise ConfigError(
+            f"Agent '{name}': its factory is called with the arguments {', '.join(parts)}, but: {error}. "
+            "A parameter **options accepts those that it does not use."
+        ) from None
+    return spec.make(**parts)
+
+
+def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
+    if "" not in sys.path:
+        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        raise ConfigError(f"Agent '{name}': no module '{error.name}' can be imported from here.") from None
+    if not hasattr(module, attribute):
+        raise ConfigError(f"Agent '{name}': module '{module_name}' has no '{attribute}'.")
+    return getattr(module, attribute)

@@ -1,0 +1,120 @@
+"""The options of `python -m sim.run`, and the checks that need no house."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+from sim.composition.agents import find_agent
+from sim.composition.segmenters import check_semantics
+from sim.errors import ConfigError
+from sim.evaluation.parallel import Share
+from sim.geometry.pose import Pose
+from sim.sensors.noise import get_noise
+from sim.sensors.profiles import get_profile
+from sim.viewers import selection
+from stubborn.target.verification import verifier_for
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """Let an agent look for objects in apartments, and write the results to a folder."""
+
+    agent: str = "stubborn"
+    """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory)."""
+    explorer: str | None = None
+    """The explorer of agents that take one, in place of their own; see --list-agents."""
+    semantics: str = "rednet"
+    """Source of segmentation: rednet, noisy (ground truth with the errors of a network) or gt (ground truth)."""
+    weights: Path | None = None
+    """With --semantics rednet: your network in place of the shipped one."""
+    verification: str = "naive-bayes"
+    """How candidates are verified: naive-bayes (the paper's), logistic, threshold or none."""
+    verifier: Path | None = None
+    """Parameters of verification (tools/train_verifier.py) in place of those shipped for this segmentation."""
+    split: str = "val"
+    """A shipped split, or a folder laid out like one."""
+    house: Path | None = None
+    """One MJCF file in place of a split."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    robot: Path | None = None
+    """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
+    goal: str | None = None
+    """Only this goal category."""
+    start_deg: str | None = None
+    """With --house: the start pose "X Y YAW" in metres and degrees."""
+    episodes: int = 5
+    """The first N episodes of the split; with --house, N episodes are drawn."""
+    seed: int = 0
+    """Seed of agents, noise and, with --house, starts and goals."""
+    workers: int = 1
+    """Number of processes, on this machine or over the cluster."""
+    executor: str = "local"
+    """Where episodes run: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
+    address: str | None = None
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
+    shard: str | None = None
+    """i/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see tools/merge_runs.py."""
+    profile: str = "fast"
+    """Rendering quality: fast or good."""
+    noise: str = "none"
+    """Noise of sensors and drive: none, realsense or harsh."""
+    config: tuple[str, ...] = ()
+    """FIELD=VALUE ...: set fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
+    config_file: Path | None = None
+    """A TOML or JSON file of such fields; --config is applied after it."""
+    out: Path | None = None
+    """Folder of the results (runs/<time>); an existing run there is resumed."""
+    record: bool = False
+    """Write a compact trajectory file of each episode, for `sim.task.trajectory.read_trajectory`."""
+    video: bool = False
+    """Write an MP4 of each episode to <out>/videos."""
+    view: bool = False
+    """Show the episodes in MuJoCo's viewer while they run."""
+    rerun: bool = False
+    """Stream poses, images, points and map to the Rerun viewer (extra `rerun`)."""
+    rerun_save: bool = False
+    """Write a Rerun file of each episode to <out>/rerun (extra `rerun`)."""
+    list_agents: bool = False
+    """Print the agents with a description of each, and exit."""
+
+
+def check_options(options: RunOptions) -> None:
+    """Raises ConfigError where options contradict each other or name something that does not exist."""
+    for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
+        value = getattr(options, name)
+        if value < smallest:
+            raise ConfigError(f"--{name} must be at least {smallest}, got {value}.")
+    if options.house is None and (options.labels is not None or options.start_deg is not None):
+        raise ConfigError("--labels and --start-deg need --house.")
+    selection.check(options)
+    if options.shard is not None:
+        Share.parse(options.shard)
+        if options.out is None:
+            raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
+    get_profile(options.profile)
+    get_noise(options.noise)
+    check_semantics(options.semantics, options.weights)
+    verifier_for(options.semantics, options.verifier, options.verification)
+    find_agent(options.agent)
+
+
+def start_pose(start_deg: str | None) -> Pose | None:
+    """Returns the pose in the text "X Y YAW" (metres and degrees); None for None.
+
+    Raises:
+        ConfigError: the text does not hold three finite numbers.
+    """
+    if start_deg is None:
+        return None
+    try:
+        x_m, y_m, yaw_deg = (float(word) for word in start_deg.split())
+    except ValueError:
+        raise ConfigError(
+            f'--start-deg must be three numbers "X Y YAW" in metres and degrees, got "{start_deg}".'
+        ) from None
+    if not all(math.isfinite(value) for value in (x_m, y_m, yaw_deg)):
+        raise ConfigError(f'--start-deg must be finite, got "{start_deg}".')
+    return Pose(x_m, y_m, math.radians(yaw_deg))

@@ -1,0 +1,138 @@
+"""The player of a worker process: one environment and one agent that run episode after episode."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sim.composition.agents import build_agent, find_agent
+from sim.composition.options import RunOptions, start_pose
+from sim.composition.run_config import RunConfig, configuration_of, truth_images, verifier_of, versions
+from sim.composition.segmenters import NoSegmentation, make_segmenter
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.errors import ConfigError, EpisodeError
+from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
+from sim.interface import AgentSpec
+from sim.viewers import selection
+from sim.viewers.viewer import VIEWER_IMAGES
+
+
+class EpisodePlayer:
+    """Runs episodes in one process; see `sim.evaluation.workers`."""
+
+    def __init__(self, options: RunOptions) -> None:
+        self._options = options
+        self._spec = spec = find_agent(options.agent)
+        config = configuration_of(options)
+        truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * selection.any_asked(options)
+        self._env = make_env(options, config, sensors=config.sensors, truth=truth)
+        segmenter = (
+            make_segmenter(options.semantics, self._env, config.detector) if spec.uses_segmentation else NoSegmentation()
+        )
+        verifier = verifier_of(options, config.verification)
+        self._agent = build_agent(
+            options.agent, spec, self._env, segmenter=segmenter, verifier=verifier, config=config.agent
+        )
+        self._viewers = selection.make(options, spec.painter(self._agent) if spec.painter else None)
+        self._about = {
+            "profile": options.profile,
+            "noise": options.noise,
+            "split": {"name": self._env.split.name, "version": self._env.split.version},
+            "versions": versions(),
+        }
+
+    def play(self, episode: Episode) -> dict[str, Any]:
+        """Runs one episode and returns its result line."""
+        seed = episode_seed(self._options.seed, episode.episode_id)
+        try:
+            metrics = play_episode(self._env, self._agent, episode, seed=seed, viewers=self._viewers)
+        except EpisodeError as error:
+            return error_line(self._options, episode, str(error))
+        line = _identity(self._options, self._spec, episode) | metrics
+        if self._options.record and self._options.out is not None:
+            record_episode(self._env, self._options.out, line, self._about)
+        return line
+
+    def close(self) -> None:
+        """Frees the renderers; viewers drop an unfinished episode."""
+        for viewer in self._viewers:
+            viewer.close()
+        self._env.close()
+
+
+def make_env(
+    options: RunOptions, config: RunConfig, *, sensors: tuple[str, ...], truth: tuple[str, ...] = ()
+) -> ObjectNavEnv:
+    """Returns the environment of a run.
+
+    Args:
+        options: checked options; they name the houses.
+        config: the configuration tree of these options.
+        sensors: image sensors in the observation.
+        truth: images without noise that are rendered besides.
+    """
+    return ObjectNavEnv(
+        split=options.split,
+        house=options.house,
+        labels=options.labels,
+        goal=options.goal if options.house is not None else None,
+        start=start_pose(options.start_deg),
+        sensors=sensors,
+        truth=truth,
+        profile=config.profile,
+        noise=config.noise,
+        robot=config.robot,
+        camera=config.camera,
+        task=config.task,
+    )
+
+
+def plan_episodes(options: RunOptions) -> tuple[list[Episode], dict[str, Any]]:
+    """Returns the episodes of a run, and what identifies the split or house they come from.
+
+    Raises:
+        ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
+    """
+    env = make_env(options, configuration_of(options), sensors=())
+    try:
+        split = env.split
+        if options.house is None:
+            episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+            if options.episodes > len(episodes):
+                raise ConfigError(
+                    f"--episodes {options.episodes}: split '{split.name}' has {len(episodes)} episodes"
+                    + (f" with goal '{options.goal}'." if options.goal else ".")
+                )
+            episodes = episodes[: options.episodes]
+        else:
+            episodes = [
+                env.draw_episode(
+                    np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}"
+                )
+                for i in range(options.episodes)
+            ]
+    finally:
+        env.close()
+    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def error_line(options: RunOptions, episode: Episode, error: str) -> dict[str, Any]:
+    """Returns the result line of an episode that could not be run to its end."""
+    nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "gt_explored": None, "wall_time_s": 0.0}
+    identity = _identity(options, find_agent(options.agent), episode)
+    return identity | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
+
+
+def _identity(options: RunOptions, spec: AgentSpec, episode: Episode) -> dict[str, Any]:
+    return {
+        "episode_id": episode.episode_id,
+        "house": episode.house,
+        "goal": episode.goal,
+        "agent": options.agent,
+        "uses_ground_truth": spec.uses_ground_truth,
+        "semantics": options.semantics,
+        "seed": options.seed,
+    }

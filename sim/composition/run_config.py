@@ -1,0 +1,144 @@
+"""The configuration tree of a run: everything besides the episode and the seed that determines its result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from sim.composition.agents import find_agent
+from sim.composition.options import RunOptions
+from sim.composition.segmenters import KINDS, NetworkConfig, detector_config, file_sha256
+from sim.configuration import as_json, parse_assignments, read_settings, with_fields
+from sim.errors import ConfigError
+from sim.interface import AgentSpec, CameraModel
+from sim.paths import code_hash
+from sim.robot.config import RobotConfig
+from sim.robot.foreign import load_robot, robot_sha256
+from sim.sensors.camera import describe_gl
+from sim.sensors.noise import NoiseConfig, get_noise
+from sim.sensors.profiles import RenderProfile, get_profile
+from sim.task.config import TaskConfig
+from stubborn.target.verification import FittedVerifier, Verifier, verifier_for
+
+NOT_RECORDED = ("list_agents", "config", "config_file")
+"""Options that the tree itself records, or that start no run."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerificationConfig:
+    """How the agent verifies a candidate before it stops."""
+
+    method: str = "naive-bayes"
+    """naive-bayes (the paper's), logistic, threshold or none."""
+    parameters: Path | None = None
+    """File of fitted parameters; None takes those shipped for the kind of segmentation."""
+    least_probability: float = 0.5
+    """A candidate is accepted when it is true with a higher probability than this."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.least_probability < 1.0:
+            raise ConfigError(
+                f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}."
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunConfig:
+    """The tree that `config.json` records under "config" and whose fields `--config FIELD=VALUE` sets."""
+
+    agent: Any
+    """Configuration of the agent (`AgentSpec.config`); None: it has none."""
+    detector: Any
+    """Configuration of the segmentation (`SegmentationKind.config`); None: it has none."""
+    verification: VerificationConfig
+    robot: RobotConfig
+    camera: CameraModel
+    sensors: tuple[str, ...]
+    """Image sensors in the agent's observation: those that agent and segmentation declare."""
+    profile: RenderProfile
+    noise: NoiseConfig
+    task: TaskConfig
+
+
+def configuration_of(options: RunOptions) -> RunConfig:
+    """Returns the configuration tree of a run: presets by name, then the settings file, then `--config`.
+
+    Raises:
+        ConfigError: an unknown name, or a value that is not allowed.
+    """
+    spec = find_agent(options.agent)
+    robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
+    tree = RunConfig(
+        agent=spec.config,
+        detector=detector_config(options.semantics, options.weights),
+        verification=VerificationConfig(method=options.verification, parameters=options.verifier),
+        robot=robot,
+        camera=camera,
+        sensors=_sensors(spec, options.semantics),
+        profile=get_profile(options.profile),
+        noise=get_noise(options.noise),
+        task=TaskConfig(),
+    )
+    settings = {} if options.config_file is None else read_settings(options.config_file)
+    tree = with_fields(tree, settings | parse_assignments(options.config))
+    missing = [name for name in _sensors(spec, options.semantics) if name not in tree.sensors]
+    if missing:
+        raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
+    if "semantic" in tree.sensors and not spec.uses_ground_truth:
+        raise ConfigError(
+            f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
+        )
+    return tree
+
+
+def verifier_of(options: RunOptions, config: VerificationConfig) -> Verifier:
+    """Returns the verifier of a run.
+
+    Raises:
+        ConfigError: there are no such parameters, or no such method.
+    """
+    verifier = verifier_for(options.semantics, config.parameters, config.method)
+    if isinstance(verifier, FittedVerifier):
+        return replace(verifier, least_probability=config.least_probability)
+    return verifier
+
+
+def record_of(options: RunOptions, config: RunConfig, split: dict[str, Any]) -> dict[str, Any]:
+    """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
+    flat = {name: value for name, value in as_json(options).items() if name not in NOT_RECORDED}
+    return flat | {
+        "config": as_json(config),
+        "files_sha256": _checksums(options, config),
+        "split_identity": split,
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Returns the versions that a result depends on: packages, the GL renderer, and a hash of our own code."""
+    packages = ("stubborn-objectnav", "mujoco", "numpy")
+    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_hash()}
+
+
+def truth_images(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
+    """Returns the true images that the segmentation of an agent reads in the environment."""
+    return KINDS[semantics].spec.truth if spec.uses_segmentation else ()
+
+
+def _sensors(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
+    read = (*spec.sensors, *(("depth", *KINDS[semantics].spec.sensors) if spec.uses_segmentation else ()))
+    return tuple(dict.fromkeys(read))
+
+
+def _checksums(options: RunOptions, config: RunConfig) -> dict[str, str]:
+    """Returns the SHA-256 of the user's or shipped files that the result depends on."""
+    found = {}
+    if isinstance(config.detector, NetworkConfig):
+        found["weights"] = file_sha256(config.detector.weights)
+    if config.verification.parameters is not None:
+        found["verifier"] = file_sha256(config.verification.parameters)
+    if options.robot is not None:
+        found["robot"] = robot_sha256(options.robot)
+    return found

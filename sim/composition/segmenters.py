@@ -1,0 +1,162 @@
+"""Segmentation by name: `gt`, `noisy` and `rednet`, each with its specification and its configuration.
+
+`rednet` imports PyTorch only on use: a process without a network stays small and starts fast.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from sim.detectors.noisy import NoisyConfig, NoisySegmenter
+from sim.env.objectnav import ObjectNavEnv
+from sim.errors import ConfigError
+from sim.interface import Observation, Scores, Segmenter, SegmenterSpec
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.segmentation.shipped import SHIPPED_REDNET
+
+
+@dataclass(frozen=True, kw_only=True)
+class NetworkConfig:
+    """Which network segments, and how."""
+
+    weights: Path = SHIPPED_REDNET
+    """File of the weights (safetensors)."""
+    threads: int = 1
+    """Threads of PyTorch in each process. The last digits of the scores depend on it, and so may the results."""
+    temperature: float | None = None
+    """Softmax temperature in place of the one stored with the weights."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SegmentationKind:
+    """One choice of `--semantics`."""
+
+    description: str
+    spec: SegmenterSpec
+    config: Any
+    """Default configuration; None: there is nothing to configure."""
+    make: Callable[[ObjectNavEnv, Any], Segmenter]
+    """Builds the segmenter for an environment that provides the images which `spec` names."""
+
+
+class TrueSegmentation:
+    """Ground-truth segmentation read from the environment, so that no true image is in the agent's observation."""
+
+    spec = SegmenterSpec(sensors=(), truth=("semantic",), exact_outlines=True)
+
+    def __init__(self, env: ObjectNavEnv) -> None:
+        self._env = env
+        self._scores_of = GroundTruthSegmenter()
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        """Returns scores 1 and 0, float32 (h, w), of the frame that the environment rendered last."""
+        return self._scores_of.scores({"semantic": self._env.truth_images["semantic"]}, goal)
+
+
+class NoSegmentation:
+    """The segmenter of agents that declare `uses_segmentation=False`."""
+
+    spec = SegmenterSpec(sensors=())
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        """Raises ConfigError: the agent asked for scores although it declared that it does not use them."""
+        raise ConfigError("This agent reads scores but declares uses_segmentation=False in its AgentSpec.")
+
+
+def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
+    from stubborn.segmentation.network import RedNetSegmenter
+
+    options = {} if config.temperature is None else {"temperature": config.temperature}
+    return RedNetSegmenter.from_file(
+        weights_file(config.weights), camera=env.camera_model, threads=config.threads, **options
+    )
+
+
+KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
+    {
+        "gt": SegmentationKind(
+            description="ground truth",
+            spec=TrueSegmentation.spec,
+            config=None,
+            make=lambda env, config: TrueSegmentation(env),
+        ),
+        "noisy": SegmentationKind(
+            description="ground truth with the errors of a segmentation network",
+            spec=NoisySegmenter.spec,
+            config=NoisyConfig(),
+            make=NoisySegmenter,
+        ),
+        "rednet": SegmentationKind(
+            description="the RedNet that ships, or your own with --weights",
+            spec=SegmenterSpec(sensors=("rgb",)),
+            config=NetworkConfig(),
+            make=_make_network,
+        ),
+    }
+)
+"""What `--semantics` takes."""
+
+
+def detector_config(semantics: str, weights: Path | None) -> Any:
+    """Returns the default configuration of a kind of segmentation, with the user's weights if any.
+
+    Raises:
+        ConfigError: see `check_semantics`.
+    """
+    check_semantics(semantics, weights)
+    config = KINDS[semantics].config
+    return config if weights is None else replace(config, weights=weights)
+
+
+def make_segmenter(semantics: str, env: ObjectNavEnv, config: Any = None) -> Segmenter:
+    """Returns the segmenter of a kind for an environment.
+
+    Args:
+        semantics: one of `KINDS`.
+        env: an environment with the sensors and the truth images that the kind's specification names.
+        config: the kind's configuration; its default when None.
+
+    Raises:
+        ConfigError: there is no such kind, or its weights are missing, broken or of another network.
+    """
+    check_semantics(semantics, None)
+    kind = KINDS[semantics]
+    return kind.make(env, kind.config if config is None else config)
+
+
+def check_semantics(semantics: str, weights: Path | None) -> None:
+    """Raises ConfigError where there is no such kind of segmentation, or no weights for it."""
+    if semantics not in KINDS:
+        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: {', '.join(KINDS)}.")
+    config = KINDS[semantics].config
+    if weights is not None and not isinstance(config, NetworkConfig):
+        raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'.")
+    if isinstance(config, NetworkConfig):
+        weights_file(weights)
+
+
+def weights_file(weights: Path | None) -> Path:
+    """Returns the file of a network's weights: the given one, else the shipped one.
+
+    Raises:
+        ConfigError: the file does not exist.
+    """
+    file = weights or SHIPPED_REDNET
+    if not file.is_file():
+        hint = (
+            " It ships with the package; tools/train_rednet.py makes one of your own." if file == SHIPPED_REDNET else ""
+        )
+        raise ConfigError(f"No weights at '{file}'.{hint}")
+    return file
+
+
+@functools.cache
+def file_sha256(file: Path) -> str:
+    """Returns the SHA-256 of a file, hexadecimal."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()

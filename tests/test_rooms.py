@@ -1,0 +1,128 @@
+"""Imports run one way: the rooms of `sim` and `stubborn` in their order, and no cycle among modules."""
+
+from __future__ import annotations
+
+import ast
+import graphlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = (
+    ("sim.errors",),
+    ("sim.geometry",),
+    ("sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.cli", "sim.configuration"),
+    ("sim.houses",),
+    ("sim.robot",),
+    ("sim.sensors",),
+    ("sim.world",),
+    ("sim.housegen",),
+    ("sim.task",),
+    ("sim.episodes",),
+    ("sim.env",),
+    ("sim.detectors",),
+    ("sim.datasets",),
+    ("sim.viewers",),
+    ("sim.evaluation",),
+    ("sim.analysis",),
+    ("sim.composition",),
+    ("sim.gym", "sim.run", "sim.report", "sim.teleop"),
+)
+"""The rooms of `sim`, lowest first: a module imports its own room and those before it."""
+AGENT_ROOMS = (
+    ("stubborn.raster", "stubborn.navmap"),
+    ("stubborn.mapping", "stubborn.segmentation"),
+    ("stubborn.planning",),
+    ("stubborn.exploration",),
+    ("stubborn.target",),
+    ("stubborn.agent",),
+    ("stubborn.draw", "stubborn.baselines"),
+    ("stubborn.agents",),
+)
+"""The rooms of `stubborn`, lowest first."""
+KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry")
+"""What `stubborn` may import of `sim`."""
+COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop")
+"""What may import both `sim` and `stubborn`."""
+
+
+def module_files() -> dict[str, Path]:
+    files = {}
+    for package in ("sim", "stubborn"):
+        for file in sorted((ROOT / package).rglob("*.py")):
+            parts = file.relative_to(ROOT).with_suffix("").parts
+            files[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = file
+    return files
+
+
+FILES = module_files()
+
+
+def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
+    """The modules that a module imports, those inside functions included unless only import time counts."""
+    tree = ast.parse(FILES[module].read_text())
+    nodes = top_level(tree) if at_import_time else ast.walk(tree)
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                yield full if full in FILES else node.module
+
+
+def top_level(tree: ast.Module) -> Iterator[ast.stmt]:
+    for node in tree.body:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            yield node
+
+
+def within(module: str, room: str) -> bool:
+    return module == room or module.startswith(f"{room}.")
+
+
+def rank(module: str, rooms: tuple[tuple[str, ...], ...]) -> int:
+    for number, members in enumerate(rooms):
+        if any(within(module, member) for member in members):
+            return number
+    raise AssertionError(f"'{module}' is in no room: put it into one, or add its room to this table.")
+
+
+@pytest.mark.parametrize("module", sorted(set(FILES) - {"sim", "stubborn"}))
+def test_a_module_imports_its_own_room_and_those_below(module: str) -> None:
+    package = module.split(".")[0]
+    rooms = ROOMS if package == "sim" else AGENT_ROOMS
+    for imported in imports(module):
+        if within(imported, package):
+            assert rank(imported, rooms) <= rank(module, rooms), f"{module} imports {imported}, which is above it."
+
+
+@pytest.mark.parametrize("module", sorted(name for name in FILES if within(name, "stubborn")))
+def test_the_agent_knows_of_the_world_only_its_interface(module: str) -> None:
+    for imported in imports(module):
+        assert not within(imported, "mujoco"), f"{module} imports {imported}."
+        if within(imported, "sim"):
+            assert any(within(imported, known) for known in KNOWN_TO_THE_AGENT), f"{module} imports {imported}."
+
+
+@pytest.mark.parametrize("module", sorted(name for name in FILES if within(name, "sim")))
+def test_only_the_composition_roots_know_the_agent_and_only_gl_imports_mujoco(module: str) -> None:
+    for imported in imports(module):
+        if within(imported, "stubborn"):
+            assert any(within(module, root) for root in COMPOSITION_ROOTS), f"{module} imports {imported}."
+        assert not within(imported, "mujoco") or module == "sim.gl", f"{module} imports {imported}."
+        assert not within(imported, "tools")
+        assert not within(imported, "tests")
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    graph = {name: {m for m in imports(name, at_import_time=True) if m in FILES and m != name} for name in FILES}
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError and names the circle
+
+
+def test_every_room_says_what_it_holds() -> None:
+    for name, file in FILES.items():
+        if file.name == "__init__.py":
+            assert len(ast.get_docstring(ast.parse(file.read_text())) or "") > 40, f"{name} has no docstring."
