@@ -48,7 +48,7 @@ _NET_FORCE = 3
 """`reduce` of a contact sensor: one wrench for all contacts, in the world frame."""
 
 
-def robot_spec(config: RobotConfig) -> mujoco.MjSpec:
+def built_in_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
     """Our robot alone, to be attached with the prefix `PREFIX` to the world body."""
     spec = mujoco.MjSpec()
     spec.modelname = "robot"

@@ -14,7 +14,7 @@ from sim.robot.body import (
     add_motor,
     add_touch,
     add_tyre,
-    robot_spec,
+    built_in_robot_spec,
 )
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile
 from sim.robot.foreign import Measured, foreign_body, measure, parts_of
@@ -23,14 +23,14 @@ THEIRS = "file/"
 """Begins the names that come out of the file, behind `PREFIX`."""
 
 
-def any_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
+def robot_spec(config: RobotConfig) -> mujoco.MjSpec:
     """Our robot, or the one in the config's file, to be attached with the prefix `PREFIX` to the world body.
 
     Raises:
         HouseError: the file is not what it was when the config was made.
     """
     if config.file is None:
-        return robot_spec(config)
+        return built_in_robot_spec(config)
     try:
         return _mounted(config, config.file)
     except ConfigError as error:

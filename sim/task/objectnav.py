@@ -17,7 +17,6 @@ from sim.task import metrics
 from sim.task.failures import Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
 from sim.task.trajectory import Recorder, Trajectory
-from sim.world.freespace import SAME_STOREY_M
 from sim.world.world import World
 
 EndReason = Literal["stop", "max_steps"]
@@ -210,7 +209,7 @@ class Task:
         pose, record = self.world.pose, self._running
         if record.success:
             return 0.0
-        if abs(pose.floor_z_m - record.start.floor_z_m) >= SAME_STOREY_M:
+        if abs(pose.floor_z_m - record.start.floor_z_m) >= self.world.rule.same_storey_m:
             return None
         return self.distance_from(record.goal, pose)
 

@@ -1,8 +1,8 @@
-"""A house and a robot as one compiled model, its labels kept.
+"""Compiles a house and a robot into one MuJoCo model and keeps the house's labels.
 
-The house is compiled as it is to read its labels; then the masks of `sim.robot.body` are set, static bodies are fused
-(geoms of the world body cost half of what geoms in bodies of their own cost), the robot is attached, and the whole
-is compiled again. Geoms keep their names; an unnamed one is called after its instance.
+The house is first compiled alone to read its labels. Then the collision masks of `sim.robot.body` are set, static
+bodies are fused (a geom of the world body costs half of a geom in its own body), the robot is attached, and the result
+is compiled again. Geoms keep their names; an unnamed geom is named after its instance.
 """
 
 from __future__ import annotations
@@ -18,41 +18,43 @@ from sim.houses.labels import Instance, Labels, read_labels
 from sim.interface import MPCAT40_ID
 from sim.robot.body import FLOOR_MASK, MOVABLE_MASK, PREFIX, STATIC_MASK
 from sim.robot.config import RobotConfig
-from sim.robot.mounting import any_robot_spec
+from sim.robot.mounting import robot_spec
 
 _FLOOR = MPCAT40_ID["floor"]
 
 
-def compose(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
-    """The world's model, its labels and its rooms. The house's own specification is not touched.
+def compile_world(house: House, config: RobotConfig) -> tuple[mujoco.MjModel, Labels, tuple[Room, ...]]:
+    """Returns the compiled model of a house with a robot, its labels and its rooms. `house.spec` is not changed.
 
     Raises:
         HouseError: a visible geom has no label, or the house cannot be compiled, alone or with a robot.
     """
     spec = house.spec.copy()
-    spec.compiler.discardvisual = False  # what only cameras see belongs to the house
+    spec.compiler.discardvisual = False  # visual geoms belong to the house
     spec.compiler.settotalmass = -1.0  # would scale the robot as well
     spec.memory = -1  # as much as the world needs
-    try:
-        bare = spec.compile()
-    except ValueError as error:
-        raise HouseError(f"House '{house.name}': {' '.join(str(error).split())}") from None
-    labels = read_labels(bare, rules=house.rules, ignore_prefix="")
-    rooms = read_rooms(bare)
+    alone = _compile(spec, f"House '{house.name}'")
+    labels = read_labels(alone, rules=house.rules, ignore_prefix="")
+    rooms = read_rooms(alone)
     names = _name_geoms(spec, labels)
-    _set_masks(spec, bare, labels)
+    _set_collision_masks(spec, alone, labels)
     _set_options(spec, config)
-    spec.attach(any_robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
+    spec.attach(robot_spec(config), prefix=PREFIX, frame=spec.worldbody.add_frame())
     spec.compiler.fusestatic = True
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise HouseError(f"House '{house.name}' with a robot: {' '.join(str(error).split())}") from None
+    model = _compile(spec, f"House '{house.name}' with a robot")
     return model, _renumber(labels, names, model), rooms
 
 
+def _compile(spec: mujoco.MjSpec, description: str) -> mujoco.MjModel:
+    """Compiles a specification; MuJoCo's error becomes a HouseError of one line."""
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise HouseError(f"{description}: {' '.join(str(error).split())}") from None
+
+
 def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
-    """Give each geom a name of its own; names by number in the bare house."""
+    """Gives each unnamed geom a unique name; returns all names in the order of geom ids of the house alone."""
     geoms = spec.geoms
     taken = {geom.name for geom in geoms}
     for geom in geoms:
@@ -68,9 +70,9 @@ def _name_geoms(spec: mujoco.MjSpec, labels: Labels) -> list[str]:
     return [geom.name for geom in sorted(geoms, key=lambda geom: geom.id)]
 
 
-def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> None:
-    """Who touches whom (see `sim.robot.body`), and how near; what was visual only stays so."""
-    movable = bare.body_weldid[bare.geom_bodyid] != 0
+def _set_collision_masks(spec: mujoco.MjSpec, alone: mujoco.MjModel, labels: Labels) -> None:
+    """Sets the collision masks (see `sim.robot.body`) and margins of the house; visual geoms stay visual."""
+    movable = alone.body_weldid[alone.geom_bodyid] != 0
     for geom in spec.geoms:
         if geom.contype == 0 and geom.conaffinity == 0:
             continue
@@ -85,7 +87,7 @@ def _set_masks(spec: mujoco.MjSpec, bare: mujoco.MjModel, labels: Labels) -> Non
 
 
 def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
-    """One set of physics options for every house."""
+    """Sets the same physics options for every house."""
     option = spec.option
     option.timestep = config.physics.timestep_s
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -96,12 +98,12 @@ def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
     option.gravity, option.wind = (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)
     option.density, option.viscosity = 0.0, 0.0
     option.enableflags = int(mujoco.mjtEnableBit.mjENBL_SLEEP)
-    # multiccd gives wrong normals for a cylinder on a box's corner; a state reset in silence would hide a NaN.
+    # MULTICCD gives wrong normals for a cylinder on a box's corner; an automatic reset would hide a NaN.
     option.disableflags = int(mujoco.mjtDisableBit.mjDSBL_MULTICCD) | int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
 
 
 def _renumber(labels: Labels, names: list[str], model: mujoco.MjModel) -> Labels:
-    """Labels of the bare house, whose geoms had these names, for the world's model."""
+    """Returns the labels of the house alone, whose geoms have these names, with the geom ids of the world's model."""
     new_id = np.array([model.geom(name).id for name in names], dtype=np.int64)
     category = np.zeros(model.ngeom, dtype=np.uint8)
     category[new_id] = labels.geom_category

@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim.geometry.convex import plan_polygon
-from sim.geometry.grid import PlanFrame
+from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.house import Room
 from sim.houses.labels import rendered_geoms
 from sim.interface import GOAL_CATEGORIES
 from sim.task.ground_truth import GroundTruth, Target
-from sim.world.freespace import SAME_STOREY_M, FreeSpace
+from sim.world.freespace import CELL_M, FreeSpace
 
 PX_M = 100.0
 """Units of the page in a metre."""
@@ -42,7 +42,7 @@ _NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c
 class Sheet:
     """Where a storey lies on the page."""
 
-    frame: PlanFrame
+    frame: GridFrame
 
     @property
     def size_px(self) -> tuple[int, int]:
@@ -59,9 +59,9 @@ class Sheet:
 def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sheet:
     """A sheet for a way (n, 2) through a house that is not there."""
     low, high = positions_m.min(axis=0) - margin_m, positions_m.max(axis=0) + margin_m
-    cell = PlanFrame.cell_m
+    cell = CELL_M
     cols, rows = np.ceil((high - low) / cell).astype(int).tolist()
-    return Sheet(PlanFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols)))
+    return Sheet(GridFrame(origin_xy_m=(float(low[0]), float(low[1])), shape=(rows, cols), cell_m=cell))
 
 
 def draw_plan(truth: GroundTruth, floor_z_m: float) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def draw_plan(truth: GroundTruth, floor_z_m: float) -> dict[str, Any]:
     `size`, `floor` (rectangles), `shapes` ([category, name, path]) from the lowest up, `rooms` ([name, x, y, width]).
     """
     sheet = Sheet(truth.space(floor_z_m).frame)
-    rooms = [room for room in truth.world.rooms if abs(room.floor_z_m - floor_z_m) < SAME_STOREY_M]
+    rooms = [room for room in truth.world.rooms if abs(room.floor_z_m - floor_z_m) < truth.world.rule.same_storey_m]
     return {
         "size": sheet.size_px,
         "floor": _rectangles(sheet, rooms),
@@ -117,7 +117,7 @@ def _things(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list
         z_m = np.concatenate([geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2] for geom in geoms])
         low_m, top_m = float(z_m.min()) - floor_z_m, float(z_m.max())
         highest_m = HIGHEST_GOAL_M if instance.category in GOAL_CATEGORIES else HIGHEST_M
-        if -SAME_STOREY_M < low_m <= highest_m:
+        if -truth.world.rule.same_storey_m < low_m <= highest_m:
             parts = [part for geom in geoms for part in _cut(model, data, geom, -math.inf, math.inf)]
             found.append((top_m, [instance.category, instance.name, _union(sheet, parts)]))
     return [shape for _, shape in sorted(found, key=lambda item: item[0])]
@@ -205,8 +205,8 @@ def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
 def _nearest_with_way(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
     """The nearest cell, within 0.3 m, from which there is a way."""
     x_m, y_m = float(xy_m[0]), float(xy_m[1])
-    window = space.frame.window((x_m, y_m, x_m, y_m), 0.3)
-    x, y = space.frame.centres(window)
+    window = space.frame.index_of((x_m, y_m, x_m, y_m), 0.3)
+    x, y = space.frame.axes(window)
     away = np.hypot(x[None, :] - x_m, y[:, None] - y_m)
     away = np.where(np.isfinite(target.distance_m[window]), away, np.inf)
     if not away.size or not np.isfinite(away.min()):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.gl import mujoco
-from sim.robot.body import HULL_MASK, MOVABLE_MASK, ROBOT_GROUP, STATIC_MASK, WHEEL_MASK, robot_spec
+from sim.robot.body import HULL_MASK, MOVABLE_MASK, ROBOT_GROUP, STATIC_MASK, WHEEL_MASK, built_in_robot_spec
 from sim.robot.config import RobotConfig
 from sim.world.world import World
 from tests.helpers.worlds import open_floor
@@ -14,7 +14,7 @@ from tests.helpers.worlds import open_floor
 
 @pytest.fixture(scope="module", params=["planar", "free"])
 def alone(request: pytest.FixtureRequest) -> mujoco.MjModel:
-    return robot_spec(RobotConfig(base=request.param)).compile()
+    return built_in_robot_spec(RobotConfig(base=request.param)).compile()
 
 
 def test_the_mass_is_the_declared_one(alone: mujoco.MjModel):

@@ -13,7 +13,7 @@ from sim.robot.config import RobotConfig
 from sim.sensors.camera import Z_NEAR_M, Camera
 from sim.sensors.lamps import LAMPS_LIT, Lamps
 from sim.sensors.occlusion import Visibility
-from sim.world.compile import compose
+from sim.world.compile import compile_world
 from tests.helpers.worlds import room, with_box
 
 FORWARD = np.array([1.0, 0.0, 0.0])
@@ -34,7 +34,7 @@ class Eye:
     """A camera in a house, and the lamps it would choose."""
 
     def __init__(self, house: House, *, profile: str = "fast", cull: bool = True) -> None:
-        self.model, self.labels, _ = compose(house, RobotConfig())
+        self.model, self.labels, _ = compile_world(house, RobotConfig())
         self.data = mujoco.MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
         drawable = rendered_geoms(self.model)

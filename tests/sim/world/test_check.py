@@ -1,8 +1,9 @@
-"""The check finds what is wrong, and nothing where nothing is."""
+"""The check reports each fault of a house, and nothing for a house without faults."""
 
 from __future__ import annotations
 
 from sim.houses.house import House
+from sim.interface import RobotModel, SuccessRule
 from sim.world.check import check_house
 from tests.helpers.worlds import room, with_box
 
@@ -11,43 +12,71 @@ def table(house: House, *, x_m: float = 0.0, z_m: float = 0.4, name: str = "tabl
     return with_box(house, name, centre_m=(x_m, 0.0, z_m), half_m=(0.3, 0.3, 0.4))
 
 
-def test_a_room_with_a_table_is_without_fault() -> None:
+def plant_behind_a_bed() -> House:
+    """The robot comes within 0.78 m of the plant: the bed's front is at x = 2.1 m and the plant begins at 2.7 m."""
+    house = with_box(room(6, 4), "bed_00", centre_m=(2.3, 0.0, 0.5), half_m=(0.2, 2.0, 0.5))
+    return with_box(house, "plant_00", centre_m=(2.8, 0.0, 0.2), half_m=(0.1, 0.1, 0.2))
+
+
+def room_with_a_passage(width_m: float) -> House:
+    """A room of 6 x 4 m divided by two beds with a passage between them."""
+    house, half_m = room(6, 4), 0.25 * (4.0 - width_m)
+    for number, side in enumerate((1.0, -1.0)):
+        centre_m = (-0.8, side * (0.5 * width_m + half_m), 0.5)
+        house = with_box(house, f"bed_{number:02d}", centre_m=centre_m, half_m=(0.3, half_m, 0.5))
+    return house
+
+
+def test_a_room_with_a_table_has_no_fault() -> None:
     assert check_house(table(room(5, 4)).spec) == []
 
 
-def test_two_things_in_one_place_are_found() -> None:
+def test_overlapping_objects_are_reported() -> None:
     both = table(table(room(5, 4)), x_m=0.55, name="bed_00")
-    assert check_house(both.spec) == ["table_00 and bed_00 run into each other by 5.0 cm"]
+    assert check_house(both.spec) == ["table_00 and bed_00 overlap by 5.0 cm"]
 
 
-def test_things_that_just_meet_are_let_pass() -> None:
+def test_objects_that_only_touch_are_no_fault() -> None:
     assert check_house(table(table(room(5, 4)), x_m=0.6, name="bed_00").spec) == []
 
 
-def test_furniture_in_a_wall_is_found() -> None:
+def test_furniture_in_a_wall_is_reported() -> None:
     (fault,) = check_house(table(room(5, 4), x_m=2.3).spec)
     assert "wall" in fault
     assert "table_00" in fault
 
 
-def test_a_thing_in_the_air_is_found() -> None:
-    assert "table_00 touches nothing" in check_house(table(room(5, 4), z_m=1.2).spec)
+def test_an_object_in_the_air_is_reported() -> None:
+    assert "table_00 has no support" in check_house(table(room(5, 4), z_m=1.2).spec)
 
 
-def test_a_room_cut_in_two_is_found() -> None:
+def test_a_divided_room_is_reported() -> None:
     house = with_box(room(6, 4), "bed_00", centre_m=(-0.8, 0.0, 0.5), half_m=(0.3, 2.0, 0.5))
-    assert "part of room_living_00 is cut off" in check_house(house.spec)
+    assert "the robot cannot reach a part of room_living_00" in check_house(house.spec)
 
 
-def test_a_goal_that_cannot_be_approached_is_found() -> None:
+def test_a_goal_category_without_access_is_reported() -> None:
     house = room(6, 4)
     for n, (x, y, hx, hy) in enumerate([(2.0, 0.0, 0.1, 2.0), (0.9, 0.0, 0.1, 2.0)]):
         house = with_box(house, f"bed_{n:02d}", centre_m=(x, y, 0.5), half_m=(hx, hy, 0.5))
     house = with_box(house, "plant_00", centre_m=(2.8, 0.0, 0.2), half_m=(0.1, 0.1, 0.2))
-    assert "the robot gets near no plant" in check_house(house.spec)
+    assert "the robot cannot come near any plant" in check_house(house.spec)
 
 
-def test_a_house_without_room_sites_is_found() -> None:
+def test_access_to_a_goal_depends_on_the_success_distance() -> None:
+    spec = plant_behind_a_bed().spec
+    assert check_house(spec) == []
+    assert check_house(spec, rule=SuccessRule(distance_m=0.8)) == ["the robot cannot come near any plant"]
+
+
+def test_access_to_a_room_depends_on_the_size_of_the_robot() -> None:
+    spec = room_with_a_passage(0.45).spec
+    assert check_house(spec) == []
+    wide = RobotModel(radius_m=0.25)
+    assert check_house(spec, robot=wide) == ["the robot cannot reach a part of room_living_00"]
+
+
+def test_a_house_without_room_sites_is_reported() -> None:
     spec = room(4, 4).spec.copy()
     for site in list(spec.sites):
         spec.delete(site)

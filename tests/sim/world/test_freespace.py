@@ -1,4 +1,4 @@
-"""Free space against areas and ways worked out by hand."""
+"""Free space and geodesic distances against areas and path lengths computed by hand."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.grid import PlanFrame
+from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
+from sim.interface import SuccessRule
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
@@ -36,7 +37,7 @@ def point(space: FreeSpace, x_m: float, y_m: float) -> np.ndarray:
 
 
 def divided_room(gap_m: float) -> House:
-    """6 x 4 m, a wall along x = 0 with a gap of `gap_m` in its middle."""
+    """Returns a room of 6 x 4 m with a wall along x = 0 that has a gap of `gap_m` in its middle."""
     length = 0.5 * (4.0 - gap_m)
     house = room(6, 4)
     for number, side in ((10, 1), (11, -1)):
@@ -47,12 +48,12 @@ def divided_room(gap_m: float) -> House:
 
 @given(row=st.integers(-50, 50), col=st.integers(-50, 50))
 def test_cell_to_world_and_back_is_identity(row, col):
-    frame = PlanFrame(origin_xy_m=(-3.7, 1.2), shape=(10, 20))
+    frame = GridFrame(origin_xy_m=(-3.7, 1.2), shape=(10, 20), cell_m=0.025)
     assert frame.to_cells(frame.to_metres((row, col))).tolist() == [row, col]
 
 
 def test_rows_are_y_and_columns_are_x():
-    frame = PlanFrame(origin_xy_m=(0.0, 0.0), shape=(4, 8), cell_m=0.5)
+    frame = GridFrame(origin_xy_m=(0.0, 0.0), shape=(4, 8), cell_m=0.5)
     assert frame.to_cells((3.9, 0.1)).tolist() == [0, 7]
 
 
@@ -65,7 +66,7 @@ def test_an_empty_room_is_free_up_to_the_radius_from_its_walls():
 
 @given(x=st.floats(-1.9, 1.9), y=st.floats(-1.4, 1.4))
 @settings(max_examples=50, deadline=None)
-def test_a_place_is_free_exactly_when_its_distance_to_a_turned_box_is_the_radius(x, y):
+def test_a_position_is_free_exactly_when_its_distance_to_a_turned_box_exceeds_the_radius(x, y):
     yaw = 0.6
     space = TURNED_BOX_SPACE
     c, s = math.cos(yaw), math.sin(yaw)
@@ -80,7 +81,7 @@ TURNED_BOX_SPACE = free_space(
 )
 
 
-def test_the_grid_says_of_each_cell_what_the_exact_test_says_of_its_centre():
+def test_the_grid_agrees_with_the_exact_test_at_cell_centres():
     space = TURNED_BOX_SPACE
     rng = np.random.default_rng(0)
     cells = np.stack([rng.integers(0, n, 300) for n in space.frame.shape], axis=1)
@@ -92,13 +93,13 @@ def test_the_grid_says_of_each_cell_what_the_exact_test_says_of_its_centre():
     ("bottom_m", "top_m", "free"),
     [(0.0, 0.029, True), (0.0, 0.031, False), (0.879, 1.2, False), (0.881, 1.2, True), (0.5, 0.6, False)],
 )
-def test_only_what_lies_between_step_height_and_robot_height_blocks(bottom_m, top_m, free):
+def test_only_geoms_between_step_height_and_robot_height_block(bottom_m, top_m, free):
     half = 0.5 * (top_m - bottom_m)
     house = with_box(room(), "shelving_00", centre_m=(0, 0, bottom_m + half), half_m=(0.3, 0.3, half))
     assert free_space(house).is_free(0.0, 0.0) == free
 
 
-def test_what_only_collides_blocks_and_what_is_only_seen_does_not():
+def test_collision_geoms_block_and_visual_geoms_do_not():
     glass = with_box(room(), "window_00", centre_m=(0, 0, 0.5), half_m=(0.3, 0.3, 0.5), group=3)
     assert not free_space(glass).is_free(0.0, 0.0)
     spec = with_box(room(), "plant_00", centre_m=(0, 0, 0.5), half_m=(0.3, 0.3, 0.5)).spec
@@ -106,7 +107,7 @@ def test_what_only_collides_blocks_and_what_is_only_seen_does_not():
     assert free_space(House("leaves", spec)).is_free(0.0, 0.0)
 
 
-def test_a_movable_thing_blocks_where_it_stands_and_the_robot_itself_never():
+def test_a_movable_object_blocks_at_its_current_position_and_the_robot_never_does():
     world = World(with_movable(room(), "stool_00", xy_m=(1.0, 0.0)))
     world.reset(Pose(-1.0, 0.0, 0.0))
     space = FreeSpace.from_world(world)
@@ -121,16 +122,16 @@ def test_a_movable_thing_blocks_where_it_stands_and_the_robot_itself_never():
     assert not moved.is_free(-0.2, 0.0)
 
 
-def test_outdoors_is_not_free_though_the_floor_goes_on():
+def test_the_outside_is_not_free_although_the_floor_continues():
     space = free_space(room(4, 3))
     assert not space.is_free(2.6, 0.0)
     assert not space.is_free(30.0, 0.0)
-    x, y = space.frame.centres()
+    x, y = space.frame.axes()
     assert not space.free[:, np.abs(x) > 2.0].any()
     assert not space.free[np.abs(y) > 1.5].any()
 
 
-def test_a_place_without_floor_is_not_free():
+def test_a_position_without_floor_is_not_free():
     spec = room(4, 3, box_floor=True).spec
     spec.geom("floor_00").size[0], spec.geom("floor_00").pos[0] = 1.0, -1.0  # x from -2 to 0
     space = free_space(House("half_floor", spec))
@@ -138,7 +139,7 @@ def test_a_place_without_floor_is_not_free():
     assert not space.is_free(0.5, 0.0)
 
 
-def test_a_floor_without_walls_is_charted_around_the_origin():
+def test_a_floor_without_walls_is_free_around_the_origin():
     space = free_space(open_floor())
     assert space.free.all()
     assert space.is_free(5.0, -5.0)
@@ -146,14 +147,14 @@ def test_a_floor_without_walls_is_charted_around_the_origin():
 
 def test_geodesic_on_an_open_floor_is_the_straight_line():
     space = free_space(open_floor())
-    x, y = space.frame.centres()
+    x, y = space.frame.axes()
     row, col = space.frame.to_cells((0.0, 0.0))
     straight = np.hypot(x[None, :] - x[col], y[:, None] - y[row])
     assert np.abs(space.geodesic(point(space, 0.0, 0.0)) - straight).max() < 0.01
 
 
 def test_geodesic_bends_around_the_corner_of_a_wall():
-    # A wall along x = 0 from y = -2 to 1: the disc's centre goes round the wall's end on an arc of its radius.
+    # A wall along x = 0 from y = -2 to 1: the disc's centre passes the wall's end on an arc of its radius.
     house = with_box(room(6, 4), "wall_10", centre_m=(0, -0.5, 1.25), half_m=(0.001, 1.5, 1.25))
     space = free_space(house)
     distance = space.geodesic(point(space, -1.5, 0.0))
@@ -166,7 +167,7 @@ def test_geodesic_bends_around_the_corner_of_a_wall():
 
 
 @pytest.mark.parametrize(("gap_m", "passes"), [(0.30, False), (0.35, False), (0.40, True), (0.80, True)])
-def test_a_gap_is_a_way_only_when_the_disc_fits(gap_m, passes):
+def test_a_gap_joins_two_sides_only_when_the_disc_fits(gap_m, passes):
     space = free_space(divided_room(gap_m))
     distance = space.geodesic(point(space, -1.5, 0.0))
     there = space.distance_at(distance, 1.5, 0.0)
@@ -177,7 +178,7 @@ def test_a_gap_is_a_way_only_when_the_disc_fits(gap_m, passes):
 
 @given(x=st.floats(-2.5, 2.5), y=st.floats(-1.6, 1.6))
 @settings(max_examples=30, deadline=None)
-def test_distance_between_cells_follows_the_way_and_not_the_cell(x, y):
+def test_distance_between_cells_is_interpolated(x, y):
     space = OPEN_SPACE
     assert space.distance_at(OPEN_DISTANCE, x, y) == pytest.approx(math.hypot(x - 0.0125, y - 0.0125), abs=0.015)
 
@@ -186,14 +187,14 @@ OPEN_SPACE = free_space(room(6, 4))
 OPEN_DISTANCE = OPEN_SPACE.geodesic(point(OPEN_SPACE, 0.001, 0.001))
 
 
-def test_a_robot_pushed_into_an_obstacle_keeps_a_distance_and_one_in_the_middle_of_it_has_none():
+def test_a_position_just_inside_an_obstacle_has_a_distance_and_one_deep_inside_has_none():
     space = free_space(with_box(room(6, 4), "bed_00", centre_m=(1.5, 0, 0.3), half_m=(1.0, 1.0, 0.3)))
     distance = space.geodesic(point(space, -1.0, 0.0))
     assert space.distance_at(distance, 0.5 - 0.12, 0.0) == pytest.approx(1.38, abs=0.03)
     assert math.isinf(space.distance_at(distance, 1.5, 0.0))
 
 
-def test_no_source_means_no_way_and_all_sources_mean_no_distance():
+def test_without_a_source_distances_are_infinite_and_at_sources_they_are_zero():
     space = free_space(room())
     assert np.isinf(space.geodesic(np.zeros_like(space.free))).all()
     distance = space.geodesic(np.ones_like(space.free))
@@ -204,7 +205,7 @@ def test_no_source_means_no_way_and_all_sources_mean_no_distance():
 def test_the_largest_part_is_the_larger_side_of_a_wall():
     space = free_space(with_box(room(6, 4), "wall_10", centre_m=(1, 0, 1.25), half_m=(0.05, 2.0, 1.25)))
     part = space.largest_part()
-    x, _ = space.frame.centres()
+    x, _ = space.frame.axes()
     assert (part == (space.free & (x < 1.0))).all()
 
 
@@ -217,3 +218,17 @@ def test_a_storey_has_its_own_obstacles():
     assert not upper.is_free(0.0, 0.0)
     assert upper.is_free(1.0, 0.0)
     assert not ground.is_free(1.0, 0.0)
+
+
+def test_the_rule_says_which_rooms_belong_to_a_storey():
+    spec = room(4, 4).spec
+    spec.site("room_living_00").pos[2] += 0.5  # its floor is then at z = 0.5 m
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    spaces = [
+        FreeSpace(model, data, read_labels(model), rooms=read_rooms(model), rule=SuccessRule(same_storey_m=same_m))
+        for same_m in (1.0, 0.4)
+    ]
+    assert spaces[0].frame.shape == (180, 180)  # 4 m and 0.25 m on either side, in cells of 2.5 cm
+    assert spaces[1].frame.shape != (180, 180)  # no room of this storey: the walls bound it

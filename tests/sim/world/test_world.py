@@ -1,4 +1,4 @@
-"""House and robot composed: labels kept, masks right, starts refused, everything deterministic."""
+"""The compiled world keeps labels, sets collision masks, refuses impossible starts and is deterministic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim.errors import EpisodeError, HouseError, PhysicsError
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House
-from sim.interface import MPCAT40_ID, Action
+from sim.interface import MPCAT40_ID, Action, SuccessRule
 from sim.robot.config import PhysicsConfig, RobotConfig
 from sim.world.world import World
 from tests.helpers.worlds import cluttered_room, open_floor, room, with_box, with_movable, with_post
@@ -49,7 +49,7 @@ def furnished() -> House:
 
 
 def where(world: World, instance: str) -> np.ndarray:
-    """Mean position of the geoms of an instance."""
+    """Returns the mean position of the geoms of an instance."""
     (found,) = [each for each in world.labels.instances if each.name == instance]
     return world.data.geom_xpos[list(found.geom_ids)].mean(axis=0)
 
@@ -76,7 +76,7 @@ def test_labels_survive_fusing():
             assert world.labels.instances[world.labels.geom_instance[geom]] is instance
 
 
-def test_the_robot_is_nobodys_instance():
+def test_the_robot_belongs_to_no_instance():
     world = World(furnished())
     robot = [i for i in range(world.model.ngeom) if world.model.geom(i).name.startswith("robot/")]
     assert len(robot) == 6
@@ -84,14 +84,14 @@ def test_the_robot_is_nobodys_instance():
     assert (world.labels.geom_category[robot] == 0).all()
 
 
-def test_every_geom_has_a_name_of_its_own():
+def test_every_geom_has_a_unique_name():
     world = World(furnished())
     names = [world.model.geom(i).name for i in range(world.model.ngeom)]
     assert all(names)
     assert len(set(names)) == len(names)
 
 
-def test_masks_follow_what_a_thing_is():
+def test_collision_masks_depend_on_the_kind_of_geom():
     model = World(furnished()).model
     mask = {
         model.geom(i).name: (int(model.geom_contype[i]), int(model.geom_conaffinity[i])) for i in range(model.ngeom)
@@ -103,7 +103,7 @@ def test_masks_follow_what_a_thing_is():
     assert {m for name, m in mask.items() if name.startswith("stool")} == {(2, 7)}
 
 
-def test_a_houses_own_physics_options_do_not_count():
+def test_the_physics_options_of_a_house_are_replaced():
     option = World(furnished()).model.opt
     assert option.timestep == RobotConfig().physics.timestep_s
     np.testing.assert_array_equal(option.gravity, (0.0, 0.0, -9.81))
@@ -114,7 +114,7 @@ def test_a_houses_own_physics_options_do_not_count():
 
 @pytest.mark.filterwarnings("ignore:compiler attribute 'settotalmass'")
 @pytest.mark.parametrize("setting", ["settotalmass='50'", "discardvisual='true'", "inertiafromgeom='true'"])
-def test_a_houses_compiler_settings_change_neither_robot_nor_what_is_seen(setting):
+def test_the_compiler_settings_of_a_house_change_neither_the_robot_nor_the_visual_geoms(setting):
     plain = World(furnished())
     world = World(House("set", mujoco.MjSpec.from_string(XML.replace("<option", f"<compiler {setting}/>\n<option"))))
     base = world.model.body("robot/base").id
@@ -124,7 +124,7 @@ def test_a_houses_compiler_settings_change_neither_robot_nor_what_is_seen(settin
     assert world.move(Action.MOVE_FORWARD).displacement_m == pytest.approx(0.25, abs=0.001)
 
 
-def test_the_house_itself_is_never_changed():
+def test_the_house_is_not_changed():
     house = furnished()
     before = house.spec.to_xml()
     World(house).reset(ORIGIN)
@@ -140,7 +140,7 @@ def test_an_unlabelled_visible_geom_is_refused():
         World(with_box(open_floor(), "nonsense", centre_m=(1, 0, 1), half_m=(0.1, 0.1, 0.1)))
 
 
-def test_reset_puts_the_robot_at_rest_where_it_is_told():
+def test_reset_puts_the_robot_at_rest_at_the_start():
     world = World(room())
     start = Pose(0.7, -0.4, 2.5)
     world.reset(start)
@@ -150,7 +150,7 @@ def test_reset_puts_the_robot_at_rest_where_it_is_told():
 
 
 @pytest.mark.parametrize("base", ["planar", "free"])
-def test_a_storey_has_a_floor_of_its_own(base):
+def test_each_storey_has_its_own_floor_height(base):
     house = with_box(room(), "floor_01", centre_m=(0, 0, 2.95), half_m=(2, 2, 0.05))
     world = World(house, robot=RobotConfig(base=base))
     world.reset(Pose(0.0, 0.0, 0.0, floor_z_m=3.0))
@@ -159,6 +159,15 @@ def test_a_storey_has_a_floor_of_its_own(base):
     assert world.pose.floor_z_m == pytest.approx(3.0)
     world.reset(ORIGIN)
     assert world.pose.floor_z_m == 0.0
+
+
+def test_the_rule_says_which_floors_are_storeys():
+    platform = with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.25), half_m=(1, 1, 0.25))
+    start = Pose(0.0, 0.0, 0.0, floor_z_m=0.5)
+    for same_storey_m, floor_z_m in ((1.0, 0.0), (0.4, 0.5)):
+        world = World(platform, rule=SuccessRule(same_storey_m=same_storey_m))
+        world.reset(start)
+        assert world.pose.floor_z_m == pytest.approx(floor_z_m)
 
 
 def test_a_rug_is_no_storey():
@@ -179,14 +188,14 @@ def test_a_start_on_a_platform_stands_on_it():
     ("start", "name"),
     [(Pose(1.9, 0.0, 0.0), "wall_00"), (Pose(0.0, 0.95, 0.0), "table_00"), (Pose(-1.0, -0.8, 0.0), "chair_00")],
 )
-def test_a_start_inside_something_is_refused_by_name(start, name):
+def test_a_start_inside_an_object_is_refused_with_its_name(start, name):
     house = with_box(room(), "table_00", centre_m=(0, 1.2, 0.7), half_m=(0.4, 0.4, 0.02))
     world = World(with_movable(house, "chair_00", xy_m=(-1.0, -1.0)))
     with pytest.raises(EpisodeError, match=name):
         world.reset(start)
 
 
-def test_a_start_that_only_just_fits_is_taken():
+def test_a_start_that_just_fits_is_accepted():
     world = World(with_post(room(), "column_00", xy_m=(0.0, 0.0), radius_m=0.02))
     world.reset(Pose(0.2005, 0.0, 0.0))
     with pytest.raises(EpisodeError):
@@ -268,7 +277,7 @@ def obstacle_course() -> House:
 
 
 def fingerprint(world: World, seed: int) -> str:
-    """Hash of every state that 30 random actions pass through."""
+    """Returns a hash of the states after each of 30 random actions."""
     rng = np.random.default_rng(seed)
     world.reset(Pose(0.0, 0.0, float(rng.uniform(-3, 3))))
     digest = hashlib.sha256()

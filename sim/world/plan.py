@@ -1,0 +1,92 @@
+"""Convex polygons in plan: the obstacles, the floors and the extent of one storey of a house."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import HouseError
+from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.gl import mujoco
+from sim.houses.geoms import UNBOUNDED_M, geom_polytope, geoms_between
+from sim.houses.house import Room
+from sim.houses.labels import Labels, collidable_geoms
+from sim.interface import MPCAT40_ID
+
+FLOOR_STEP_M = 0.05
+"""A floor belongs to a storey when its top is at most this far above or below the storey's height."""
+WALL_REACH_M = 0.25
+"""Margin around a room's box that still counts as the house: doorways lie inside walls."""
+OPEN_FLOOR_M = 10.0
+"""Margin around the obstacles, or around the origin, that is searched on an unbounded floor without walls."""
+
+
+def polygons_between(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64], heights_m: tuple[float, float]
+) -> list[ConvexPolygon]:
+    """Returns the plan projections of those geoms that have a part between two heights."""
+    near = geoms_between(model, data, geoms, *heights_m).tolist()
+    polygons = (plan_polygon(geom_polytope(model, data, geom), *heights_m) for geom in near)
+    return [polygon for polygon in polygons if polygon is not None]
+
+
+def floor_polygons(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, floor_z_m: float
+) -> list[ConvexPolygon] | None:
+    """Returns the plan projections of the floors of a storey; None when a plane makes it unbounded."""
+    polygons: list[ConvexPolygon] = []
+    for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model)):
+        body = geom_polytope(model, data, int(geom))
+        if abs(float(body.vertices_m[:, 2].max()) - floor_z_m) > FLOOR_STEP_M:
+            continue
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
+            return None
+        polygon = plan_polygon(body)
+        if polygon is not None:
+            polygons.append(polygon)
+    return polygons
+
+
+def house_extent(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    labels: Labels,
+    rooms: tuple[Room, ...],
+    floors: list[ConvexPolygon] | None,
+    obstacles: list[ConvexPolygon],
+) -> list[ConvexPolygon]:
+    """Returns polygons that cover a storey: its rooms and their walls.
+
+    Without rooms it is the bounding rectangle of the walls, else of the floors, else of the obstacles with a margin.
+    """
+    if rooms:
+        return [rectangle for room in rooms for rectangle in room_rectangles(room, WALL_REACH_M)]
+    walls = np.flatnonzero(labels.geom_category == MPCAT40_ID["wall"])
+    enclosing = polygons_between(model, data, walls, (-math.inf, math.inf)) or floors or obstacles
+    bounds = np.array([polygon.bounds_m for polygon in enclosing]).reshape(-1, 4)
+    bounds = bounds[np.abs(bounds).max(axis=1, initial=0.0) < UNBOUNDED_M]
+    if len(bounds) == 0:
+        return [_rectangle(-OPEN_FLOOR_M, -OPEN_FLOOR_M, OPEN_FLOOR_M, OPEN_FLOOR_M)]
+    margin = 0.0 if enclosing is not obstacles else OPEN_FLOOR_M
+    return [_rectangle(*(bounds[:, :2].min(axis=0) - margin), *(bounds[:, 2:].max(axis=0) + margin))]
+
+
+def room_rectangles(room: Room, margin_m: float = 0.0) -> list[ConvexPolygon]:
+    """Returns the boxes of a room in plan, grown by a margin.
+
+    Raises:
+        HouseError: a box has no area.
+    """
+    return [
+        _rectangle(x - hx - margin_m, y - hy - margin_m, x + hx + margin_m, y + hy + margin_m)
+        for (x, y, _), (hx, hy, _) in room.boxes
+    ]
+
+
+def _rectangle(x0: float, y0: float, x1: float, y1: float) -> ConvexPolygon:
+    polygon = ConvexPolygon.around(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], dtype=np.float64))
+    if polygon is None:
+        raise HouseError(f"the rectangle from ({x0:.3f}, {y0:.3f}) to ({x1:.3f}, {y1:.3f}) m has no area.")
+    return polygon

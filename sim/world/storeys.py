@@ -1,0 +1,39 @@
+"""Finds the floors of a compiled world and the heights of its storeys."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.houses.labels import Labels
+from sim.interface import MPCAT40_ID
+from sim.robot.body import FLOOR_MASK
+
+
+def floor_geoms(model: mujoco.MjModel, labels: Labels) -> NDArray[np.intp]:
+    """Returns the ids of the geoms that carry wheels."""
+    return np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & (model.geom_contype == FLOOR_MASK[0]))
+
+
+def storey_floors(model: mujoco.MjModel, labels: Labels, same_storey_m: float) -> tuple[float, ...]:
+    """Returns the floor heights of the storeys in metres, lowest first; (0.0,) for a world without a static floor.
+
+    Floors less than `same_storey_m` above the floor of a storey (rugs, thresholds) belong to that storey.
+    """
+    floors: list[float] = []
+    for top in sorted(_floor_tops(model, labels).tolist()):
+        if not floors or top - floors[-1] >= same_storey_m:
+            floors.append(top)
+    return tuple(floors) or (0.0,)
+
+
+def _floor_tops(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float64]:
+    """Returns the heights of the tops of all static floors, metres."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    floors = floor_geoms(model, labels)
+    ids = floors[model.geom_bodyid[floors] == 0]
+    rise = np.abs(data.geom_xmat[ids, 6:9] * model.geom_size[ids]).sum(axis=1)
+    rise[model.geom_type[ids] == mujoco.mjtGeom.mjGEOM_PLANE] = 0.0
+    return data.geom_xpos[ids, 2] + rise

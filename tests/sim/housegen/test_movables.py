@@ -1,0 +1,272 @@
+"""Furniture that can be pushed stands still until then, slides, stays upright and goes back to sleep."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from sim.env.oracle import Oracle
+from sim.env.scene import Scene
+from sim.episodes.drawing import sample_episode
+from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.housegen import generate
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.item import Child, Item
+from sim.housegen.mjcf import HouseBuilder, PlacedItem
+from sim.housegen.movables import GRAVITY_M_S2, MAX_PUSH_N, split_movable
+from sim.housegen.rectangles import Rect
+from sim.housegen.split_recipes import SPLITS
+from sim.houses.house import House
+from sim.interface import MPCAT40_ID, Action, CameraModel
+from sim.robot.config import RobotConfig
+from sim.sensors.camera import Camera
+from sim.world.check import check_house
+from sim.world.freespace import FreeSpace
+from sim.world.world import World
+from tests.helpers.sampling import sample
+from tests.helpers.worlds import room, with_movable
+
+AREA_M2 = 80.0
+POOLS = ("train", "heldout")
+KINDS = ("chair", "stool", "plant", "gym_equipment")
+TOUCHED = {mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_SPHERE}
+
+
+@functools.cache
+def item_of(category: str, pool: str, style: str) -> Item:
+    return CATALOGUE.make_item(category, np.random.default_rng(3), pool=pool, style=style)  # type: ignore[arg-type]
+
+
+def loose_styles(*categories: str) -> list[tuple[str, str, str]]:
+    names = [(c, pool, style.name) for c in categories for pool in POOLS for style in CATALOGUE.styles(c, pool)]
+    return [name for name in names if split_movable(item_of(*name))[1]]
+
+
+def alone(item: Item) -> World:
+    """The item on an empty floor."""
+    builder = HouseBuilder("alone")
+    builder.add_ground(Rect(-4, -4, 4, 4))
+    builder.add_movable(PlacedItem(item))
+    return World(House("alone", builder.spec))
+
+
+@functools.cache
+def seed_of_home() -> int:
+    """The first seed whose small flat has a chair and three more things that can be pushed."""
+    for seed in range(20):
+        names = loose_names(flat(seed).spec.compile())
+        if len(names) >= 4 and any(name.startswith("chair_") for name in names):
+            return seed
+    raise AssertionError("no seed below 20 has chairs to push")
+
+
+@functools.cache
+def flat(seed: int) -> House:
+    return House("home", generate(seed, kind="flat", area_m2=AREA_M2, movable=True))
+
+
+def home() -> House:
+    return flat(seed_of_home())
+
+
+@dataclasses.dataclass
+class Place:
+    """What the oracle acts in."""
+
+    scene: Scene
+
+
+def loose(model: mujoco.MjModel) -> list[int]:
+    """Bodies with a free joint."""
+    return model.jnt_bodyid[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE].tolist()
+
+
+def loose_names(model: mujoco.MjModel) -> list[str]:
+    return [model.body(body).name for body in loose(model)]
+
+
+def asleep(world: World, body: int) -> bool:
+    return bool(world.data.tree_asleep[world.model.body_treeid[body]] >= 0)
+
+
+def tilt_deg(world: World, body: int) -> float:
+    return math.degrees(math.acos(min(1.0, float(world.data.xmat[body, 8]))))
+
+
+def wait(world: World, seconds: float) -> None:
+    mujoco.mj_step(world.model, world.data, nstep=round(seconds / world.model.opt.timestep))
+
+
+def somewhere_free(world: World) -> Pose:
+    space = FreeSpace.from_world(world)
+    cells = np.argwhere(space.largest_part())
+    row, col = cells[len(cells) // 2]
+    x, y = space.frame.axes()
+    return Pose(float(x[col]), float(y[row]), 0.0)
+
+
+def speeds_during(world: World, actions: int, body: int) -> Iterator[float]:
+    """Speed of a body at the end of each forward action."""
+    for _ in range(actions):
+        world.move(Action.MOVE_FORWARD)
+        velocity = np.zeros(6)
+        mujoco.mj_objectVelocity(world.model, world.data, mujoco.mjtObj.mjOBJ_BODY, body, velocity, 0)
+        yield float(np.linalg.norm(velocity[3:]))
+
+
+def test_the_same_seed_gives_the_same_bytes_also_in_another_process() -> None:
+    arguments = f"{seed_of_home()}, kind='flat', area_m2={AREA_M2}, movable=True"
+    code = f"from sim.housegen import generate; print(generate({arguments}).to_xml(), end='')"
+    other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert home().spec.to_xml() == other
+
+
+def test_only_light_things_of_four_kinds_are_loose_and_only_when_asked() -> None:
+    assert {name.rpartition("_")[0] for name in loose_names(home().spec.compile())} <= set(KINDS)
+    assert not loose(generate(seed_of_home(), kind="flat", area_m2=AREA_M2).compile())
+
+
+@pytest.mark.parametrize("name", loose_styles(*KINDS), ids="-".join)
+def test_a_loose_thing_is_touched_by_exact_shapes_and_light_enough_to_be_pushed(name: tuple[str, str, str]) -> None:
+    world = alone(item_of(*name))
+    model = world.model
+    for body in loose(model):
+        geoms = np.flatnonzero(model.geom_bodyid == body)
+        touched = geoms[model.geom_contype[geoms] != 0]
+        assert {mujoco.mjtGeom(kind) for kind in model.geom_type[touched]} <= TOUCHED
+        assert (model.geom_group[touched] >= 3).all()
+        assert (model.geom_group[np.setdiff1d(geoms, touched)] < 3).all()
+        assert (model.geom_priority[touched] == 1).all()
+        assert 0.5 <= model.body_mass[body] <= 20.0
+        friction = float(model.geom_friction[touched[0], 0])
+        assert friction * model.body_mass[body] * GRAVITY_M_S2 <= MAX_PUSH_N
+        assert 0.0 < model.body_ipos[body, 2] < 0.6
+
+
+@pytest.mark.parametrize("name", loose_styles(*KINDS), ids="-".join)
+def test_a_loose_thing_stands_where_it_was_put_and_sleeps(name: tuple[str, str, str]) -> None:
+    world = alone(item_of(*name))
+    world.reset(Pose(3.0, 3.0, 0.0))
+    before = world.model.qpos0.copy()
+    wait(world, 1.0)
+    for body in loose(world.model):
+        at = world.model.jnt_qposadr[world.model.body_jntadr[body]]
+        assert np.linalg.norm(world.data.qpos[at : at + 3] - before[at : at + 3]) < 0.002
+        assert asleep(world, body)
+
+
+@pytest.mark.parametrize("name", sample(loose_styles("chair", "stool", "plant"), 10), ids="-".join)
+@pytest.mark.parametrize("side_deg", [0, 90, 180, 225])
+def test_a_pushed_thing_slides_upright_and_sleeps_again(name: tuple[str, str, str], side_deg: int) -> None:
+    world = alone(item_of(*name))
+    (body,) = loose(world.model)
+    yaw = math.radians(side_deg) + 0.1
+    world.reset(Pose(-0.8 * math.cos(yaw), -0.8 * math.sin(yaw), yaw))
+    wait(world, 0.5)
+    assert asleep(world, body)
+    tilts, where = [], world.data.xpos[body].copy()
+    for speed in speeds_during(world, 5, body):
+        tilts.append(tilt_deg(world, body))
+        assert speed < 1.5
+    wait(world, 2.0)
+    assert np.linalg.norm(world.data.xpos[body] - where) > 0.05
+    assert max(*tilts, tilt_deg(world, body)) < 20.0
+    assert asleep(world, body)
+
+
+def test_a_ball_that_was_pushed_comes_to_rest() -> None:
+    world = alone(item_of("gym_equipment", "train", "mat_and_ball"))
+    ball = max(loose(world.model), key=lambda body: float(world.model.body_ipos[body, 2]))
+    x, y, _ = world.model.body_pos[ball]
+    world.reset(Pose(float(x) - 0.8, float(y), 0.0))
+    for _ in range(4):
+        world.move(Action.MOVE_FORWARD)
+    assert world.data.xipos[ball, 0] > x + 0.1
+    wait(world, 4.0)
+    assert asleep(world, ball)
+
+
+def test_everything_loose_in_a_house_rests_and_blocks_where_it_stands() -> None:
+    world = World(home())
+    bodies = loose(world.model)
+    mujoco.mj_forward(world.model, world.data)
+    space = FreeSpace.from_world(world)
+    before = world.data.xpos[bodies].copy()
+    assert not any(space.is_free(float(x), float(y)) for x, y, _ in world.data.xipos[bodies])
+    world.reset(somewhere_free(world))
+    wait(world, 1.0)
+    assert np.linalg.norm(world.data.xpos[bodies] - before, axis=1).max() < 0.002
+    assert all(asleep(world, body) for body in bodies)
+
+
+def test_a_pushed_chair_is_seen_and_blocks_where_it_went() -> None:
+    world = alone(item_of("chair", "train", "slat_back"))
+    (body,) = loose(world.model)
+    world.reset(Pose(-0.8, 0.0, 0.0))
+    camera = Camera(world.model, world.labels, camera=CameraModel())
+    chair = MPCAT40_ID["chair"]
+    seen = []
+    for actions in (0, 5):
+        for _ in range(actions):
+            world.move(Action.MOVE_FORWARD)
+        picture = camera.render(world.data, Pose(-2.0, 0.0, 0.0), ("semantic", "depth"))
+        seen.append(float(picture["depth"][picture["semantic"] == chair].mean()))
+        x, y, _ = world.data.xpos[body]
+        assert not FreeSpace.from_world(world).is_free(float(x), float(y))
+    camera.close()
+    assert seen[1] - seen[0] == pytest.approx(float(world.data.xpos[body, 0]), abs=0.05)
+    assert FreeSpace.from_world(world).is_free(-0.1, 0.0)
+
+
+def test_what_carries_something_or_is_heavy_stays_in_place() -> None:
+    chair, cushion = (
+        item_of("chair", "train", "slat_back"),
+        CATALOGUE.make_item("cushion", np.random.default_rng(0), pool="train"),
+    )
+    laden = dataclasses.replace(chair, children=(Child(cushion, (0.0, 0.0, 0.5)),))
+    assert split_movable(laden) == (laden, ())
+    treadmill = item_of("gym_equipment", "train", "treadmill")
+    rest, movables = split_movable(treadmill)
+    assert rest is not None
+    assert movables == ()
+    assert split_movable(dataclasses.replace(chair, mass_kg=15.0))[1] == ()
+
+
+def test_the_check_finds_loose_things_that_do_not_stand() -> None:
+    house = with_movable(room(5, 4), "stool_00", xy_m=(0.0, 0.0))
+    assert check_house(house.spec) == []
+    both = with_movable(house, "stool_01", xy_m=(0.395, 0.0))  # 5 mm into the other: they push each other away
+    faults = check_house(both.spec)
+    assert faults
+    assert all("is not stable: after 1 s" in fault for fault in faults)
+
+
+def test_the_oracle_reaches_a_goal_among_loose_things() -> None:
+    scene = Scene(home(), robot=RobotConfig(), camera=CameraModel(), profile="fast")
+    episode = sample_episode(scene, "home", np.random.default_rng(0))
+    scene.world.reset(episode.start)
+    scene.task.begin(episode.goal, episode.start)
+
+    oracle = Oracle(Place(scene))
+    oracle.reset(episode.goal, seed=0)
+    while not scene.task.done:
+        action = oracle.act({})
+        scene.task.observe(action, scene.world.move(action))
+    metrics = scene.task.metrics()
+    scene.close()
+    assert metrics["success"] == 1.0
+    assert metrics["collisions"] == 0
+
+
+@pytest.mark.parametrize("split", [name for name in SPLITS if name in ("val", "test")])
+def test_a_third_of_the_shipped_houses_has_loose_things(split: str) -> None:
+    recipes = SPLITS[split]
+    assert sum(recipe.movable for recipe in recipes) == pytest.approx(len(recipes) / 3, abs=1)
