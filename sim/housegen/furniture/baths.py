@@ -159,7 +159,7 @@ def corner_tub(w: Workbench) -> None:
         (-half, half),
     ]
     w.mesh(_hollow(outer, (-0.12 * half, -0.12 * half), 0.84, 0.66, high, 0.16), (0.0, 0.0, 0.0), white)
-    parts.tap(w, (-half + 0.08, -half + 0.30, high), 0.16, 0.13, w.look("chrome"))
+    parts.mixer_tap(w, (-half + 0.08, -half + 0.30, high), 0.16, 0.13, w.look("chrome"))
     w.cylinder((-0.12 * half, -0.12 * half), (0.158, 0.168), 0.03, w.look("chrome"), solid=False)
 
 
@@ -224,7 +224,7 @@ def built_in(w: Workbench) -> None:
             white,
             solid=False,
         )
-    parts.tap(w, (-0.5 * depth + 0.035, 0.5 * width - 0.42, high), 0.16, 0.12, chrome)
+    parts.mixer_tap(w, (-0.5 * depth + 0.035, 0.5 * width - 0.42, high), 0.16, 0.12, chrome)
     for dy in (-0.08, 0.08):
         w.cylinder((-0.5 * depth + 0.035, 0.5 * width - 0.42 + dy), (high, high + 0.05), 0.018, chrome, solid=False)
 

@@ -20,9 +20,11 @@ _BOTH = (-1, 1)
 def wardrobe_doors(w: Workbench) -> None:
     """Two to four tall doors on a plinth."""
     width, depth, height = w.width(0.90, 1.90), w.depth(0.58, 0.64), w.height(1.95, 2.30)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.07, height), look, foot=0.07)
-    parts.doors(w, x, y, (0.07, height), max(2, round(width / 0.48)), look, w.look("metal"), w.choice(("bar", "knob")))
+    parts.plain_doors(
+        w, x, y, (0.07, height), max(2, round(width / 0.48)), look, w.look("metal"), w.choice(("bar", "knob"))
+    )
 
 
 def wardrobe_sliding(w: Workbench) -> None:
@@ -55,8 +57,8 @@ def armoire(w: Workbench) -> None:
     for sx in (x[0] + 0.07, x[1] - 0.05):
         for side in _BOTH:
             w.ellipsoid((sx, side * (0.5 * width - 0.06), 0.055), (0.055, 0.055, 0.055), wood)
-    parts.drawers(w, x[1], y, (0.16, 0.40), 1, 1, wood, w.look("brass"), "cup")
-    parts.doors(w, x[1], y, (0.40, height - 0.09), 2, wood, w.look("brass"), "knob")
+    parts.plain_drawers(w, x[1], y, (0.16, 0.40), 1, 1, wood, w.look("brass"), "cup")
+    parts.plain_doors(w, x[1], y, (0.40, height - 0.09), 2, wood, w.look("brass"), "knob")
     panel = wood if wood.texture is None else w.look("wood")
     for side in _BOTH:
         c = side * 0.25 * width
@@ -76,20 +78,22 @@ def sideboard_legs(w: Workbench) -> None:
     front = w.look("lacquer") if w.chance(0.4) else wood
     x, y = parts.case(w, depth, width, (foot, height), wood)
     third = y[0] + (y[1] - y[0]) / 3
-    parts.drawers(w, x, (y[0] + 0.015, third), (foot + 0.015, height - 0.02), 3, 1, front, w.look("brass"), "knob")
-    parts.doors(w, x, (third, y[1] - 0.015), (foot + 0.015, height - 0.02), 2, front, w.look("brass"), "knob")
+    parts.plain_drawers(
+        w, x, (y[0] + 0.015, third), (foot + 0.015, height - 0.02), 3, 1, front, w.look("brass"), "knob"
+    )
+    parts.plain_doors(w, x, (third, y[1] - 0.015), (foot + 0.015, height - 0.02), 2, front, w.look("brass"), "knob")
     w.legs((-0.5 * depth + 0.06, 0.5 * depth - 0.06), (y[0] + 0.10, y[1] - 0.10), (0.0, foot), 0.035, wood, splay=0.025)
 
 
 def display(w: Workbench) -> None:
     """Dresser: cupboard below, glazed shelves with crockery above."""
     width, depth, height = w.width(0.85, 1.20), w.depth(0.38, 0.44), w.height(1.80, 2.05)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     base = 0.86
     w.box(x, y, (0.0, base), look)
-    parts.doors(w, x[1], y, (0.06, base - 0.18), 2, look, w.look("brass"), "knob")
-    parts.drawers(w, x[1], y, (base - 0.17, base - 0.02), 1, 2, look, w.look("brass"), "knob")
+    parts.plain_doors(w, x[1], y, (0.06, base - 0.18), 2, look, w.look("brass"), "knob")
+    parts.plain_drawers(w, x[1], y, (base - 0.17, base - 0.02), 1, 2, look, w.look("brass"), "knob")
     w.box((x[0], x[1] + 0.025), y, (base, base + 0.025), look)
     front = x[1] - 0.10
     w.box((x[0], x[0] + 0.012), y, (base + 0.025, height), look)
@@ -137,7 +141,7 @@ def tambour(w: Workbench) -> None:
 def media_low(w: Workbench) -> None:
     """Television bench: an open compartment between drop fronts."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.38, 0.45), w.length(0.42, 0.52)
-    body = parts.body(w)
+    body = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (height - 0.03, height), body)
     w.box(x, y, (0.06, 0.085), body)
@@ -147,7 +151,9 @@ def media_low(w: Workbench) -> None:
     for side in _BOTH:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - third)))
         w.box((x[0], x[1] - parts.FRONT_M), (low, high), (0.085, height - 0.03), body)
-        parts.drawers(w, x[1] - parts.FRONT_M, (low, high), (0.085, height - 0.03), 1, 1, body, w.look("metal"), "bar")
+        parts.plain_drawers(
+            w, x[1] - parts.FRONT_M, (low, high), (0.085, height - 0.03), 1, 1, body, w.look("metal"), "bar"
+        )
     w.box((x[0] + 0.012, x[1] - 0.06), (-0.5 * third, 0.5 * third), (0.5 * height - 0.01, 0.5 * height + 0.01), body)
     w.box((x[0] + 0.08, x[1] - 0.08), (-0.18, 0.18), (0.085, 0.14), w.look("dark"), solid=False)
     w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), height)
@@ -164,7 +170,7 @@ def media_legs(w: Workbench) -> None:
     side = w.choice(_BOTH)
     low, high = sorted((side * 0.47 * width, side * 0.10 * width))
     w.box((x[0] + 0.02, x[1] - 0.03), (low, high), (0.175, height - 0.035), wood)
-    parts.doors(w, x[1] - 0.03, (low, high), (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
+    parts.plain_doors(w, x[1] - 0.03, (low, high), (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
     w.box(
         (x[0] + 0.08, x[1] - 0.08),
         (-side * 0.30 * width - 0.15, -side * 0.30 * width + 0.15),
@@ -182,7 +188,7 @@ def wall_unit(w: Workbench) -> None:
     look = w.look("lacquer") if w.chance(0.6) else w.look("wood")
     y = (-0.5 * width, 0.5 * width)
     w.box((0.0, depth), y, (0.0, height), look)
-    parts.doors(w, depth, y, (0.0, height), max(1, round(width / 0.5)), look, w.look("metal"), "bar", high=True)
+    parts.plain_doors(w, depth, y, (0.0, height), max(1, round(width / 0.5)), look, w.look("metal"), "bar", high=True)
 
 
 def wall_unit_glazed(w: Workbench) -> None:
@@ -206,12 +212,12 @@ def wall_unit_glazed(w: Workbench) -> None:
 def vanity_doors(w: Workbench) -> None:
     """Bathroom washstand: cupboard, top and basin; the basin is a sink of its own."""
     width, depth, height = w.width(0.70, 1.20), w.depth(0.46, 0.52), w.length(0.80, 0.86)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box((x[0], x[1] - 0.03), (y[0] + 0.01, y[1] - 0.01), (0.10, height - 0.03), look)
     w.box((x[0] + 0.02, x[1] - 0.10), (y[0] + 0.03, y[1] - 0.03), (0.0, 0.10), w.look("dark"))
     w.box(x, y, (height - 0.03, height), w.look("stone"))
-    parts.doors(
+    parts.plain_doors(
         w,
         x[1] - 0.03,
         (y[0] + 0.01, y[1] - 0.01),
@@ -235,7 +241,7 @@ def vanity_floating(w: Workbench) -> None:
     wood, y = w.look("wood"), (-0.5 * width, 0.5 * width)
     w.box((0.0, depth - 0.03), y, (0.0, 0.40), wood)
     w.box((0.0, depth), (y[0] - 0.01, y[1] + 0.01), (0.40, 0.43), w.look("stone"))
-    parts.drawers(w, depth - 0.03, y, (0.0, 0.39), 2, 1, wood, w.look("metal"), "bar")
+    parts.plain_drawers(w, depth - 0.03, y, (0.0, 0.39), 2, 1, wood, w.look("metal"), "bar")
     w.put(w.make("sink", use="vessel"), (0.5 * depth + 0.02, 0.0, 0.43))
 
 

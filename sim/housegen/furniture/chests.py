@@ -16,9 +16,9 @@ _BOTH = (-1, 1)
 def dresser(w: Workbench) -> None:
     """Wide chest, three rows of two drawers, on short legs."""
     width, depth, height = w.width(0.95, 1.50), w.depth(0.42, 0.50), w.length(0.74, 0.88)
-    look, foot = parts.body(w), w.length(0.08, 0.14)
+    look, foot = parts.wood_look(w), w.length(0.08, 0.14)
     x, y = parts.case(w, depth, width, (foot, height), look)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x,
         (y[0] + 0.012, y[1] - 0.012),
@@ -35,9 +35,9 @@ def dresser(w: Workbench) -> None:
 def tallboy(w: Workbench) -> None:
     """Narrow and tall: five drawers."""
     width, depth, height = w.width(0.45, 0.65), w.depth(0.40, 0.46), w.length(1.05, 1.30)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.05, height), look, foot=0.05)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x,
         (y[0] + 0.01, y[1] - 0.01),
@@ -65,9 +65,9 @@ def handleless(w: Workbench) -> None:
 def bedside_chest(w: Workbench) -> None:
     """Bedside chest of two or three drawers."""
     width, depth, height = w.width(0.40, 0.52), w.depth(0.36, 0.44), w.length(0.48, 0.62)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.06, height), look, foot=0.06)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x,
         (y[0] + 0.01, y[1] - 0.01),
@@ -85,8 +85,8 @@ def campaign(w: Workbench) -> None:
     width, depth, height = w.width(0.90, 1.20), w.depth(0.44, 0.50), w.length(0.80, 0.95)
     wood, brass = w.look("wood"), w.look("brass")
     x, y = parts.case(w, depth, width, (0.09, height), wood)
-    parts.drawers(w, x, y, (0.10, 0.62 * height), 2, 1, wood, brass, "none")
-    parts.drawers(w, x, y, (0.62 * height, height - 0.02), 1, 2, wood, brass, "none")
+    parts.plain_drawers(w, x, y, (0.10, 0.62 * height), 2, 1, wood, brass, "none")
+    parts.plain_drawers(w, x, y, (0.62 * height, height - 0.02), 1, 2, wood, brass, "none")
     for c, z in (
         (-0.25 * width, 0.25 * height),
         (0.25 * width, 0.25 * height),
@@ -109,7 +109,7 @@ def apothecary(w: Workbench) -> None:
     width, depth, height = w.width(0.80, 1.05), w.depth(0.36, 0.42), w.length(0.95, 1.10)
     wood = w.look("wood")
     x, y = parts.case(w, depth, width, (0.34, height), wood)
-    parts.drawers(
+    parts.plain_drawers(
         w, x, (y[0] + 0.02, y[1] - 0.02), (0.36, height - 0.03), 3, 4, w.look("lacquer"), w.look("brass"), "knob"
     )
     w.legs((-0.5 * depth + 0.01, 0.5 * depth - 0.01), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.35), 0.045, wood)

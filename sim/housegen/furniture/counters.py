@@ -20,58 +20,6 @@ _TOP = 0.035
 """Thickness of a worktop."""
 
 
-def _worktop(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tuple[Range, Range] | None) -> None:
-    """A slab whose upper face is at z, with a rectangular hole for a sink."""
-    low = z - _TOP
-    if hole is None:
-        w.box(x, y, (low, z), look)
-        return
-    (hx0, hx1), (hy0, hy1) = hole
-    w.box(x, (y[0], hy0), (low, z), look)
-    w.box(x, (hy1, y[1]), (low, z), look)
-    w.box((x[0], hx0), (hy0, hy1), (low, z), look)
-    w.box((hx1, x[1]), (hy0, hy1), (low, z), look)
-
-
-def _sink_place(w: Workbench, width: float) -> float | None:
-    """Where along y the sink is, or None; hint `with_sink`."""
-    if width < 0.75 or not w.flag("with_sink", 0.35):
-        return None
-    return w.length(-0.5 * width + 0.38, 0.5 * width - 0.38) if width > 1.0 else 0.0
-
-
-def _fit_sink(w: Workbench, y: float, z: float) -> tuple[Range, Range]:
-    """Put a sink into the worktop; the hole it needs."""
-    sink = w.make("sink", use="inset")
-    w.put(sink, (0.0, y, z - 0.18))
-    return (-0.20, 0.20), (y - 0.24, y + 0.24)
-
-
-def _hob(w: Workbench, y: float, z: float) -> None:
-    """Four rings on a dark plate, labelled appliances."""
-    w.put(w.make("appliances", use="hob"), (0.0, y, z))
-
-
-def _fittings(w: Workbench, width: float, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
-    """Sink and hob of a run of this width; the sink's hole and the stretches of worktop left free."""
-    sink_y = _sink_place(w, width)
-    hole = None if sink_y is None else _fit_sink(w, sink_y, z)
-    taken = [] if sink_y is None else [(sink_y - 0.30, sink_y + 0.30)]
-    if width > 1.3 and w.flag("with_hob", 0.25):
-        left, right = -0.5 * width + 0.36, 0.5 * width - 0.36
-        places = [p for p in (left, right) if sink_y is None or abs(p - sink_y) > 0.62]
-        if places:
-            place = w.choice(places)
-            _hob(w, place, z)
-            taken.append((place - 0.32, place + 0.32))
-    free, start = [], -0.5 * width
-    for low, high in sorted(taken):
-        free.append((start, low))
-        start = high
-    free.append((start, 0.5 * width))
-    return hole, [r for r in free if r[1] - r[0] > 0.25]
-
-
 def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tuple[Range, Range] | None) -> None:
     """Cupboards under a worktop, lower where a sink hangs, on a recessed plinth."""
     w.box((x[0], x[1] - 0.06), y, (0.0, 0.10), w.look("dark"))
@@ -90,11 +38,11 @@ def kitchen_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.88, 0.92)
     front, top = w.look("lacquer") if w.chance(0.6) else w.look("wood"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    hole, free = _fittings(w, width, height)
+    hole, free = parts.worktop_fittings(w, y, height)
     under = height - _TOP
     face = x[1] - 0.04
     _run_base(w, (x[0], face), y, under, front, hole)
-    _worktop(w, x, y, height, top, hole)
+    parts.worktop(w, x, y, (height - _TOP, height), top, hole)
     count = max(1, round(width / 0.6))
     each = width / count
     drawer_unit = w.whole(0, count - 1)
@@ -102,9 +50,9 @@ def kitchen_run(w: Workbench) -> None:
     for i in range(count):
         span = (y[0] + i * each, y[0] + (i + 1) * each)
         if i == drawer_unit:
-            parts.drawers(w, face, span, (0.11, under), 3, 1, front, metal, "bar")
+            parts.plain_drawers(w, face, span, (0.11, under), 3, 1, front, metal, "bar")
         else:
-            parts.doors(w, face, span, (0.11, under), 1, front, metal, "bar")
+            parts.plain_doors(w, face, span, (0.11, under), 1, front, metal, "bar")
     for span in free:
         w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
 
@@ -130,14 +78,14 @@ def open_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.92)
     steel, wood, front = w.look("metal"), w.look("wood"), w.look("lacquer")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    hole, free = _fittings(w, width, height)
-    _worktop(w, x, y, height, wood, hole)
+    hole, free = parts.worktop_fittings(w, y, height)
+    parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
     w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (0.0, height - _TOP), 0.045, steel)
     w.box((x[0] + 0.02, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.18, 0.205), wood)
     if hole is not None:
         low, high = hole[1][0] - 0.04, hole[1][1] + 0.04
         w.box((x[0] + 0.01, x[1] - 0.06), (low, high), (0.205, height - 0.20), front)
-        parts.doors(w, x[1] - 0.06, (low, high), (0.205, height - _TOP), 1, front, steel, "none")
+        parts.plain_doors(w, x[1] - 0.06, (low, high), (0.205, height - _TOP), 1, front, steel, "none")
     half = 0.5 * width
     for c in (-0.7 * half, 0.0, 0.7 * half):
         if hole is None or not hole[1][0] - 0.25 < c < hole[1][1] + 0.25:
@@ -151,10 +99,10 @@ def slab_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.89, 0.93)
     front, top = w.look("lacquer") if w.chance(0.5) else w.look("wood"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    hole, free = _fittings(w, width, height)
+    hole, free = parts.worktop_fittings(w, y, height)
     under, face = height - _TOP, x[1] - 0.03
     _run_base(w, (x[0], face), y, under, w.look("dark"), hole)
-    _worktop(w, x, y, height, top, hole)
+    parts.worktop(w, x, y, (height - _TOP, height), top, hole)
     w.box((x[0], x[0] + 0.018), y, (height, height + 0.12), top)
     count = max(1, round(width / 0.9))
     each = width / count
@@ -178,7 +126,7 @@ def breakfast_bar(w: Workbench) -> None:
     w.box((x[0], wall), y, (height - 0.035, height), top)
     w.box((wall, wall + 0.08), (y[0] + 0.02, y[1] - 0.02), (0.0, height + 0.14), body)
     w.box((wall - 0.06, x[1]), y, (height + 0.14, height + 0.18), top)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x[0] + 0.03 - parts.FRONT_M,
         (y[0] + 0.02, y[1] - 0.02),
@@ -203,7 +151,7 @@ def trolley(w: Workbench) -> None:
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (height - 0.06, height), wood)
     w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.05, y[1] - 0.05), (height - 0.22, height - 0.06), frame)
-    parts.drawers(
+    parts.plain_drawers(
         w, x[1] - 0.04, (y[0] + 0.06, y[1] - 0.06), (height - 0.21, height - 0.065), 1, 2, frame, w.look("metal"), "cup"
     )
     w.legs((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.06), 0.07, frame)
@@ -219,9 +167,9 @@ def curtained_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.91)
     wood, pier, cloth = w.look("wood"), w.look("masonry"), w.look("curtain")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    hole, free = _fittings(w, width, height)
+    hole, free = parts.worktop_fittings(w, y, height)
     under = height - _TOP
-    _worktop(w, x, y, height, wood, hole)
+    parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
     w.box((x[0], x[0] + 0.03), y, (0.0, under), pier)
     bays = max(1, round(width / 0.8))
     each = (width - 0.10) / bays
@@ -257,7 +205,7 @@ def waterfall(w: Workbench) -> None:
     body = w.look("lacquer")
     w.box((x[0] + 0.04, x[1] - 0.30), (y[0] + 0.06, y[1] - 0.06), (0.08, height - 0.06), body)
     w.box((x[0] + 0.10, x[1] - 0.36), (y[0] + 0.06, y[1] - 0.06), (0.0, 0.08), w.look("dark"))
-    parts.doors(
+    parts.plain_doors(
         w,
         x[1] - 0.30,
         (y[0] + 0.07, y[1] - 0.07),

@@ -147,7 +147,7 @@ def rustic_stone(w: Workbench) -> None:
 def electric(w: Workbench) -> None:
     """Free-standing cabinet with a framed dark hearth between shelves."""
     outer, depth, top = 0.5 * w.width(1.20, 1.50), w.length(0.34, 0.40), w.length(0.85, 1.0)
-    wood = parts.body(w)
+    wood = parts.wood_look(w)
     half, high = 0.40, 0.62
     w.box((0.0, depth), (-outer, outer), (top - 0.04, top), wood)
     w.box((0.0, depth), (-outer, outer), (0.0, 0.08), wood)

@@ -111,7 +111,7 @@ def bedside_legs(w: Workbench) -> None:
     wood, legs = w.look("lacquer") if w.chance(0.4) else w.look("wood"), w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
     w.box((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (height - 0.20, height - 0.02), wood)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x[1] - 0.02,
         (y[0] + 0.01, y[1] - 0.01),
@@ -147,7 +147,7 @@ def console(w: Workbench) -> None:
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), wood)
     w.box((x[0] + 0.01, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (height - 0.15, height - 0.025), wood)
-    parts.drawers(
+    parts.plain_drawers(
         w, x[1] - 0.03, (y[0] + 0.04, y[1] - 0.04), (height - 0.145, height - 0.03), 1, 2, wood, w.look("brass"), "knob"
     )
     w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, height - 0.025), 0.04, wood)

@@ -76,7 +76,7 @@ def pouf(w: Workbench) -> None:
 def storage_bench(w: Workbench) -> None:
     """Hall bench: open cubbies with shoes below, cushion on top."""
     width, depth, seat = w.width(0.90, 1.30), w.depth(0.36, 0.42), w.length(0.44, 0.48)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (seat - 0.07, seat - 0.04), look)
     w.box(x, y, (0.03, 0.055), look)

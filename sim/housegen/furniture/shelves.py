@@ -41,7 +41,7 @@ def _boards(w: Workbench, x: Range, y: Range, levels: list[float], thick: float,
 def bookcase(w: Workbench) -> None:
     """Tall bookcase, five boards full of books."""
     width, depth, height = w.width(0.70, 1.00), w.depth(0.28, 0.34), w.height(1.80, 2.05)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     for side in _BOTH:
         edge = side * (0.5 * width - 0.011)
@@ -77,7 +77,7 @@ def ladder_shelf(w: Workbench) -> None:
 def wall_boards(w: Workbench) -> None:
     """Two or three boards on the wall with books and a vase."""
     width, depth, count = w.width(0.70, 1.20), w.depth(0.20, 0.26), w.whole(2, 3)
-    look, metal, y = parts.body(w), w.look("iron"), (-0.5 * width, 0.5 * width)
+    look, metal, y = parts.wood_look(w), w.look("iron"), (-0.5 * width, 0.5 * width)
     w.mount_height_m = 1.15
     for i in range(count):
         z = 0.14 + 0.36 * i
@@ -122,7 +122,7 @@ def etagere(w: Workbench) -> None:
 
 def corner_niche(w: Workbench) -> None:
     """Open boxes of different sizes on the wall, books and vases in them."""
-    width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.body(w)
+    width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.wood_look(w)
     w.mount_height_m = 1.10
     y0 = -0.5 * width
     cells = ((y0, y0 + 0.55 * width, 0.0, 0.36), (y0 + 0.45 * width, y0 + width, 0.36, 0.72))
@@ -143,7 +143,7 @@ def corner_niche(w: Workbench) -> None:
 
 def cubes(w: Workbench) -> None:
     """Square pigeonholes: boxes in some, books in others; hint `width_m` sets how many."""
-    look = parts.body(w)
+    look = parts.wood_look(w)
     width = w.width(0.74, 1.50)
     columns, rows = max(1, round((width - 0.04) / 0.36)), w.whole(2, 4)
     cell, depth = (width - 0.03) / columns, 0.38

@@ -62,7 +62,7 @@ def pedestal_sink(w: Workbench) -> None:
         (0.0, 0.0, 0.0),
         white,
     )
-    parts.tap(w, (-0.5 * depth + 0.05, 0.0, rim + 0.012), 0.11, 0.10, w.look("chrome"))
+    parts.mixer_tap(w, (-0.5 * depth + 0.05, 0.0, rim + 0.012), 0.11, 0.10, w.look("chrome"))
 
 
 def wall_basin(w: Workbench) -> None:
@@ -75,7 +75,7 @@ def wall_basin(w: Workbench) -> None:
     w.rod((0.24, 0.0, 0.05), (0.24, 0.0, z - 0.12), 0.018, chrome, solid=False)
     w.cylinder((0.24, 0.0), (0.0, 0.08), 0.035, chrome, solid=False)
     w.rod((0.0, 0.0, 0.06), (0.24, 0.0, 0.06), 0.015, chrome, solid=False)
-    parts.tap(w, (0.05, 0.0, z), 0.11, 0.11, chrome)
+    parts.mixer_tap(w, (0.05, 0.0, z), 0.11, 0.11, chrome)
 
 
 def inset_steel(w: Workbench) -> None:
@@ -87,21 +87,21 @@ def inset_steel(w: Workbench) -> None:
     w.box((-0.215, -0.198), (-0.255, 0.255), (0.178, 0.184), steel, solid=False)
     w.box((0.198, 0.215), (-0.255, 0.255), (0.178, 0.184), steel, solid=False)
     w.cylinder((0.0, 0.0), (0.010, 0.016), 0.03, w.look("dark"), solid=False)
-    parts.tap(w, (-0.207, 0.0, 0.18), 0.20, 0.26, w.look("chrome"))
+    parts.mixer_tap(w, (-0.207, 0.0, 0.18), 0.20, 0.26, w.look("chrome"))
 
 
 def vessel_round(w: Workbench) -> None:
     """Round bowl that stands on a washstand."""
     r = w.length(0.19, 0.22)
     _bowl(w, r, r, 0.13, w.look("ceramic"), (0.0, 0.0, 0.0))
-    parts.tap(w, (-r - 0.02, 0.0, 0.0), 0.16, 0.24, w.look("chrome"))
+    parts.mixer_tap(w, (-r - 0.02, 0.0, 0.0), 0.16, 0.24, w.look("chrome"))
 
 
 def vessel_square(w: Workbench) -> None:
     """Shallow rectangular bowl that stands on a washstand."""
     half = 0.5 * w.length(0.44, 0.52)
     parts.basin(w, (-0.17, 0.17), (-half, half), 0.12, 0.12, 0.02, w.look("ceramic"))
-    parts.tap(w, (-0.20, 0.0, 0.0), 0.15, 0.22, w.look("chrome"))
+    parts.mixer_tap(w, (-0.20, 0.0, 0.0), 0.15, 0.22, w.look("chrome"))
     w.cylinder((0.0, 0.0), (0.019, 0.024), 0.022, w.look("chrome"), solid=False)
 
 
@@ -120,7 +120,7 @@ def console_sink(w: Workbench) -> None:
             0.008,
             metal,
         )
-    parts.tap(w, (x[0] + 0.045, 0.0, rim), 0.13, 0.12, metal)
+    parts.mixer_tap(w, (x[0] + 0.045, 0.0, rim), 0.13, 0.12, metal)
 
 
 def inset_stone(w: Workbench) -> None:
@@ -128,7 +128,7 @@ def inset_stone(w: Workbench) -> None:
     stone = w.look("char")
     parts.basin(w, (-0.20, 0.20), (-0.24, 0.24), 0.18, 0.18, 0.03, stone)
     w.cylinder((0.0, 0.0), (0.028, 0.034), 0.03, w.look("steel"), solid=False)
-    parts.tap(w, (-0.19, 0.06, 0.18), 0.20, 0.30, w.look("brass"))
+    parts.mixer_tap(w, (-0.19, 0.06, 0.18), 0.20, 0.30, w.look("brass"))
 
 
 def utility(w: Workbench) -> None:
@@ -147,7 +147,7 @@ def utility(w: Workbench) -> None:
         )
     w.cylinder((0.0, 0.0), (rim - 0.42, rim - 0.33), 0.025, w.look("dark"), solid=False)
     w.box((x[0] - 0.02, x[0] + 0.01), (-half, half), (rim - 0.02, rim + 0.12), white)
-    parts.tap(w, (x[0] + 0.02, 0.0, rim + 0.02), 0.20, 0.12, w.look("chrome"))
+    parts.mixer_tap(w, (x[0] + 0.02, 0.0, rim + 0.02), 0.20, 0.12, w.look("chrome"))
 
 
 def trough(w: Workbench) -> None:
@@ -176,7 +176,7 @@ def double_steel(w: Workbench) -> None:
     w.box((0.195, 0.215), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
     for side in _BOTH:
         w.box((-0.215, 0.215), (side * 0.246 - 0.009, side * 0.246 + 0.009), (0.178, 0.185), steel, solid=False)
-    parts.tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
+    parts.mixer_tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
 
 
 STYLES = (

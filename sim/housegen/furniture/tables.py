@@ -133,7 +133,7 @@ def desk_pedestal(w: Workbench) -> None:
     low, high = min(near, far), max(near, far)
     w.box((x[0] + 0.02, x[1] - 0.05), (low, high), (0.05, height - 0.03), wood)
     w.box((x[0] + 0.05, x[1] - 0.09), (low + 0.02, high - 0.02), (0.0, 0.05), w.look("dark"))
-    parts.drawers(w, x[1] - 0.05, (low, high), (0.06, height - 0.04), 3, 1, front, w.look("chrome"))
+    parts.plain_drawers(w, x[1] - 0.05, (low, high), (0.06, height - 0.04), 3, 1, front, w.look("chrome"))
     panel = -side * (0.5 * width - 0.035)
     w.box((x[0] + 0.02, x[1] - 0.04), (panel - 0.015, panel + 0.015), (0.0, height - 0.03), wood)
     w.box((x[0] + 0.05, x[0] + 0.068), (min(far, panel), max(far, panel)), (0.30, height - 0.03), wood)
@@ -159,7 +159,7 @@ def secretary(w: Workbench) -> None:
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (height - 0.02, height), wood)
     w.box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (height - 0.13, height - 0.02), wood)
-    parts.drawers(
+    parts.plain_drawers(
         w,
         x[1] - 0.03,
         (y[0] + 0.05, y[1] - 0.05),

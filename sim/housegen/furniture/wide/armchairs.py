@@ -5,23 +5,23 @@ from __future__ import annotations
 import itertools
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, loft, strip
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
 def cage_cube(w: Workbench) -> None:
     """Thick leather cushions held in a cage of steel tubes."""
     width, depth, seat = w.width(0.70, 0.84), w.depth(0.68, 0.78), w.length(0.40, 0.45)
-    shared.cage(w, width, depth, seat, 1)
+    parts.cage_seat(w, width, depth, seat, 1)
 
 
 def papasan(w: Workbench) -> None:
     """A big round bowl of cane with a thick cushion in it, tilted on a ring base."""
     r, seat, cane = w.length(0.46, 0.56), w.length(0.36, 0.44), w.look(w.choice(("wicker", "wood")))
-    cloth, tilt = shared.upholstery(w, 0.05), w.length(0.28, 0.5)
+    cloth, tilt = parts.upholstery_look(w, 0.05), w.length(0.28, 0.5)
     base = 0.6 * r
     neck = 0.55 * base
     stand = [Ring(0.0, base, base), Ring(0.04, base, base), Ring(0.20, neck, neck), Ring(0.22, neck, neck)]
@@ -37,31 +37,31 @@ def papasan(w: Workbench) -> None:
 def recliner(w: Workbench) -> None:
     """Bulky padded recliner: pillow arms, a back in puffed rolls, a footrest let down or out, a lever."""
     width, depth, seat = w.width(0.82, 1.0), w.depth(0.84, 0.96), w.length(0.44, 0.48)
-    height, cover, arm = w.length(0.98, 1.10), shared.upholstery(w, 0.6), w.length(0.16, 0.22)
+    height, cover, arm = w.length(0.98, 1.10), parts.upholstery_look(w, 0.6), w.length(0.16, 0.22)
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
     inner = width - 2 * arm
     w.box((x0 + 0.08, x1 - 0.06), (-half + 0.03, half - 0.03), (0.0, 0.10), w.look("dark"))
     w.box((x0 + 0.05, x1 - 0.05), (-half + 0.02, half - 0.02), (0.08, seat - 0.14), cover)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.5 * arm)
-        shared.pad(w, (depth - 0.06, arm - 0.03, 0.46), (0.03, y, 0.30), cover, 0.03)
-        shared.pad(w, (depth - 0.10, arm, 0.12), (0.04, y, w.length(0.58, 0.60)), cover, 0.05)
-    shared.pad(w, (depth - 0.22, inner + 0.01, 0.18), (0.11, 0.0, seat - 0.09), cover, 0.05)
+        parts.pad(w, (depth - 0.06, arm - 0.03, 0.46), (0.03, y, 0.30), cover, 0.03)
+        parts.pad(w, (depth - 0.10, arm, 0.12), (0.04, y, w.length(0.58, 0.60)), cover, 0.05)
+    parts.pad(w, (depth - 0.22, inner + 0.01, 0.18), (0.11, 0.0, seat - 0.09), cover, 0.05)
     rolls = w.whole(2, 4)
     each = (height - seat + 0.04) / rolls
     for i in range(rolls):
         z = seat - 0.04 + (i + 0.5) * each
         x = x0 + 0.22 - 0.22 * (z - seat)
         wide = inner + (0.06 if i == rolls - 1 else 0.02)
-        shared.pad(w, (0.22, wide, each + 0.01), (x, 0.0, z), cover, 0.06, tilt=-0.2)
+        parts.pad(w, (0.22, wide, each + 0.01), (x, 0.0, z), cover, 0.06, tilt=-0.2)
     if w.chance(0.4):
-        shared.pad(w, (0.42, inner - 0.02, 0.10), (x1 + 0.20, 0.0, seat - 0.10), cover, 0.03, tilt=0.08)
-        for side in BOTH:
+        parts.pad(w, (0.42, inner - 0.02, 0.10), (x1 + 0.20, 0.0, seat - 0.10), cover, 0.03, tilt=0.08)
+        for side in BOTH_SIDES:
             w.bar(
                 (x1 - 0.08, side * 0.2, seat - 0.22), (x1 + 0.2, side * 0.2, seat - 0.14), 0.02, 0.02, w.look("metal")
             )
     else:
-        shared.pad(w, (0.10, inner - 0.01, seat - 0.20), (x1 - 0.03, 0.0, 0.5 * (seat - 0.04)), cover, 0.03)
+        parts.pad(w, (0.10, inner - 0.01, seat - 0.20), (x1 - 0.03, 0.0, 0.5 * (seat - 0.04)), cover, 0.03)
     if w.chance(0.5):
         y = half - 0.010
         w.bar((0.10, y, 0.30), (0.22, y, 0.38), 0.015, 0.03, w.look("wood"), solid=False)
@@ -71,14 +71,14 @@ def recliner(w: Workbench) -> None:
 def slipper_chair(w: Workbench) -> None:
     """Low chair without arms: one thick seat, a straight or buttoned back, short legs or a skirt to the floor."""
     width, depth, seat = w.width(0.54, 0.72), w.depth(0.64, 0.80), w.length(0.38, 0.44)
-    height, cover = w.length(0.74, 0.92), shared.upholstery(w, 0.25)
+    height, cover = w.length(0.74, 0.92), parts.upholstery_look(w, 0.25)
     x0, x1, half, back = -0.5 * depth, 0.5 * depth, 0.5 * width, w.length(0.10, 0.18)
     thick = w.length(0.13, 0.20)
-    shared.pad(w, (depth - 0.02, width, thick), (0.0, 0.0, seat - 0.5 * thick), cover, 0.035)
+    parts.pad(w, (depth - 0.02, width, thick), (0.0, 0.0, seat - 0.5 * thick), cover, 0.035)
     tilt = -w.length(0.06, 0.20)
     tall = height - seat + 0.08
     x = x0 + 0.5 * back
-    shared.pad(
+    parts.pad(
         w, (back, width - 0.01, tall), (x - 0.3 * abs(tilt) * tall, 0.0, height - 0.5 * tall), cover, 0.04, tilt=tilt
     )
     if w.chance(0.5):
@@ -106,10 +106,10 @@ def slipper_chair(w: Workbench) -> None:
 def bent_lounge(w: Workbench) -> None:
     """Springy laminated frame that runs from the floor up into the arms, one long cushion slung in it."""
     width, seat, height = w.width(0.62, 0.72), w.length(0.36, 0.42), w.length(0.92, 1.04)
-    wood, cloth, half = w.look("wood"), shared.upholstery(w, 0.3), 0.5 * width
+    wood, cloth, half = w.look("wood"), parts.upholstery_look(w, 0.3), 0.5 * width
     wide = w.length(0.04, 0.06)
     arm = w.length(0.54, 0.60)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.5 * wide)
         loop = [
             (-0.34, y, 0.012),
@@ -137,15 +137,15 @@ def bent_lounge(w: Workbench) -> None:
     ]
     w.mesh(strip(path, w.length(0.06, 0.11), width - 2 * wide - 0.02), (0.0, 0.0, 0.0), cloth)
     if w.chance(0.5):
-        shared.pad(w, (0.10, width - 0.16, 0.18), (-0.30, 0.0, height - 0.11), cloth, 0.035, tilt=-0.4)
+        parts.pad(w, (0.10, width - 0.16, 0.18), (-0.30, 0.0, height - 0.11), cloth, 0.035, tilt=-0.4)
 
 
 def director(w: Workbench) -> None:
     """Canvas seat and back band between wooden side frames that cross like scissors below."""
     w.mass_kg = 5.0
-    seat, half, wood = w.length(0.42, 0.48), 0.5 * w.length(0.54, 0.60), shared.timber(w)
+    seat, half, wood = w.length(0.42, 0.48), 0.5 * w.length(0.54, 0.60), parts.wood_look(w, 0.3)
     canvas, height, arm = w.look(w.choice(("bright", "fabric", "leather"))), w.length(0.80, 0.90), w.length(0.62, 0.68)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.02)
         w.box((-0.23, 0.25), (y - 0.025, y + 0.025), (arm - 0.022, arm), wood)
         w.box((-0.20, 0.20), (y - 0.015, y + 0.015), (seat - 0.03, seat), wood)
@@ -156,15 +156,15 @@ def director(w: Workbench) -> None:
         for x in (-0.15, 0.15):
             w.bar((x + side * 0.014, -y, 0.015), (x + side * 0.014, y, seat - 0.015), 0.03, 0.022, wood)
     w.box((-0.19, 0.20), (-half + 0.02, half - 0.02), (seat - 0.004, seat + 0.006), canvas)
-    shared.curved_board(w, -0.225, half - 0.01, (height - w.length(0.15, 0.20), height - 0.01), canvas, 0.012, 0.02)
+    parts.curved_board(w, -0.225, half - 0.01, (height - w.length(0.15, 0.20), height - 0.01), canvas, 0.012, 0.02)
 
 
 def adirondack(w: Workbench) -> None:
     """Porch chair of boards: fanned back slats, a sloping seat, broad flat arms."""
-    width, wood, slats = w.width(0.68, 0.80), shared.timber(w, 0.6), w.whole(5, 7)
+    width, wood, slats = w.width(0.68, 0.80), parts.wood_look(w, 0.6), w.whole(5, 7)
     half, high, height = 0.5 * width, w.length(0.34, 0.40), w.length(0.86, 1.02)
     arm = w.length(0.52, 0.58)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.09)
         w.bar((0.34, y, high - 0.06), (-0.46, y, 0.035), 0.025, 0.09, wood)
         w.box((0.27, 0.35), (y - 0.012 + side * 0.02, y + 0.012 + side * 0.02), (0.0, arm - 0.01), wood)

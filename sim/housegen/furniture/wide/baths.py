@@ -7,9 +7,8 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, drape, hoop, loft
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -36,14 +35,14 @@ def _douche(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None
         w.rod((x - 0.005, y + 0.10, 1.88), (x + 0.04, y + 0.10, 1.88), 0.012, metal, solid=False)
         w.rod((x + 0.04, y + 0.10, 1.75), (x + 0.13, y + 0.10, 1.83), 0.012, metal, solid=False, round_ends=True)
         w.rod((x + 0.12, y + 0.10, 1.845), (x + 0.145, y + 0.10, 1.82), 0.05, metal, solid=False)
-        shared.arc(w, (x + 0.04, y, z), (x + 0.05, y + 0.10, 1.75), -0.25, 0.006, metal, 4)
+        parts.arched_pipe(w, (x + 0.04, y, z), (x + 0.05, y + 0.10, 1.75), -0.25, 0.006, metal, 4)
     elif kind == "arm":
         w.rod((x - 0.005, y, 2.0), (x + 0.28, y, 2.0), 0.011, metal, solid=False)
         w.cylinder((x + 0.28, y), (1.96, 2.0), w.length(0.06, 0.15), metal, solid=False)
         w.rod((x - 0.005, y, z - 0.15), (x + 0.03, y, z - 0.15), 0.05, metal, solid=False)
     else:
         w.rod((x + 0.04, y, z + 0.04), (x + 0.04, y, 1.95), 0.011, metal, solid=False)
-        shared.arc(w, (x + 0.04, y, 1.95), (x + 0.34, y, 1.97), 0.09, 0.011, metal, 3)
+        parts.arched_pipe(w, (x + 0.04, y, 1.95), (x + 0.34, y, 1.97), 0.09, 0.011, metal, 3)
         w.rod((x + 0.34, y, 1.98), (x + 0.34, y, 1.93), 0.022, metal, solid=False)
         w.cylinder((x + 0.34, y), (1.915, 1.935), w.length(0.07, 0.13), metal, solid=False)
 
@@ -51,8 +50,8 @@ def _douche(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None
 def tiled_niche(w: Workbench) -> None:
     """Recess of three thick tiled walls, kerb in front, a glass door in it shut or ajar, or a curtain, or open."""
     width, depth, high = w.width(0.85, 1.30), w.depth(0.85, 1.10), w.length(2.05, 2.25)
-    tile, metal, thick = w.look(w.choice(("masonry", "stone", "ceramic"))), shared.fittings(w), w.length(0.06, 0.11)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    tile, metal, thick = w.look(w.choice(("masonry", "stone", "ceramic"))), parts.fitting_look(w), w.length(0.06, 0.11)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[0] + 0.04), y, (0.0, high), tile)
     low_side = w.length(1.0, 1.5) if w.chance(0.3) else high
     for side, top in ((-1, high), (1, low_side)):
@@ -99,8 +98,8 @@ def tiled_niche(w: Workbench) -> None:
 def crittall(w: Workbench) -> None:
     """Walk-in behind one or two screens of small panes in dark bars, tray or flat floor, tiled back panel."""
     width, depth, high = w.width(0.90, 1.50), w.depth(0.80, 1.00), w.length(1.90, 2.10)
-    iron, metal = w.look(w.choice(("dark", "iron", "brass", "ceramic"))), shared.fittings(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    iron, metal = w.look(w.choice(("dark", "iron", "brass", "ceramic"))), parts.fitting_look(w)
+    x, y = parts.footprint(depth, width)
     tray = w.choice((0.02, 0.05, 0.12))
     w.box(x, y, (0.0, tray), w.look(w.choice(("stone", "ceramic", "masonry"))))
     if w.chance(0.7):
@@ -131,7 +130,7 @@ def crittall(w: Workbench) -> None:
 def care_shower(w: Workbench) -> None:
     """Level shower for the old: half-height doors or a curtain, a folding or free seat, grab bars on a white back."""
     width, depth, metal = w.width(0.85, 1.20), w.depth(0.85, 1.10), w.look(w.choice(("chrome", "plastic", "steel")))
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     white = w.look(w.choice(("ceramic", "ceramic", "stone")))
     w.box(x, y, (0.0, 0.025), white)
     w.box((x[0], x[0] + 0.02), y, (0.025, 2.05), white)
@@ -153,7 +152,7 @@ def care_shower(w: Workbench) -> None:
     seat = w.choice(("folding", "stool", "none"))
     if seat == "folding":
         w.box((x[0] + 0.02, x[0] + 0.40), (-0.20, 0.20), (0.46, 0.49), w.look("plastic"))
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((x[0] + 0.02, side * 0.15, 0.20), (x[0] + 0.36, side * 0.15, 0.46), 0.012, metal)
     elif seat == "stool":
         w.box((x[0] + 0.12, x[0] + 0.46), (-0.22, 0.18), (0.44, 0.48), w.look("plastic"))
@@ -172,7 +171,7 @@ def timber_shower(w: Workbench) -> None:
     """Slatted wooden deck and a boarded back with open pipes, screens of boards or slats beside it, sauna-like."""
     width, depth, high = w.width(0.85, 1.20), w.depth(0.80, 1.00), w.length(2.02, 2.15)
     wood, metal = w.look("wood"), w.look(w.choice(("brass", "chrome", "iron")))
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     for c in (x[0] + 0.06, x[1] - 0.06):
         w.box((c - 0.03, c + 0.03), y, (0.0, 0.05), w.look("dark"))
     count = round(width / 0.11)
@@ -198,10 +197,10 @@ def timber_shower(w: Workbench) -> None:
 
 def hoop_curtain(w: Workbench) -> None:
     """Curtain on a round or oval hoop held by a standing pipe above a round or square tray with a raised rim."""
-    half, high, metal = 0.5 * w.width(0.75, 1.00), w.length(1.95, 2.15), shared.fittings(w)
+    half, high, metal = 0.5 * w.width(0.75, 1.00), w.length(1.95, 2.15), parts.fitting_look(w)
     power, rim = w.choice((2.0, 6.0)), w.length(0.06, 0.30)
-    tray = [Ring(0.0, half, half, power=power), *shared.hollow_top(rim, half, half, min(0.8 * rim, 0.2), 0.04, power)]
-    w.mesh(loft(tray, 18), (0.0, 0.0, 0.0), shared.sanitary(w))
+    tray = [Ring(0.0, half, half, power=power), *parts.hollow_rings(rim, half, half, min(0.8 * rim, 0.2), 0.04, power)]
+    w.mesh(loft(tray, 18), (0.0, 0.0, 0.0), parts.sanitary_look(w))
     x, r = -half + 0.03, half - 0.06
     w.rod((x, 0.0, rim - 0.01), (x, 0.0, high), 0.014, metal)
     w.mesh(hoop(r, 0.016, 0.02, 20), (0.0, 0.0, high - 0.05), metal, solid=False)
@@ -238,12 +237,12 @@ def _oblong(w: Workbench, x: float, y: float, high: float, rim: float, power: fl
 def platform_tub(w: Workbench) -> None:
     """Tub sunk in a broad tiled or wooden deck with one or two steps before it and shelves round its rim."""
     width, depth, high = w.width(1.70, 2.10), w.length(0.90, 1.20), w.length(0.45, 0.60)
-    deck, white, metal = w.look(w.choice(("stone", "masonry", "wood"))), w.look("ceramic"), shared.fittings(w)
+    deck, white, metal = w.look(w.choice(("stone", "masonry", "wood"))), w.look("ceramic"), parts.fitting_look(w)
     x, y, power = 0.5 * depth, 0.5 * width, w.choice((2.3, 4.0, 8.0))
     bx, by = x - w.length(0.10, 0.16), y - w.length(0.14, 0.24)
     w.box((-x, -bx), (-y, y), (0.0, high), deck)
     w.box((bx, x), (-y, y), (0.0, high), deck)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         a, b = sorted((side * by, side * y))
         w.box((-bx, bx), (a, b), (0.0, high), deck)
     _oblong(w, bx, by, high + 0.012, 0.05, power, white)
@@ -252,9 +251,9 @@ def platform_tub(w: Workbench) -> None:
     for i in range(steps):
         rise = high * (i + 1) / (steps + 1)
         w.box((x, x + 0.27 * (steps - i)), (-0.5 * wide, 0.5 * wide), (0.0, rise), deck)
-    shared.faucet(w, (-x + 0.05, w.choice((0.0, 0.35)) * width, high), 0.18, w.length(0.10, 0.22), metal)
+    parts.any_tap(w, (-x + 0.05, w.choice((0.0, 0.35)) * width, high), 0.18, w.length(0.10, 0.22), metal)
     if w.chance(0.4):
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.cylinder((x - 0.06, side * (y - 0.06)), (high, 1.1), 0.02, metal)
         w.rod((x - 0.06, -y + 0.06, 1.1), (x - 0.06, y - 0.06, 1.1), 0.015, metal, solid=False)
 
@@ -262,7 +261,7 @@ def platform_tub(w: Workbench) -> None:
 def curtain_tub(w: Workbench) -> None:
     """Apron tub with a tiled wall behind and at the tap end, a shower pipe and a curtain on a rod along it."""
     width, depth, high = w.width(1.40, 1.75), w.depth(0.70, 0.82), w.length(0.38, 0.56)
-    tile, white, metal = w.look(w.choice(("ceramic", "stone", "masonry"))), w.look("ceramic"), shared.fittings(w)
+    tile, white, metal = w.look(w.choice(("ceramic", "stone", "masonry"))), w.look("ceramic"), parts.fitting_look(w)
     x, y, top = 0.5 * depth, 0.5 * width, w.length(1.85, 2.05)
     _oblong(w, x, y, high, 0.06, w.choice((3.0, 5.0)), white)
     back = top + 0.12 if w.chance(0.6) else w.length(0.9, 1.3)
@@ -291,7 +290,7 @@ def ofuro(w: Workbench) -> None:
     look = w.look(w.choice(("wood", "wood", "stone")))
     x, y, thick = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), w.length(0.03, 0.06)
     parts.basin(w, x, y, high, high - 0.04, thick, look)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.box((x[0] + 0.02, x[1] - 0.02), (side * 0.3 * width - 0.04, side * 0.3 * width + 0.04), (0.0, 0.045), look)
         a, b = sorted((side * (y[1] + 0.03), side * (y[1] - thick - 0.01)))
         w.box((x[0] - 0.03, x[1] + 0.03), (a, b), (high, high + 0.025), look)
@@ -319,9 +318,9 @@ def ofuro(w: Workbench) -> None:
         )
     if w.chance(0.6):
         w.box((x[1] + 0.03, x[1] + 0.31), (-0.24, 0.24), (0.24, 0.28), look)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.box((x[1] + 0.02, x[1] + 0.29), (side * 0.2 - 0.02, side * 0.2 + 0.02), (0.0, 0.24), look)
-    metal, spout = shared.fittings(w), y[1] - 0.2
+    metal, spout = parts.fitting_look(w), y[1] - 0.2
     w.cylinder((x[0] + 0.012, spout), (high + 0.02, high + 0.16), 0.02, metal, solid=False)
     w.rod((x[0] + 0.012, spout, high + 0.14), (x[0] + 0.19, spout, high + 0.13), 0.016, metal, solid=False)
 
@@ -331,7 +330,7 @@ def walk_in_tub(w: Workbench) -> None:
     width, depth, high = w.width(1.20, 1.55), w.depth(0.68, 0.82), w.length(0.85, 1.02)
     white, metal = w.look("ceramic"), w.look("chrome")
     x, y, thick = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), 0.06
-    way = w.choice(BOTH)
+    way = w.choice(BOTH_SIDES)
     parts.basin(w, x, y, high, high, thick, white)
     a, b = sorted((-way * (y[1] - thick), -way * (y[1] - 0.48)))
     w.box((x[0] + thick, x[1] - thick), (a, b), (thick, 0.45), white)
@@ -341,9 +340,9 @@ def walk_in_tub(w: Workbench) -> None:
     w.box((x[1], x[1] + 0.022), (a + 0.012, b - 0.012), (0.132, high - 0.042), door)
     w.box((x[1] + 0.02, x[1] + 0.045), (way * 0.09 - 0.015, way * 0.09 + 0.015), (0.5, 0.68), metal, solid=False)
     w.rod((x[0] + 0.03, -0.2, high + 0.10), (x[0] + 0.03, 0.2, high + 0.10), 0.014, metal)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.rod((x[0] + 0.03, side * 0.19, high), (x[0] + 0.03, side * 0.19, high + 0.10), 0.012, metal)
-    shared.faucet(w, (x[0] + 0.03, way * (y[1] - 0.22), high), 0.14, 0.12, metal)
+    parts.any_tap(w, (x[0] + 0.03, way * (y[1] - 0.22), high), 0.14, 0.12, metal)
     if w.chance(0.5):
         at = (x[0] + 0.025, way * (y[1] - 0.05))
         w.cylinder(at, (high, high + 0.75), 0.010, metal)

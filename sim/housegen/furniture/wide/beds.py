@@ -10,9 +10,8 @@ import numpy as np
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import chamfered_box, frustum, named_mesh, pillow
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -86,7 +85,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
         w.mesh(chamfered_box(size, 0.03), (x1 - 0.5 * cover + 0.01, 0.0, top - 0.5 * size[2] + 0.018), duvet)
         w.box(
             (x1 - cover - 0.01, x1 - cover + w.length(0.15, 0.35)),
-            shared.about(0.0, width + 0.03),
+            parts.centred(0.0, width + 0.03),
             (top - 0.5 * thick, top + 0.025),
             w.new_look("linen"),
         )
@@ -98,7 +97,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
         cover = w.length(0.35, 0.6)
         size = (cover, width * w.length(0.6, 0.98), w.length(0.12, 0.2))
         w.mesh(chamfered_box(size, 0.05), (x1 - 0.5 * cover - 0.06, 0.0, top + 0.5 * size[2] - 0.01), duvet)
-        w.box((x0 + 0.05, x1 - 0.02), shared.about(0.0, width + 0.006), (top - 0.06, top + 0.004), w.new_look("linen"))
+        w.box((x0 + 0.05, x1 - 0.02), parts.centred(0.0, width + 0.006), (top - 0.06, top + 0.004), w.new_look("linen"))
     else:
         cover = length - w.length(0.0, 0.5)
         flare = hang * 0.15
@@ -107,7 +106,9 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
         if w.chance(0.5):
             strip = w.length(0.4, 0.6)
             z = (top - 0.3 * hang, top + 0.04)
-            w.box(shared.about(x1 - 0.35, strip), shared.about(0.0, width + 0.05), z, w.new_look("fabric"), solid=False)
+            w.box(
+                parts.centred(x1 - 0.35, strip), parts.centred(0.0, width + 0.05), z, w.new_look("fabric"), solid=False
+            )
     _pillows(w, x0, width, top + (0.03 if kind == "spread" and cover > length - 0.2 else 0.0))
     w.top((x1 - 0.9, x1 - 0.2), (-0.5 * width + 0.15, 0.5 * width - 0.15), top + 0.05, "seat")
 
@@ -116,25 +117,25 @@ def bunk(w: Workbench) -> None:
     """Two beds, one above the other, between four posts: guard rails and a ladder; of wood or steel tube."""
     length, width = _mattress_size(w, 1.20)
     tube = w.chance(0.35)
-    look = w.look("iron") if tube else parts.body(w)
+    look = w.look("iron") if tube else parts.wood_look(w)
     post = 0.04 if tube else w.length(0.06, 0.09)
     high, low, thick = w.length(1.55, 1.75), w.length(0.30, 0.45), w.length(0.12, 0.18)
     half, x = 0.5 * width + 0.5 * post, (-0.5 * post, length + 0.5 * post)
     upper = high - w.length(0.28, 0.36)
     for px in x:
-        for side in BOTH:
-            w.box(shared.about(px, post), shared.about(side * half, post), (0.0, high), look)
+        for side in BOTH_SIDES:
+            w.box(parts.centred(px, post), parts.centred(side * half, post), (0.0, high), look)
         for z in (low, upper, high - 0.05) if tube else (low + 0.12, upper, high - 0.08):
-            w.box(shared.about(px, 0.025), (-half, half), (z - 0.06, z + (0.03 if tube else 0.07)), look)
+            w.box(parts.centred(px, 0.025), (-half, half), (z - 0.06, z + (0.03 if tube else 0.07)), look)
     for z in (low, upper):
-        for side in BOTH:
-            w.box(x, shared.about(side * half, 0.025), (z - 0.12 if not tube else z - 0.05, z), look)
+        for side in BOTH_SIDES:
+            w.box(x, parts.centred(side * half, 0.025), (z - 0.12 if not tube else z - 0.05, z), look)
         w.box(x, (-half, half), (z - thick - 0.0, z - thick + 0.03), look)
-    side = w.choice(BOTH)
+    side = w.choice(BOTH_SIDES)
     gap = w.length(0.4, 0.5)
-    w.box(x, shared.about(-side * half, 0.02), (high - 0.11, high - 0.03), look)
-    w.box((x[0], x[1] - gap), shared.about(side * half, 0.02), (high - 0.11, high - 0.03), look)
-    w.box(shared.about(x[1] - gap, 0.04), shared.about(side * half, 0.02), (upper - 0.05, high - 0.03), look)
+    w.box(x, parts.centred(-side * half, 0.02), (high - 0.11, high - 0.03), look)
+    w.box((x[0], x[1] - gap), parts.centred(side * half, 0.02), (high - 0.11, high - 0.03), look)
+    w.box(parts.centred(x[1] - gap, 0.04), parts.centred(side * half, 0.02), (upper - 0.05, high - 0.03), look)
     foot = side * (half + w.choice((0.03, 0.25)))
     for rx in (x[1] - gap + 0.03, x[1] - 0.06):
         w.bar((rx, foot, 0.0), (rx, side * (half + 0.02), upper), 0.04, 0.03, look)
@@ -161,10 +162,10 @@ def hospital(w: Workbench) -> None:
     half, base = 0.5 * width + 0.02, top - thick
     w.box((-0.02, length + 0.02), (-half, half), (base - 0.05, base), frame)
     for x in (0.25, length - 0.25):
-        w.box(shared.about(x, 0.08), (-0.6 * half, 0.6 * half), (0.14, base - 0.04), frame)
+        w.box(parts.centred(x, 0.08), (-0.6 * half, 0.6 * half), (0.14, base - 0.04), frame)
     w.box((0.1, length - 0.1), (-0.65 * half, 0.65 * half), (0.12, 0.17), frame)
     for x in (0.15, length - 0.15):
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((x, side * 0.6 * half - 0.015, 0.06), (x, side * 0.6 * half + 0.015, 0.06), 0.06, w.look("rubber"))
     for x, high in ((-0.04, base + w.length(0.38, 0.5)), (length + 0.04, base + w.length(0.25, 0.4))):
         w.mesh(chamfered_box((0.035, 2 * half, high - base + 0.1), 0.017), (x, 0.0, 0.5 * (high + base - 0.1)), board)
@@ -200,7 +201,7 @@ def hospital(w: Workbench) -> None:
     )
     if w.chance(0.75):
         spans = ((0.25, 0.95), (1.1, 1.75)) if w.chance(0.5) else ((0.3, 1.7),)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half + 0.02)
             for a, b in spans:
                 for z in (top + 0.10, top + 0.22):
@@ -221,9 +222,9 @@ def pallet(w: Workbench) -> None:
         z = layer * 0.145
         w.box(x, (-half, half), (z + 0.12, z + 0.143), wood)
         for side in (-1, 0, 1):
-            w.box(x, shared.about(side * (half - 0.05), 0.10), (z, z + 0.022), wood)
+            w.box(x, parts.centred(side * (half - 0.05), 0.10), (z, z + 0.022), wood)
             for cx in (x[0] + 0.07, 0.5 * (x[0] + x[1]), x[1] - 0.07):
-                w.box(shared.about(cx, 0.14), shared.about(side * (half - 0.05), 0.10), (z + 0.022, z + 0.12), wood)
+                w.box(parts.centred(cx, 0.14), parts.centred(side * (half - 0.05), 0.10), (z + 0.022, z + 0.12), wood)
         w.box((x[0] + 0.2, x[1] - 0.2), (-half + 0.2, half - 0.2), (z, z + 0.12), dark)
     base = layers * 0.145 - 0.003
     if w.chance(0.5):
@@ -231,8 +232,8 @@ def pallet(w: Workbench) -> None:
         for i in range(4):
             z = base + 0.05 + i * (tall - base) / 4
             w.box((-0.055, -0.03), (-half, half), (z, z + w.length(0.06, 0.1)), wood)
-        for side in BOTH:
-            w.box((-0.09, -0.05), shared.about(side * 0.7 * half, 0.09), (0.0, tall), wood)
+        for side in BOTH_SIDES:
+            w.box((-0.09, -0.05), parts.centred(side * 0.7 * half, 0.09), (0.0, tall), wood)
     _bedding(w, 0.0, length, width, base + thick, thick, thick)
 
 
@@ -266,7 +267,7 @@ def box_spring(w: Workbench) -> None:
         size = (0.11, 2 * (half + over * (kind == "plain")), head)
         w.mesh(chamfered_box(size, 0.02), (-0.055, 0.0, 0.5 * head), cloth)
     if kind == "winged":
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.mesh(frustum((0.34, 0.06), (0.24, 0.06), head, (-0.05, 0.0)), (0.06, side * (half + 0.03), 0.0), cloth)
     w.mesh(chamfered_box((length, width, thick), 0.03), (0.5 * length, 0.0, base + 0.5 * thick), w.new_look("linen"))
     topper = w.length(0.06, 0.10)
@@ -280,8 +281,8 @@ def arched(w: Workbench) -> None:
     thick, low = w.length(0.16, 0.24), w.length(0.20, 0.34)
     half, base = 0.5 * width + w.choice((0.02, 0.06)), low + 0.03
     w.box((0.0, length + 0.03), (-half, half), (low - 0.02, base), look)
-    for side in BOTH:
-        w.box((0.0, length + 0.03), shared.about(side * half, 0.03), (low - 0.07, base + w.choice((0.0, 0.05))), look)
+    for side in BOTH_SIDES:
+        w.box((0.0, length + 0.03), parts.centred(side * half, 0.03), (low - 0.07, base + w.choice((0.0, 0.05))), look)
     w.legs(
         (0.12, length - 0.08),
         (-half + 0.09, half - 0.09),
@@ -295,8 +296,8 @@ def arched(w: Workbench) -> None:
     kind = w.choice(("solid", "cane", "fan"))
     angles = [math.pi * i / 12 for i in range(13)]
     edge = [(half * math.cos(a), spring + rise * math.sin(a)) for a in angles]
-    for side in BOTH:
-        w.box(shared.about(-0.02, 0.04), shared.about(side * (half - 0.02), 0.04), (0.0, spring + 0.02), look)
+    for side in BOTH_SIDES:
+        w.box(parts.centred(-0.02, 0.04), parts.centred(side * (half - 0.02), 0.04), (0.0, spring + 0.02), look)
     if kind != "fan":
         panel = [(px, y, z) for px in (-0.04, 0.0) for y, z in ((half, base - 0.05), (-half, base - 0.05), *edge)]
         w.mesh(named_mesh("arch", panel), (0.0, 0.0, 0.0), w.look("wicker") if kind == "cane" else look)

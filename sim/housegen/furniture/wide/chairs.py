@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, arc_wall, frustum, loft, pillow, strip
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 DINING_KG = 5.0
@@ -19,13 +19,13 @@ def wishbone(w: Workbench) -> None:
     w.mass_kg = DINING_KG
     seat, half, rail = w.length(0.43, 0.46), 0.5 * w.length(0.48, 0.58), w.length(0.68, 0.80)
     back, front, r = -0.5 * w.length(0.40, 0.46), 0.21, 0.0165
-    wood = shared.timber(w)
+    wood = parts.wood_look(w, 0.3)
     middle = back + half
     reach = w.length(0.30, 0.46) * math.pi
     angles = [reach + (math.tau - 2 * reach) * i / 12 for i in range(13)]
     w.mesh(arc_wall(half, 0.03, rail - 0.03, angles, [rail] * 13), (middle, 0.0, 0.0), wood)
     arc = half - 0.015
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.03)
         w.rod((front, y, 0.0), (front - 0.01, y, seat), r, wood)
         knee = (back + 0.04, side * (half - 0.08), seat)
@@ -38,12 +38,12 @@ def wishbone(w: Workbench) -> None:
     if w.chance(0.6):
         fork = (0.5 * (low[0] + x_rail), 0.0, seat + 0.35 * (rail - seat))
         w.bar(low, fork, 0.05, 0.012, wood)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.bar(fork, (x_rail, side * 0.09, rail - 0.01), 0.025, 0.012, wood)
     else:
         for y in (-0.08, 0.0, 0.08)[:: w.choice((1, 2))]:
             w.bar((low[0], y, low[2]), (x_rail, y, rail - 0.01), 0.03, 0.012, wood)
-    cover = w.look("wicker") if w.chance(0.6) else shared.upholstery(w, 0.6)
+    cover = w.look("wicker") if w.chance(0.6) else parts.upholstery_look(w, 0.6)
     wide = (2 * half - 0.14, 2 * half - 0.05)
     w.mesh(
         frustum((front - back, wide[1]), (front - back - 0.02, wide[0]), 0.045), (0.5 * (front + back), 0, seat - 0.03),
@@ -57,11 +57,11 @@ def monobloc(w: Workbench) -> None:
     plastic, seat, half = w.look("plastic"), w.length(0.40, 0.45), 0.5 * w.length(0.42, 0.50)
     height, back, front = w.length(0.76, 0.90), -0.21, 0.22
     top_x = back - w.length(0.06, 0.14)
-    shared.pad(w, (front - back, 2 * half, 0.03), (0.0, 0.0, seat - 0.015), plastic, 0.012)
+    parts.pad(w, (front - back, 2 * half, 0.03), (0.0, 0.0, seat - 0.015), plastic, 0.012)
     w.box((front - 0.015, front + 0.005), (-half + 0.02, half - 0.02), (seat - 0.07, seat - 0.01), plastic)
     splay = w.length(0.02, 0.06)
-    for sx in BOTH:
-        for sy in BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             x = (front if sx > 0 else back) - sx * 0.035
             y = sy * (half - 0.025)
             foot, top = (x + sx * splay, y + sy * splay), (x, y)
@@ -74,15 +74,15 @@ def monobloc(w: Workbench) -> None:
             w.bar((back + 0.01, y, seat - 0.01), (top_x + 0.01, y, height - 0.04), 0.6 * half / slats, 0.01, plastic)
     else:
         w.bar((back + 0.01, 0.0, seat - 0.01), (top_x + 0.01, 0.0, height - 0.06), 2 * half - 0.12, 0.01, plastic)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.bar(
             (back + 0.01, side * (half - 0.03), seat - 0.02), (top_x + 0.01, side * (half - 0.04), height - 0.06), 0.05,
             0.025, plastic,
         )  # fmt: skip
-    shared.curved_board(w, top_x - 0.02, half - 0.02, (height - 0.10, height), plastic, 0.02, 0.04)
+    parts.curved_board(w, top_x - 0.02, half - 0.02, (height - 0.10, height), plastic, 0.02, 0.04)
     if w.chance(0.65):
         arm = seat + w.length(0.17, 0.23)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half + 0.015)
             share = (arm - seat) / (height - seat)
             w.bar((front - 0.05, y, arm), (back + share * (top_x - back), y, arm), 0.055, 0.02, plastic)
@@ -94,11 +94,11 @@ def folding_chair(w: Workbench) -> None:
     w.mass_kg = 4.0
     seat, half, height = w.length(0.43, 0.46), 0.5 * w.length(0.40, 0.46), w.length(0.76, 0.86)
     wooden = w.chance(0.4)
-    frame = w.look("wood") if wooden else shared.tubes(w)
+    frame = w.look("wood") if wooden else parts.tube_look(w)
     panel = frame if wooden or w.chance(0.4) else w.look(w.choice(("plastic", "dark", "leather", "wood")))
     front, rear, top_x = w.length(0.20, 0.26), -w.length(0.22, 0.28), -w.length(0.20, 0.26)
     r = 0.013
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y, inner = side * (half - r), side * (half - 3.2 * r)
         if wooden:
             w.bar((front, y, 0.0), (top_x, y, height), 0.022, 0.035, frame)
@@ -114,12 +114,12 @@ def folding_chair(w: Workbench) -> None:
         for i in range(6):
             x = -0.19 + i * 0.075
             w.box((x - 0.028, x + 0.028), (-half + 0.02, half - 0.02), (seat - 0.012, seat + 0.008), frame)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half - 0.055)
             w.box((-0.20, 0.20), (y - 0.012, y + 0.012), (seat - 0.04, seat - 0.01), frame)
     else:
         thick = w.choice((0.02, 0.045))
-        shared.pad(w, (0.40, 2 * half - 0.02, thick), (0.01, 0.0, seat - 0.5 * thick + 0.01), panel, 0.01)
+        parts.pad(w, (0.40, 2 * half - 0.02, thick), (0.01, 0.0, seat - 0.5 * thick + 0.01), panel, 0.01)
     boards = w.whole(1, 3) if wooden else 1
     tall = w.length(0.14, 0.24) if boards == 1 else 0.055
     for i in range(boards):
@@ -132,7 +132,7 @@ def folding_chair(w: Workbench) -> None:
 def medallion(w: Workbench) -> None:
     """Classical chair: a framed oval or round upholstered back on two posts, padded seat, tapering legs."""
     w.mass_kg = 7.0
-    seat, half, wood = w.length(0.45, 0.49), 0.5 * w.length(0.46, 0.54), shared.timber(w, 0.55)
+    seat, half, wood = w.length(0.45, 0.49), 0.5 * w.length(0.46, 0.54), parts.wood_look(w, 0.55)
     cloth = w.look("fabric") if w.chance(0.6) else w.look("linen")
     ry, rz = w.length(0.19, 0.24), w.length(0.20, 0.28)
     back, front = -0.23, 0.23
@@ -151,17 +151,19 @@ def medallion(w: Workbench) -> None:
         Ring(0.075, 0.17, 0.7 * half, power=4),
     ]
     w.mesh(loft(rings, 16, hull=True), (0.0, 0.0, seat - 0.055), cloth)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.bar((back + 0.01, side * 0.10, seat - 0.08), (x + 0.01, side * 0.8 * ry, z - 0.45 * rz), 0.03, 0.03, wood)
         y = side * (half - 0.035)
         w.mesh(frustum((0.022, 0.022), (0.05, 0.05), seat - 0.08), (front - 0.035, y, 0.0), wood)
         w.mesh(frustum((0.025, 0.025), (0.05, 0.05), seat - 0.08, (0.05, 0.0)), (back - 0.015, y, 0.0), wood)
     if w.chance(0.35):
         arm = seat + 0.2
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half - 0.01)
             end = (x + 0.02, side * 0.9 * ry, arm + 0.06)
-            shared.path(w, [(front - 0.10, y, seat - 0.06), (front - 0.13, y, arm), (0.0, y, arm), end], 0.016, wood)
+            parts.tube_along(
+                w, [(front - 0.10, y, seat - 0.06), (front - 0.13, y, arm), (0.0, y, arm), end], 0.016, wood
+            )
 
 
 def pedestal(w: Workbench) -> None:
@@ -179,70 +181,72 @@ def pedestal(w: Workbench) -> None:
     rise = height - seat + 0.02
     tops = [max(0.05, rise * math.cos(0.5 * math.pi * abs(2 * i / (n - 1) - 1)) ** 0.7) for i in range(n)]
     w.mesh(arc_wall(0.235, 0.02, 0.0, angles, tops), (0.0, 0.0, seat - 0.02), body, tilt=-0.12)
-    shared.pad(w, (0.34, 1.5 * half, 0.04), (0.02, 0.0, seat + 0.02), shared.upholstery(w, 0.2), 0.018)
+    parts.pad(w, (0.34, 1.5 * half, 0.04), (0.02, 0.0, seat + 0.02), parts.upholstery_look(w, 0.2), 0.018)
 
 
 def wire_chair(w: Workbench) -> None:
     """A shell of crossed wires on bent-wire runners or legs, maybe a thin pad."""
     w.mass_kg = 5.0
     seat, half, height = w.length(0.42, 0.45), 0.5 * w.length(0.46, 0.54), w.length(0.74, 0.86)
-    wire, r = shared.tubes(w), 0.005
+    wire, r = parts.tube_look(w), 0.005
     front, back = (0.24, seat + 0.01), (-0.19, seat - 0.03)
     top = (back[0] - w.length(0.08, 0.16), height)
     count, cross = w.whole(6, 8), w.whole(4, 5)
     for i in range(count):
         y = (2 * i / (count - 1) - 1) * (half - r)
         edge = 0.02 if i in (0, count - 1) else 0.0
-        shared.path(w, [(front[0], y, front[1]), (back[0], y, back[1] + edge), (top[0], y, top[1] - 2 * edge)], r, wire)
+        parts.tube_along(
+            w, [(front[0], y, front[1]), (back[0], y, back[1] + edge), (top[0], y, top[1] - 2 * edge)], r, wire
+        )
     for a, b in ((front, back), (back, top)):
         for i in range(cross):
             share = (i + (1 if b == top else 0)) / cross
             x, z = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])
             w.rod((x, -half + r, z), (x, half - r, z), r, wire)
     sled, s = w.chance(0.6), 0.007
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y, high = side * (half - 0.07), seat - 0.02
         if sled:
-            shared.path(w, [(0.10, y, high), (0.22, y, s), (-0.22, y, s), (-0.12, y, high)], s, wire)
+            parts.tube_along(w, [(0.10, y, high), (0.22, y, s), (-0.22, y, s), (-0.12, y, high)], s, wire)
         else:
-            shared.path(w, [(0.22, y, s), (0.05, y, high), (-0.22, y, s)], s, wire)
+            parts.tube_along(w, [(0.22, y, s), (0.05, y, high), (-0.22, y, s)], s, wire)
     for x in (0.10, -0.12) if sled else (0.05,):
         w.rod((x, -half + 0.07, seat - 0.02), (x, half - 0.07, seat - 0.02), s, wire)
     if w.chance(0.5):
-        shared.pad(w, (0.38, 2 * half - 0.06, 0.03), (0.03, 0.0, seat + 0.012), shared.upholstery(w, 0.5), 0.012)
+        parts.pad(w, (0.38, 2 * half - 0.06, 0.03), (0.03, 0.0, seat + 0.012), parts.upholstery_look(w, 0.5), 0.012)
 
 
 def school_chair(w: Workbench) -> None:
     """Stacking chair: bent tubes carry a board for the seat and a curved board for the back."""
     w.mass_kg = DINING_KG
     seat, half, height = w.length(0.42, 0.47), 0.5 * w.length(0.38, 0.46), w.length(0.74, 0.86)
-    tube, r = shared.tubes(w), w.choice((0.009, 0.012))
+    tube, r = parts.tube_look(w), w.choice((0.009, 0.012))
     board = w.look(w.choice(("wood", "plastic", "wood", "leather")))
     padded = board == w.look("leather")
     back, front, top_x = -0.19, 0.19, -w.length(0.23, 0.29)
     kind = w.choice(("legs", "sled", "back_legs"))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.03)
         upper = [(front - 0.04, y, seat - 0.02), (back + 0.02, y, seat - 0.03), (top_x + 0.02, y, height - 0.04)]
         if kind == "sled":
-            shared.path(
+            parts.tube_along(
                 w, [(0.02, y, seat - 0.03), (0.23, y, r), (-0.25, y, r), (back + 0.02, y, seat - 0.03)], r, tube
             )
-            shared.path(w, upper, r, tube)
+            parts.tube_along(w, upper, r, tube)
         elif kind == "legs":
-            shared.path(w, [(front + 0.02, y, r), *upper], r, tube)
+            parts.tube_along(w, [(front + 0.02, y, r), *upper], r, tube)
             w.rod((-0.02, y, seat - 0.03), (back - 0.06, y, r), r, tube, round_ends=True)
         else:
-            shared.path(w, [(front, y, r), (front - 0.02, y, seat - 0.02), (back, y, seat - 0.02)], r, tube)
-            shared.path(w, [(back - 0.06, y, r), (back - 0.01, y, seat), upper[-1]], r, tube)
+            parts.tube_along(w, [(front, y, r), (front - 0.02, y, seat - 0.02), (back, y, seat - 0.02)], r, tube)
+            parts.tube_along(w, [(back - 0.06, y, r), (back - 0.01, y, seat), upper[-1]], r, tube)
     w.rod((back + 0.01, -half + 0.03, seat - 0.03), (back + 0.01, half - 0.03, seat - 0.03), r, tube)
     if padded:
-        shared.pad(w, (0.40, 2 * half, 0.06), (0.01, 0.0, seat + 0.015), board, 0.025)
+        parts.pad(w, (0.40, 2 * half, 0.06), (0.01, 0.0, seat + 0.015), board, 0.025)
     else:
         path = [(0.21, seat - 0.035), (0.18, seat - 0.005), (0.05, seat - 0.008), (-0.12, seat - 0.012), (-0.20, seat)]
         w.mesh(strip(path[::-1], 0.012, 2 * half), (0.0, 0.0, 0.0), board)
     tall = w.length(0.12, 0.26)
-    shared.curved_board(
+    parts.curved_board(
         w, top_x - 0.02, half, (height - tall, height), board, 0.035 if padded else 0.014, w.length(0.03, 0.06)
     )
 
@@ -251,9 +255,9 @@ def plank_chair(w: Workbench) -> None:
     """Boards only: two solid sides or a cross of planks under the seat, a plain or pierced back board."""
     w.mass_kg = 6.0
     seat, half, height = w.length(0.42, 0.46), 0.5 * w.length(0.38, 0.46), w.length(0.74, 0.98)
-    wood, t = shared.timber(w, 0.4), w.choice((0.018, 0.025, 0.032))
+    wood, t = parts.wood_look(w, 0.4), w.choice((0.018, 0.025, 0.032))
     w.box((-0.21, 0.22), (-half, half), (seat - t, seat), wood)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - w.choice((0.5 * t, 0.04)))
         w.box((-0.20, 0.20), (y - 0.5 * t, y + 0.5 * t), (0.0, seat - t), wood)
     w.box((-0.015, 0.015), (-half + 0.04, half - 0.04), (seat - 0.16, seat - t), wood)
@@ -262,13 +266,13 @@ def plank_chair(w: Workbench) -> None:
         w.bar((-0.20, 0.0, seat - t), (top_x, 0.0, height), w.length(0.7, 1.0) * 2 * half, t, wood)
     else:
         gap = 0.06
-        for side in BOTH:
+        for side in BOTH_SIDES:
             wide = half - gap
             y = side * (gap + 0.5 * wide)
             w.bar((-0.20, y, seat - t), (top_x, y, height), wide, t, wood)
         w.box((top_x - 0.01, top_x + 0.03), (-half + 0.01, half - 0.01), (height - 0.07, height), wood)
     if w.chance(0.4):
-        shared.pad(w, (0.38, 2 * half - 0.04, 0.045), (0.01, 0.0, seat + 0.02), shared.upholstery(w, 0.2), 0.02)
+        parts.pad(w, (0.38, 2 * half - 0.04, 0.045), (0.01, 0.0, seat + 0.02), parts.upholstery_look(w, 0.2), 0.02)
 
 
 def mesh_back(w: Workbench) -> None:
@@ -277,18 +281,18 @@ def mesh_back(w: Workbench) -> None:
     seat, half, height = w.length(0.44, 0.50), 0.5 * w.length(0.46, 0.52), w.length(0.92, 1.06)
     frame = w.look(w.choice(("dark", "dark", "plastic", "chrome")))
     net, cloth = w.look(w.choice(("dark", "fabric"))), w.look("fabric")
-    shared.star(w, w.length(0.29, 0.34), 5, frame, seat - 0.07)
-    shared.pad(w, (w.length(0.44, 0.50), 2 * half, 0.08), (0.03, 0.0, seat - 0.04), cloth, 0.03)
+    parts.star_base(w, w.length(0.29, 0.34), 5, frame, seat - 0.07)
+    parts.pad(w, (w.length(0.44, 0.50), 2 * half, 0.08), (0.03, 0.0, seat - 0.04), cloth, 0.03)
     w.box((-0.18, 0.12), (-0.10, 0.10), (seat - 0.12, seat - 0.075), frame)
     low, waist, top = (-0.22, seat + 0.06), (-0.205, seat + 0.22), (-0.22 - w.length(0.06, 0.12), height)
     narrow = half - w.length(0.02, 0.08)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         ends = [
             (low[0], side * narrow, low[1]),
             (waist[0], side * (half - 0.02), waist[1]),
             (top[0], side * narrow, top[1]),
         ]
-        shared.path(w, ends, 0.013, frame)
+        parts.tube_along(w, ends, 0.013, frame)
     for x, z in (low, top):
         w.rod((x, -narrow, z), (x, narrow, z), 0.013, frame)
     w.mesh(strip([low, waist, top], 0.006, 2 * narrow + 0.01), (0.0, 0.0, 0.0), net)
@@ -297,14 +301,14 @@ def mesh_back(w: Workbench) -> None:
     w.box((waist[0] - 0.03, waist[0]), (-narrow, narrow), (waist[1] - 0.02, waist[1] + 0.05), frame)
     if w.chance(0.5):
         w.bar((top[0] - 0.01, 0.0, height - 0.02), (top[0] - 0.01, 0.0, height + 0.10), 0.05, 0.015, frame)
-        shared.pad(w, (0.05, 0.28, 0.12), (top[0] + 0.005, 0.0, height + 0.12), w.choice((net, cloth)), 0.02)
+        parts.pad(w, (0.05, 0.28, 0.12), (top[0] + 0.005, 0.0, height + 0.12), w.choice((net, cloth)), 0.02)
     if w.chance(0.75):
         arm = seat + w.length(0.17, 0.24)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half + 0.03)
             w.bar((-0.03, side * 0.09, seat - 0.10), (-0.03, y, seat - 0.09), 0.04, 0.02, frame)
             w.bar((-0.03, y, seat - 0.10), (0.0, y, arm), 0.03, 0.05, frame)
-            shared.pad(w, (0.26, 0.08, 0.03), (0.02, y, arm), w.look("rubber"), 0.012)
+            parts.pad(w, (0.26, 0.08, 0.03), (0.02, y, arm), w.look("rubber"), 0.012)
 
 
 def gaming_chair(w: Workbench) -> None:
@@ -312,16 +316,16 @@ def gaming_chair(w: Workbench) -> None:
     w.mass_kg = 18.0
     seat, half, height = w.length(0.46, 0.52), 0.5 * w.length(0.50, 0.56), w.length(1.20, 1.32)
     hide, stripe, dark = w.look("leather"), w.look("bright"), w.look("dark")
-    shared.star(w, 0.34, 5, dark, seat - 0.08)
+    parts.star_base(w, 0.34, 5, dark, seat - 0.08)
     w.box((-0.20, 0.15), (-0.14, 0.14), (seat - 0.13, seat - 0.09), dark)
-    shared.pad(w, (0.50, 2 * half - 0.14, 0.10), (0.04, 0.0, seat - 0.05), hide, 0.02)
+    parts.pad(w, (0.50, 2 * half - 0.14, 0.10), (0.04, 0.0, seat - 0.05), hide, 0.02)
     high = height - seat
     lean = -w.length(0.10, 0.22)
 
     def behind(z: float) -> float:
         return -0.22 + (z - seat) * math.tan(lean)
 
-    shared.pad(
+    parts.pad(
         w,
         (0.10, 2 * half - 0.18, high + 0.1),
         (behind(seat + 0.5 * high - 0.05), 0.0, seat + 0.5 * high - 0.05),
@@ -329,12 +333,12 @@ def gaming_chair(w: Workbench) -> None:
         0.035,
         tilt=lean,
     )
-    for side in BOTH:
-        shared.pad(w, (0.50, 0.09, 0.14), (0.04, side * (half - 0.05), seat - 0.03), stripe, 0.03)
+    for side in BOTH_SIDES:
+        parts.pad(w, (0.50, 0.09, 0.14), (0.04, side * (half - 0.05), seat - 0.03), stripe, 0.03)
         z = seat + 0.28
-        shared.pad(w, (0.14, 0.09, 0.40), (behind(z) + 0.03, side * (half - 0.075), z), stripe, 0.03, tilt=lean)
+        parts.pad(w, (0.14, 0.09, 0.40), (behind(z) + 0.03, side * (half - 0.075), z), stripe, 0.03, tilt=lean)
         z = seat + 0.62 * high + 0.06
-        shared.pad(
+        parts.pad(
             w,
             (0.12, 0.11, 0.26),
             (behind(z) + 0.02, side * (half - 0.07), z),
@@ -345,7 +349,7 @@ def gaming_chair(w: Workbench) -> None:
         y = side * (half + 0.05)
         w.bar((-0.05, side * 0.13, seat - 0.11), (-0.05, y, seat - 0.10), 0.05, 0.025, dark)
         w.bar((-0.05, y, seat - 0.11), (-0.02, y, seat + 0.21), 0.04, 0.06, dark)
-        shared.pad(w, (0.28, 0.10, 0.035), (0.0, y, seat + 0.22), dark, 0.012)
+        parts.pad(w, (0.28, 0.10, 0.035), (0.0, y, seat + 0.22), dark, 0.012)
     if w.chance(0.8):
         w.mesh(pillow((0.20, 0.28, 0.11)), (behind(height - 0.14) + 0.08, 0.0, height - 0.14), dark, tilt=1.4)
     if w.chance(0.6):
@@ -356,9 +360,9 @@ def swivel_shell(w: Workbench) -> None:
     """Home-office chair: a round-backed moulded or padded shell on a low star, on castors or glides."""
     w.mass_kg = 9.0
     seat, half, height = w.length(0.43, 0.50), 0.5 * w.length(0.48, 0.58), w.length(0.72, 0.86)
-    shell = w.look("plastic") if w.chance(0.5) else shared.upholstery(w)
+    shell = w.look("plastic") if w.chance(0.5) else parts.upholstery_look(w)
     base = w.look(w.choice(("wood", "chrome", "lacquer", "dark")))
-    shared.star(w, w.length(0.24, 0.30), w.choice((4, 5)), base, seat - 0.06, castors=w.chance(0.6))
+    parts.star_base(w, w.length(0.24, 0.30), w.choice((4, 5)), base, seat - 0.06, castors=w.chance(0.6))
     bowl = [Ring(0.0, 0.13, 0.13), Ring(0.03, 0.22, half - 0.02, power=2.6), Ring(0.07, 0.235, half, power=2.6)]
     w.mesh(loft(bowl, 16, hull=True), (0.0, 0.0, seat - 0.07), shell)
     side_top, rise = w.length(0.04, 0.20), height - seat + 0.03
@@ -369,7 +373,7 @@ def swivel_shell(w: Workbench) -> None:
         arc_wall(half, w.choice((0.02, 0.05)), 0.0, angles, tops), (half - 0.235, 0.0, seat - 0.03), shell, tilt=-0.08
     )
     if w.chance(0.6):
-        shared.pad(w, (0.38, 1.6 * half, 0.045), (0.03, 0.0, seat + 0.015), shared.upholstery(w), 0.02)
+        parts.pad(w, (0.38, 1.6 * half, 0.045), (0.03, 0.0, seat + 0.015), parts.upholstery_look(w), 0.02)
 
 
 STYLES: tuple[Style, ...] = (

@@ -7,9 +7,8 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES, FeetKind, FrontKind, HandleKind
 from sim.housegen.furniture.shapes import chamfered_box, frustum
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH, Feet, Front, Grip
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -26,32 +25,32 @@ def _swell(depth: float, width: float, bulge: float, waves: bool) -> list[tuple[
 def curved_commode(w: Workbench) -> None:
     """Commode whose front bows or swings, on curved or bun feet, its top overhanging."""
     width, depth, height = w.width(0.75, 1.30), w.depth(0.44, 0.56), w.length(0.76, 0.95)
-    look, metal = parts.body(w), w.look(w.choice(("brass", "iron", "metal")))
+    look, metal = parts.wood_look(w), w.look(w.choice(("brass", "iron", "metal")))
     waves, bulge, rows = w.chance(0.4), w.length(0.06, 0.13), w.whole(2, 4)
-    kind: Feet = w.choice(("cabriole", "bun", "taper"))
+    kind: FeetKind = w.choice(("cabriole", "bun", "taper"))
     foot = w.length(0.07, 0.10) if kind == "bun" else w.length(0.12, 0.32)
-    x, y = shared.plan(depth, width)
-    w.mesh(shared.prism(_swell(depth, width - 0.03, bulge, waves), height - 0.03 - foot), (0.0, 0.0, foot), look)
+    x, y = parts.footprint(depth, width)
+    w.mesh(parts.prism(_swell(depth, width - 0.03, bulge, waves), height - 0.03 - foot), (0.0, 0.0, foot), look)
     w.mesh(
-        shared.prism(_swell(depth + 0.05, width, bulge, waves), 0.03),
+        parts.prism(_swell(depth + 0.05, width, bulge, waves), 0.03),
         (0.025, 0.0, height - 0.03),
         w.look("stone") if w.chance(0.35) else look,
     )
     front = parts.darker(look, 0.8) if look.texture is None and w.chance(0.3) else look
-    edges = shared.graded(foot + 0.02, height - 0.05, rows, w.choice((1.0, 1.2)))
-    shade = shared.prism(_swell(depth, width - 0.08, bulge, waves), round(edges[-1] - edges[0], 4))
+    edges = parts.graded_rows(foot + 0.02, height - 0.05, rows, w.choice((1.0, 1.2)))
+    shade = parts.prism(_swell(depth, width - 0.08, bulge, waves), round(edges[-1] - edges[0], 4))
     w.mesh(shade, (0.008, 0.0, edges[0]), parts.darker(look), solid=False)
-    grip: Grip = w.choice(("drop", "knob", "cup", "bar"))
+    grip: HandleKind = w.choice(("drop", "knob", "cup", "bar"))
     for low, high in itertools.pairwise(edges):
         outline = _swell(depth, width - 0.09, bulge * ((width - 0.09) / width) ** 2, waves)
-        w.mesh(shared.prism(outline, round(high - low - 0.012, 4)), (0.018, 0.0, low + 0.006), front, solid=False)
-        for side in BOTH:
+        w.mesh(parts.prism(outline, round(high - low - 0.012, 4)), (0.018, 0.0, low + 0.006), front, solid=False)
+        for side in BOTH_SIDES:
             share = 0.5 if waves else 0.55
             back = bulge if waves else bulge * share**2
             at = (x[1] + 0.016 - back, side * share * 0.5 * (width - 0.06), 0.5 * (low + high))
-            shared.handle(w, grip, at, 0.10, metal)
-    shared.feet(w, (x[0], x[1] - bulge), (y[0] + 0.01, y[1] - 0.01), foot + 0.002, kind, look, 0.055)
-    shared.tops(w, (x[0], x[1] - bulge), y, height)
+            parts.handle(w, grip, at, 0.10, metal)
+    parts.feet(w, (x[0], x[1] - bulge), (y[0] + 0.01, y[1] - 0.01), foot + 0.002, kind, look, 0.055)
+    parts.top_surface(w, (x[0], x[1] - bulge), y, height)
 
 
 def step_chest(w: Workbench) -> None:
@@ -59,10 +58,10 @@ def step_chest(w: Workbench) -> None:
     columns = w.whole(2, 4)
     width, depth = w.width(0.32 * columns, 0.46 * columns), w.depth(0.36, 0.46)
     first, rise = w.length(0.28, 0.5), w.length(0.2, 0.48 - 0.05 * columns)
-    look, metal, side = parts.body(w), w.look(w.choice(("iron", "brass", "dark"))), w.choice(BOTH)
-    grip: Grip = w.choice(("drop" if columns < 4 else "knob", "knob", "bar", "slot"))
-    front: Front = w.choice(("flat", "frame")) if columns == 2 else "flat"
-    x, _ = shared.plan(depth, width)
+    look, metal, side = parts.wood_look(w), w.look(w.choice(("iron", "brass", "dark"))), w.choice(BOTH_SIDES)
+    grip: HandleKind = w.choice(("drop" if columns < 4 else "knob", "knob", "bar", "slot"))
+    front: FrontKind = w.choice(("flat", "frame")) if columns == 2 else "flat"
+    x, _ = parts.footprint(depth, width)
     each = width / columns
     for i in range(columns):
         high = first + i * rise
@@ -75,37 +74,39 @@ def step_chest(w: Workbench) -> None:
         base = 0.03
         if high > 0.75 and w.chance(0.6):
             base = 0.03 + 0.55 * high
-            shared.doors(w, x[1], inner, (0.03, base), 1, look, metal, front, "knob" if grip == "drop" else grip)
+            parts.styled_doors(w, x[1], inner, (0.03, base), 1, look, metal, front, "knob" if grip == "drop" else grip)
         rows = max(1, round((high - base) / 0.26))
-        shared.drawers(w, x[1], inner, shared.graded(base, high - 0.035, rows, 1.0), look, metal, front, grip)
-        shared.tops(w, x, y, high)
+        parts.styled_drawers(w, x[1], inner, parts.graded_rows(base, high - 0.035, rows, 1.0), look, metal, front, grip)
+        parts.top_surface(w, x, y, high)
 
 
 def chest_on_chest(w: Workbench) -> None:
     """Tall chest in two stages: a narrower one stands on a wider one, moulding between, perhaps on curved legs."""
     width, depth = w.width(0.75, 1.05), w.depth(0.44, 0.54)
-    kind: Feet = w.choice(("cabriole", "bun", "block", "taper"))
+    kind: FeetKind = w.choice(("cabriole", "bun", "block", "taper"))
     foot = w.length(0.30, 0.48) if kind in ("cabriole", "taper") else w.length(0.08, 0.14)
-    look, metal = parts.body(w), w.look(w.choice(("brass", "iron")))
+    look, metal = parts.wood_look(w), w.look(w.choice(("brass", "iron")))
     waist = foot + (w.length(0.24, 0.38) if foot > 0.2 else w.length(0.50, 0.70))
     height = waist + w.length(0.50, 0.75)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     shrink = w.length(0.03, 0.07)
     upper = (y[0] + shrink, y[1] - shrink)
-    grip: Grip = w.choice(("drop", "knob", "cup"))
-    front: Front = "raised" if grip == "cup" and w.chance(0.5) else "flat"
+    grip: HandleKind = w.choice(("drop", "knob", "cup"))
+    front: FrontKind = "raised" if grip == "cup" and w.chance(0.5) else "flat"
     w.box(x, y, (foot, waist), look)
     w.box((x[0], x[1] + 0.015), (y[0] - 0.015, y[1] + 0.015), (waist, waist + 0.025), look)
     w.box((x[0], x[1] - shrink), upper, (waist + 0.025, height), look)
     w.box((x[0], x[1] + 0.03 - shrink), (upper[0] - 0.03, upper[1] + 0.03), (height, height + 0.03), look)
-    low = shared.graded(foot + 0.02, waist - 0.01, 1 if foot > 0.2 else w.whole(2, 3), 1.15)
-    shared.drawers(w, x[1], (y[0] + 0.02, y[1] - 0.02), low, look, metal, front, grip)
-    high = shared.graded(waist + 0.04, height - 0.15, w.whole(2, 3), 1.15)
+    low = parts.graded_rows(foot + 0.02, waist - 0.01, 1 if foot > 0.2 else w.whole(2, 3), 1.15)
+    parts.styled_drawers(w, x[1], (y[0] + 0.02, y[1] - 0.02), low, look, metal, front, grip)
+    high = parts.graded_rows(waist + 0.04, height - 0.15, w.whole(2, 3), 1.15)
     inner = (upper[0] + 0.02, upper[1] - 0.02)
-    shared.drawers(w, x[1] - shrink, inner, high, look, metal, front, grip)
-    shared.drawers(w, x[1] - shrink, inner, (height - 0.15, height - 0.02), look, metal, "flat", grip, w.whole(1, 3))
-    shared.feet(w, x, y, foot, kind, look, 0.06)
-    shared.tops(w, (x[0], x[1] - shrink), upper, height + 0.03)
+    parts.styled_drawers(w, x[1] - shrink, inner, high, look, metal, front, grip)
+    parts.styled_drawers(
+        w, x[1] - shrink, inner, (height - 0.15, height - 0.02), look, metal, "flat", grip, w.whole(1, 3)
+    )
+    parts.feet(w, x, y, foot, kind, look, 0.06)
+    parts.top_surface(w, (x[0], x[1] - shrink), upper, height + 0.03)
 
 
 def basket_chest(w: Workbench) -> None:
@@ -116,7 +117,7 @@ def basket_chest(w: Workbench) -> None:
     frame = w.look(w.choice(("wood", "lacquer", "iron", "bright")))
     stuff = w.look(w.choice(("wicker", "fabric", "linen", "steel")))
     height = foot + rows * pitch + 0.02
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height, height + 0.022), w.look("wood") if w.chance(0.6) else frame)
     for edge in (y[0], y[1] - 0.028):
         if columns > 1 and w.chance(0.35):
@@ -135,8 +136,8 @@ def basket_chest(w: Workbench) -> None:
             tall, wide = round(0.82 * pitch, 3), each - 0.02
             at = y[0] + 0.025 + (column + 0.5) * each
             w.mesh(frustum((taper * (depth - 0.03), taper * wide), (depth - 0.03, wide), tall), (0.015, at, z), stuff)
-            shared.handle(w, "cup", (0.5 * depth - 0.012, at, z + 0.75 * tall), 0.10, w.look("dark"))
-    shared.tops(w, x, y, height + 0.022)
+            parts.handle(w, "cup", (0.5 * depth - 0.012, at, z + 0.75 * tall), 0.10, w.look("dark"))
+    parts.top_surface(w, x, y, height + 0.022)
 
 
 def plastic_tower(w: Workbench) -> None:
@@ -147,7 +148,7 @@ def plastic_tower(w: Workbench) -> None:
     frame = w.look("plastic")
     box = w.new_look(w.choice(("plastic", "plastic", "appliance")))
     height = foot + rows * pitch + 0.03
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[0] + 0.015), (y[0] + 0.01, y[1] - 0.01), (foot, height), frame)
     for edge in (y[0] + 0.004, y[1] - 0.024):
         w.box((x[0], x[1] - 0.02), (edge, edge + 0.02), (foot, height - 0.01), frame)
@@ -168,77 +169,79 @@ def plastic_tower(w: Workbench) -> None:
             elif hand == "hole":
                 w.ellipsoid((face, at, z + 0.7 * tall), (0.003, 0.05, 0.014), w.look("dark"), solid=False)
             else:
-                shared.handle(w, "knob", (face, at, z + 0.5 * tall), 0.0, frame)
-    shared.feet(w, x, y, foot + 0.003, w.choice(("castor", "block")), frame, 0.035)
-    shared.tops(w, x, y, height)
+                parts.handle(w, "knob", (face, at, z + 0.5 * tall), 0.0, frame)
+    parts.feet(w, x, y, foot + 0.003, w.choice(("castor", "block")), frame, 0.035)
+    parts.top_surface(w, x, y, height)
 
 
 def mirror_dresser(w: Workbench) -> None:
     """Low dresser with a mirror standing at its back, trinket drawers on top beside it."""
     width, depth, height = w.width(0.95, 1.55), w.depth(0.42, 0.52), w.length(0.68, 0.82)
-    look, metal = parts.body(w), w.look(w.choice(("brass", "metal")))
-    kind: Feet = w.choice(("taper", "splay", "bun", "plinth", "cabriole"))
+    look, metal = parts.wood_look(w), w.look(w.choice(("brass", "metal")))
+    kind: FeetKind = w.choice(("taper", "splay", "bun", "plinth", "cabriole"))
     foot = w.length(0.06, 0.09) if kind in ("bun", "plinth") else w.length(0.12, 0.26)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (foot, height), look)
-    front: Front = w.choice(("flat", "raised", "frame"))
-    grip: Grip = w.choice(("knob", "cup", "bar", "cup"))
-    shared.drawers(
+    front: FrontKind = w.choice(("flat", "raised", "frame"))
+    grip: HandleKind = w.choice(("knob", "cup", "bar", "cup"))
+    parts.styled_drawers(
         w,
         x[1],
         (y[0] + 0.02, y[1] - 0.02),
-        shared.graded(foot + 0.02, height - 0.02, w.whole(2, 3), 1.1),
+        parts.graded_rows(foot + 0.02, height - 0.02, w.whole(2, 3), 1.1),
         look,
         metal,
         front,
         grip,
         w.whole(1, 2) if front == "flat" else 1,
     )
-    shared.feet(w, x, y, foot, kind, look)
+    parts.feet(w, x, y, foot, kind, look)
     wide, tall = round(w.choice((0.45, 0.6, 0.8)) * width, 2), w.length(0.55, 0.85)
     w.box((x[0], x[0] + 0.022), (-0.3 * wide, 0.3 * wide), (height, height + 0.5 * tall), look)
     w.put(w.make("mirror", use="wall", width_m=wide, height_m=tall), (x[0] + 0.022, 0.0, height))
     side = w.chance(0.5) and 0.5 * (width - wide) > 0.14
     if side:
-        for s in BOTH:
+        for s in BOTH_SIDES:
             low, high = sorted((s * (0.5 * wide + 0.02), s * (0.5 * width - 0.01)))
             w.box((x[0] + 0.02, x[0] + 0.2), (low, high), (height, height + 0.12), look)
-            shared.drawers(w, x[0] + 0.2, (low, high), (height + 0.01, height + 0.11), look, metal, "flat", "knob")
-    shared.tops(w, (x[0] + (0.2 if side else 0.06), x[1]), y, height)
+            parts.styled_drawers(
+                w, x[0] + 0.2, (low, high), (height + 0.01, height + 0.11), look, metal, "flat", "knob"
+            )
+    parts.top_surface(w, (x[0] + (0.2 if side else 0.06), x[1]), y, height)
 
 
 def graded_chest(w: Workbench) -> None:
     """Chest whose drawers deepen downwards, a row of small ones on top; many fronts, handles and feet."""
     width, depth = w.width(0.70, 1.45), w.depth(0.40, 0.52)
     height = w.length(0.72, 1.25) if width < 1.0 else w.length(0.66, 0.86)
-    kind: Feet = w.choice(("taper", "splay", "sled", "block", "castor", "plinth"))
+    kind: FeetKind = w.choice(("taper", "splay", "sled", "block", "castor", "plinth"))
     foot = w.length(0.05, 0.09) if kind in ("block", "castor", "plinth") else w.length(0.13, 0.30)
-    body = parts.body(w)
+    body = parts.wood_look(w)
     face = w.look(w.choice(("wood", "lacquer"))) if w.chance(0.4) else body
     metal = w.look(w.choice(("brass", "iron", "metal", "dark")))
-    front: Front = w.choice(("flat", "frame", "raised", "cane"))
-    grip: Grip = w.choice(("tab", "slot", "rail", "drop", "knob", "cup"))
-    x, y = shared.plan(depth, width)
+    front: FrontKind = w.choice(("flat", "frame", "raised", "cane"))
+    grip: HandleKind = w.choice(("tab", "slot", "rail", "drop", "knob", "cup"))
+    x, y = parts.footprint(depth, width)
     board = 0.0 if w.chance(0.4) else 0.02
     w.box(x, y, (foot, height - board), body)
     if board:
         w.box((x[0], x[1] + 0.02), (y[0] - 0.015, y[1] + 0.015), (height - board, height), w.look("wood"))
     split = height - board - w.length(0.13, 0.19)
     inner, low = (y[0] + 0.015, y[1] - 0.015), foot + 0.015
-    shared.drawers(
+    parts.styled_drawers(
         w,
         x[1],
         inner,
-        shared.graded(low, split, max(1, round((split - low) / 0.24)), 1.2),
+        parts.graded_rows(low, split, max(1, round((split - low) / 0.24)), 1.2),
         body if front == "cane" else face,
         metal,
         front,
         grip,
         2 if width > 1.15 else 1,
     )
-    shared.drawers(w, x[1], inner, (split, height - board - 0.012), face, metal, "flat", "knob", w.whole(2, 4))
-    shared.feet(w, x, y, foot + 0.002, kind, w.look("iron") if kind == "sled" else w.look("wood"))
-    shared.tops(w, x, y, height)
+    parts.styled_drawers(w, x[1], inner, (split, height - board - 0.012), face, metal, "flat", "knob", w.whole(2, 4))
+    parts.feet(w, x, y, foot + 0.002, kind, w.look("iron") if kind == "sled" else w.look("wood"))
+    parts.top_surface(w, x, y, height)
 
 
 def steel_drawers(w: Workbench) -> None:
@@ -249,17 +252,17 @@ def steel_drawers(w: Workbench) -> None:
     look, metal = w.look(w.choice(("appliance", "lacquer", "steel"))), w.look("chrome")
     foot = w.length(0.03, 0.07)
     height = foot + rows * pitch + 0.03
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (foot, height), look)
-    shared.feet(w, x, y, foot + 0.001, w.choice(("castor", "block", "plinth")), w.look("dark"), 0.03)
-    edges = shared.graded(foot + 0.01, height - 0.02, rows, 1.0)
-    shared.drawers(w, x[1], y, edges, look, metal, "flat", "none", columns)
+    parts.feet(w, x, y, foot + 0.001, w.choice(("castor", "block", "plinth")), w.look("dark"), 0.03)
+    edges = parts.graded_rows(foot + 0.01, height - 0.02, rows, 1.0)
+    parts.styled_drawers(w, x[1], y, edges, look, metal, "flat", "none", columns)
     each = width / columns
-    grip: Grip = w.choice(("slot", "bar", "cup"))
+    grip: HandleKind = w.choice(("slot", "bar", "cup"))
     for low in edges[:-1]:
         for i in range(columns):
             at, face = y[0] + (i + 0.5) * each, x[1] + parts.FRONT_M
-            shared.handle(w, grip, (face, at, low + 0.55 * pitch), 0.14, metal)
+            parts.handle(w, grip, (face, at, low + 0.55 * pitch), 0.14, metal)
             w.box(
                 (face, face + 0.003),
                 (at - 0.04, at + 0.04),
@@ -267,17 +270,17 @@ def steel_drawers(w: Workbench) -> None:
                 w.look("paper"),
                 solid=False,
             )
-    shared.tops(w, x, y, height)
+    parts.top_surface(w, x, y, height)
 
 
 def bedside_niche(w: Workbench) -> None:
     """Bedside cabinet with an open niche over or under a drawer, books in it, on tapered legs or a plinth."""
     width, depth, height = w.width(0.38, 0.56), w.depth(0.32, 0.44), w.length(0.46, 0.66)
-    kind: Feet = w.choice(("taper", "splay", "sled", "plinth", "block"))
+    kind: FeetKind = w.choice(("taper", "splay", "sled", "plinth", "block"))
     foot = w.length(0.03, 0.08) if kind in ("plinth", "block") else w.length(0.12, 0.26)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     face = w.look(w.choice(("wood", "lacquer", "wood"))) if w.chance(0.5) else look
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     middle = foot + w.choice((0.42, 0.5, 0.58)) * (height - foot)
     over = w.chance(0.5)
     niche = (middle, height - 0.02) if over else (foot + 0.02, middle)
@@ -288,10 +291,10 @@ def bedside_niche(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.012), y, niche, look)
     w.box(x, y, (height - 0.02, height), look)
     w.box(x, y, (foot, foot + 0.02), look)
-    grip: Grip = w.choice(("knob", "slot", "tab", "bar"))
-    front: Front = w.choice(("flat", "flat", "frame", "cane"))
+    grip: HandleKind = w.choice(("knob", "slot", "tab", "bar"))
+    front: FrontKind = w.choice(("flat", "flat", "frame", "cane"))
     fronts = (drawer[0] + (0.02 if over else 0.0), drawer[1] - (0.0 if over else 0.02))
-    shared.drawers(w, x[1] - 0.018, (y[0] + 0.018, y[1] - 0.018), fronts, face, w.look("brass"), front, grip)
+    parts.styled_drawers(w, x[1] - 0.018, (y[0] + 0.018, y[1] - 0.018), fronts, face, w.look("brass"), front, grip)
     if w.chance(0.6):
         at = w.length(-0.25, 0.1) * width
         for i in range(w.whole(1, 3)):
@@ -299,8 +302,8 @@ def bedside_niche(w: Workbench) -> None:
             w.box((-0.1, 0.08), (at, at + 0.16), (high - 0.022, high), w.new_look("book"), solid=False)
     if w.chance(0.3):
         w.box((x[0], x[0] + 0.015), y, (height, height + 0.06), look)
-    shared.feet(w, x, y, foot + 0.001, kind, w.look("wood") if kind != "sled" else w.look("iron"), 0.035)
-    shared.tops(w, x, y, height)
+    parts.feet(w, x, y, foot + 0.001, kind, w.look("wood") if kind != "sled" else w.look("iron"), 0.035)
+    parts.top_surface(w, x, y, height)
 
 
 def bedside_locker(w: Workbench) -> None:
@@ -308,7 +311,7 @@ def bedside_locker(w: Workbench) -> None:
     width, depth, height = w.width(0.40, 0.50), w.depth(0.40, 0.48), w.length(0.70, 0.86)
     shell = w.look(w.choice(("appliance", "lacquer", "plastic")))
     face = w.look(w.choice(("wood", "plastic", "appliance")))
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     gap = (w.length(0.44, 0.50), w.length(0.56, 0.60))
     w.box((x[0], x[1] - 0.018), y, (0.08, gap[0]), shell)
     w.box((x[0], x[1] - 0.018), y, (gap[1], height - 0.02), shell)
@@ -316,45 +319,45 @@ def bedside_locker(w: Workbench) -> None:
         w.box(x, (edge, edge + 0.02), (0.08, height), shell)
     w.box((x[0], x[0] + 0.015), y, gap, shell)
     inner, metal = (y[0] + 0.02, y[1] - 0.02), w.look("metal")
-    grip: Grip = w.choice(("bar", "cup", "slot"))
-    shared.doors(w, x[1] - 0.018, inner, (0.09, gap[0]), 1, face, metal, "flat", grip)
-    shared.drawers(w, x[1] - 0.018, inner, (gap[1], height - 0.03), face, metal, "flat", grip)
+    grip: HandleKind = w.choice(("bar", "cup", "slot"))
+    parts.styled_doors(w, x[1] - 0.018, inner, (0.09, gap[0]), 1, face, metal, "flat", grip)
+    parts.styled_drawers(w, x[1] - 0.018, inner, (gap[1], height - 0.03), face, metal, "flat", grip)
     w.mesh(chamfered_box((depth + 0.02, width + 0.02, 0.03), 0.012), (0.0, 0.0, height), face)
     if w.chance(0.6):
-        for s in BOTH:
+        for s in BOTH_SIDES:
             edge = s * (0.5 * width - 0.01)
             w.rod((x[0] + 0.03, edge, height + 0.06), (x[1] - 0.06, edge, height + 0.06), 0.008, metal, solid=False)
             for end in (x[0] + 0.03, x[1] - 0.06):
                 w.rod((end, edge, height), (end, edge, height + 0.06), 0.008, metal, solid=False)
     if w.chance(0.5):
-        s = w.choice(BOTH)
+        s = w.choice(BOTH_SIDES)
         rail = s * (0.5 * width + 0.025)
         w.rod((x[0] + 0.05, rail, 0.5), (x[1] - 0.05, rail, 0.5), 0.009, metal, solid=False)
         for end in (x[0] + 0.06, x[1] - 0.06):
             w.rod((end, s * 0.5 * width, 0.5), (end, rail, 0.5), 0.008, metal, solid=False)
-    shared.feet(w, x, y, 0.082, "castor", w.look("metal"), 0.03)
-    shared.tops(w, x, y, height + 0.015)
+    parts.feet(w, x, y, 0.082, "castor", w.look("metal"), 0.03)
+    parts.top_surface(w, x, y, height + 0.015)
 
 
 def bedside_box(w: Workbench) -> None:
     """One or two flat drawers held high on long legs, perhaps with a slatted shelf near the floor."""
     width, depth, height = w.width(0.38, 0.60), w.depth(0.34, 0.45), w.length(0.50, 0.68)
-    look, box = parts.body(w), w.length(0.13, 0.24)
+    look, box = parts.wood_look(w), w.length(0.13, 0.24)
     legs = w.look(w.choice(("wood", "iron", "brass", "metal"))) if w.chance(0.5) else look
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     base = height - box
     w.box((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (base, height - 0.018), look)
     w.box((x[0], x[1] + 0.01), y, (height - 0.018, height), w.look("stone") if w.chance(0.2) else look)
-    grip: Grip = w.choice(("knob", "cup", "tab", "drop", "slot"))
-    edges = shared.graded(base, height - 0.02, 2 if box > 0.2 else 1, 1.0)
-    shared.drawers(
+    grip: HandleKind = w.choice(("knob", "cup", "tab", "drop", "slot"))
+    edges = parts.graded_rows(base, height - 0.02, 2 if box > 0.2 else 1, 1.0)
+    parts.styled_drawers(
         w, x[1] - 0.02, (y[0] + 0.015, y[1] - 0.015), edges, look, w.look("brass"), w.choice(("flat", "frame")), grip
     )
     shape = w.choice(("taper", "straight", "cabriole"))
     if shape == "straight":
         w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (0.0, base), w.length(0.022, 0.045), legs)
     else:
-        shared.feet(w, (x[0] + 0.01, x[1] - 0.01), y, base, "cabriole" if shape == "cabriole" else "taper", legs, 0.04)
+        parts.feet(w, (x[0] + 0.01, x[1] - 0.01), y, base, "cabriole" if shape == "cabriole" else "taper", legs, 0.04)
     if shape == "straight" and w.chance(0.7):
         z = w.length(0.08, 0.2)
         slats = w.choice((1, 4))
@@ -364,7 +367,7 @@ def bedside_box(w: Workbench) -> None:
         for i in range(slats):
             low = x[0] + 0.015 + i * each
             w.box((low, low + each - 0.015), (y[0] + 0.012, y[1] - 0.012), (z, z + 0.016), look)
-    shared.tops(w, x, y, height)
+    parts.top_surface(w, x, y, height)
 
 
 def bedside_padded(w: Workbench) -> None:
@@ -372,19 +375,19 @@ def bedside_padded(w: Workbench) -> None:
     width, depth, height = w.width(0.42, 0.60), w.depth(0.38, 0.46), w.length(0.42, 0.56)
     cloth, metal = w.look(w.choice(("leather", "fabric"))), w.look(w.choice(("brass", "dark", "chrome")))
     foot, rows = w.length(0.03, 0.12), w.whole(1, 3)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.mesh(chamfered_box((depth, width, height - foot), 0.03), (0.0, 0.0, 0.5 * (foot + height)), cloth)
-    edges = shared.graded(foot + 0.02, height - 0.02, rows, 1.0)
+    edges = parts.graded_rows(foot + 0.02, height - 0.02, rows, 1.0)
     w.box((x[1] - 0.01, x[1] + 0.004), (y[0] + 0.03, y[1] - 0.03), (edges[0], edges[-1]), w.look("dark"), solid=False)
     for low, high in itertools.pairwise(edges):
         size = (0.05, round(width - 0.04, 3), round(high - low - 0.012, 3))
         w.mesh(chamfered_box(size, 0.015), (x[1], 0.0, 0.5 * (low + high)), cloth)
-        shared.handle(w, w.choice(("bar", "knob")), (x[1] + 0.024, 0.0, high - 0.05), 0.12, metal)
-    shared.feet(w, x, y, foot + 0.003, w.choice(("plinth", "block", "sled")), metal, 0.03)
+        parts.handle(w, w.choice(("bar", "knob")), (x[1] + 0.024, 0.0, high - 0.05), 0.12, metal)
+    parts.feet(w, x, y, foot + 0.003, w.choice(("plinth", "block", "sled")), metal, 0.03)
     if w.chance(0.5):
         w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (height - 0.002, height + 0.012), w.look("stone"))
         height += 0.012
-    shared.tops(w, x, y, height)
+    parts.top_surface(w, x, y, height)
 
 
 STYLES: tuple[Style, ...] = (

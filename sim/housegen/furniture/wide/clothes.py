@@ -7,17 +7,16 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft, named_mesh
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
 def _cut_out(outline: list[tuple[float, float]], centre: tuple[float, float], thick: float) -> MeshShape:
     """Cloth of a (y, z) outline, star-shaped about `centre`, counter-clockwise seen from +x, thickest there."""
     n = len(outline)
-    vertices = [(s * 0.35 * thick, y, z) for s in BOTH for y, z in outline]
-    vertices += [(s * 0.5 * thick, *centre) for s in BOTH]
+    vertices = [(s * 0.35 * thick, y, z) for s in BOTH_SIDES for y, z in outline]
+    vertices += [(s * 0.5 * thick, *centre) for s in BOTH_SIDES]
     faces: list[tuple[int, int, int]] = []
     for i in range(n):
         j = (i + 1) % n
@@ -82,9 +81,9 @@ def a_frame(w: Workbench) -> None:
     """Wooden A-frame or pair of trestles with a pole through the tops, garments on it, a slatted shelf with shoes."""
     width, high, wood = w.width(0.80, 1.40), w.length(1.35, 1.75), w.look(w.choice(("wood", "wood", "lacquer", "iron")))
     y, spread = 0.5 * width, w.length(0.18, 0.30)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         c = side * (y - 0.06)
-        for way in BOTH:
+        for way in BOTH_SIDES:
             w.bar((way * spread, c, 0.0), (-way * 0.05, c + way * 0.012, high), 0.02, 0.035, wood)
         w.box((-0.8 * spread, 0.8 * spread), (c - 0.01, c + 0.01), (0.17, 0.20), wood)
     rail = high - 0.10
@@ -95,7 +94,7 @@ def a_frame(w: Workbench) -> None:
             w.box((x - 0.02, x + 0.02), (-y + 0.06, y - 0.06), (0.20, 0.218), wood)
         for i in range(w.whole(0, 3)):
             c, shoe = -y + 0.25 + 0.26 * i, w.new_look("leather")
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.ellipsoid((0.0, c + 0.05 * side, 0.25), (0.13, 0.042, 0.045), shoe, solid=False)
     _row(w, 0.0, (-y + 0.16, y - 0.16), rail, rail - 0.32, w.look("metal"), 9)
 
@@ -104,11 +103,11 @@ def double_rail(w: Workbench) -> None:
     """Steel rail on castors with two levels of hanging clothes, or one level above a box shelf."""
     width, high, metal = w.width(0.70, 1.20), w.length(1.60, 1.85), w.look(w.choice(("metal", "chrome", "iron")))
     y, deep = 0.5 * width, w.length(0.20, 0.26)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         c = side * (y - 0.02)
         w.rod((0.0, c, 0.08), (0.0, c, high), 0.015, metal)
         w.rod((-deep, c, 0.08), (deep, c, 0.08), 0.015, metal)
-        for way in BOTH:
+        for way in BOTH_SIDES:
             w.ball((way * (deep - 0.02), c, 0.035), 0.035, w.look("dark"))
     w.rod((0.0, -y, high), (0.0, y, high), 0.015, metal)
     middle = 0.5 * high + 0.06
@@ -148,7 +147,7 @@ def dress_form(w: Workbench) -> None:
         skirt = [Ring(low, flare, flare * 1.1), Ring(0.5 * (low + top) - 0.2, 0.75 * flare, 0.85 * flare)]
         w.mesh(loft([*skirt, Ring(top - 0.40, 0.10 * s, 0.135 * s)], 16), (0.0, 0.0, 0.0), cloth)
     elif kind == "jacket":
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod(
                 (0.0, side * 0.19 * s, top - 0.10),
                 (0.03, side * 0.25 * s, top - 0.62),
@@ -181,12 +180,12 @@ def drying_tower(w: Workbench) -> None:
     width, deep, tiers = w.width(0.55, 0.80), w.length(0.22, 0.32), w.whole(2, 3)
     metal = w.look(w.choice(("plastic", "steel", "ceramic")))
     high, y = w.length(1.10, 1.55), 0.5 * width
-    for side in BOTH:
+    for side in BOTH_SIDES:
         for x in (-0.4 * deep, 0.4 * deep):
             w.rod((x, side * y, 0.0), (x, side * y, high), 0.011, metal)
     for t in range(tiers):
         z = high - 0.03 - t * (high - 0.25) / tiers
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((-deep, side * y, z), (deep, side * y, z), 0.009, metal)
         for x in (-deep, 0.0, deep):
             w.rod((x, -y, z), (x, y, z), 0.006, metal)
@@ -199,7 +198,7 @@ def drying_tower(w: Workbench) -> None:
                     at = (x, -y + 0.12 + 0.13 * k, z - 0.12)
                     w.mesh(chamfered_box((0.02, 0.075, 0.25), 0.009), at, _cloth(w), solid=False)
             elif kind == "over":
-                shared.over(w, x, c, z, w.length(0.25, 0.42), room, 0.7 * room, _cloth(w))
+                parts.towel_over_bar(w, x, c, z, w.length(0.25, 0.42), room, 0.7 * room, _cloth(w))
             elif kind == "shirt":
                 tall = min(0.7, max(0.5, room + 0.15))
                 w.mesh(
@@ -215,7 +214,7 @@ def pipe_rail(w: Workbench) -> None:
     metal, tall = w.look(w.choice(("iron", "brass", "metal", "wood"))), w.length(1.00, 1.35)
     w.mount_height_m = w.length(1.70, 1.85) - tall
     y, rail = 0.5 * width, tall - 0.06
-    for side in BOTH:
+    for side in BOTH_SIDES:
         c = side * (y - 0.04)
         w.rod((0.0, c, rail), (0.02, c, rail), 0.045, metal)
         w.rod((0.0, c, rail), (out, c, rail), 0.014, metal)
@@ -245,12 +244,12 @@ def hung_flat(w: Workbench) -> None:
         w.rod((0.0, y, tall - 0.02), (0.06, y, tall - 0.02), 0.014, wood)
         w.rod((0.045, y, top - 0.02), (0.045, y, tall - 0.01), 0.004, wood, solid=False)
         w.mesh(_clothing(w, kind, high, 0.06), (0.045, y, top - high), cloth)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.045, y, top + 0.02), (0.045, y + side * 0.17, top - 0.045), 0.009, wood, solid=False)
         if kind in ("shirt", "coat"):
             seam = parts.darker(cloth, 0.6)
             w.box((0.06, 0.072), (y - 0.008, y + 0.008), (top - high + 0.03, top - 0.05), seam, solid=False)
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.box(
                     (0.06, 0.078),
                     (y + side * 0.04 - 0.025, y + side * 0.04 + 0.025),
@@ -263,7 +262,7 @@ def hung_flat(w: Workbench) -> None:
 
 def bathrobe(w: Workbench) -> None:
     """Robe, or a hooded coat, hung by its collar on one big hook: long folds, sleeves, a belt hanging."""
-    tall, metal = w.length(1.05, 1.35), shared.fittings(w)
+    tall, metal = w.length(1.05, 1.35), parts.fitting_look(w)
     cloth = w.new_look(w.choice(("towel", "linen", "bright")))
     w.mount_height_m = w.length(1.60, 1.75) - tall
     top = tall - 0.04
@@ -280,7 +279,7 @@ def bathrobe(w: Workbench) -> None:
         w.mesh(
             drape(0.36 * s, top - low - 0.25, 0.08, w.whole(2, 4), gather=1.35), (0.10, 0.0, low), cloth, solid=False
         )
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (0.08, side * 0.12 * s, top - 0.16),
             (0.10, side * 0.21 * s, top - w.length(0.55, 0.75)),
@@ -307,7 +306,9 @@ def strewn(w: Workbench) -> None:
         at = (w.length(0.0, 0.15) * math.cos(turn), w.length(0.0, 0.15) * math.sin(turn), 0.025 + 0.02 * i)
         w.mesh(_clothing(w, kind, high, 0.045), at, _cloth(w), tilt=-0.5 * math.pi, turn=turn, solid=i == 0)
     w.mesh(
-        shared.crumpled(w, w.length(0.3, 0.5), w.length(0.25, 0.4), w.length(0.08, 0.18)), (0.0, 0.0, 0.02), _cloth(w)
+        parts.crumpled_cloth(w, w.length(0.3, 0.5), w.length(0.25, 0.4), w.length(0.08, 0.18)),
+        (0.0, 0.0, 0.02),
+        _cloth(w),
     )
     for i in range(w.whole(0, 3)):
         a = 1.3 + 1.7 * i
@@ -319,7 +320,7 @@ def strewn(w: Workbench) -> None:
         )
     if w.chance(0.4):
         shoe = w.new_look("leather")
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.ellipsoid((0.35, -0.30 + 0.07 * side, 0.045), (0.13, 0.045, 0.045), shoe, turn=0.2 * side)
 
 
@@ -331,7 +332,7 @@ def mound(w: Workbench) -> None:
     for i in range(w.whole(3, 5)):
         a, out = 2.3 * i, 0.2 * r * i
         at = (out * math.cos(a), out * math.sin(a), 0.11 * high * i)
-        shape = shared.crumpled(w, (2.3 - 0.35 * i) * r, (2.0 - 0.3 * i) * r, (0.95 - 0.12 * i) * high)
+        shape = parts.crumpled_cloth(w, (2.3 - 0.35 * i) * r, (2.0 - 0.3 * i) * r, (0.95 - 0.12 * i) * high)
         w.mesh(shape, at, _cloth(w), turn=w.length(0.0, 3.0), solid=False)
     for i in range(w.whole(2, 4)):
         a, cloth = 1.6 * i + w.length(0.0, 1.0), _cloth(w)
@@ -352,7 +353,7 @@ def sorted_piles(w: Workbench) -> None:
             w.mesh(shape, (x, y, z + 0.5 * thick), _cloth(w), turn=w.length(-0.1, 0.1), solid=i < 2)
             z += thick - 0.003
         if w.chance(0.4):
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.ellipsoid((x + 0.05 * side, y, z + 0.03), (0.045, 0.045, 0.035), _cloth(w), solid=False)
 
 
@@ -368,7 +369,7 @@ def dress_shirts(w: Workbench) -> None:
         z += thick
         if i == count - 1 or w.chance(0.5):
             x = 0.5 * deep - 0.06
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.box(
                     (x - 0.02, x + 0.05),
                     (side * 0.045 - 0.035, side * 0.045 + 0.035),
@@ -431,7 +432,7 @@ def hat_and_scarf(w: Workbench) -> None:
         at = (0.0, 0.27, 0.5 * thick)
         w.mesh(chamfered_box((0.24, 0.16, thick), 0.018), at, scarf, turn=w.length(-0.3, 0.3))
     else:
-        w.mesh(shared.crumpled(w, 0.34, 0.20, 0.08), (0.0, 0.27, 0.0), scarf, turn=w.length(-0.4, 0.4))
+        w.mesh(parts.crumpled_cloth(w, 0.34, 0.20, 0.08), (0.0, 0.27, 0.0), scarf, turn=w.length(-0.4, 0.4))
     if w.chance(0.6):
         glove = w.new_look("leather")
         for i in range(2):

@@ -7,46 +7,11 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Range, Workbench
 
 _Hole = tuple[Range, Range] | None
-
-
-def _fittings(w: Workbench, y: Range, z: float) -> tuple[_Hole, list[Range]]:
-    """Sink and hob let into a worktop over this stretch; the sink's hole and the stretches left free."""
-    width, taken, hole, sink_y = y[1] - y[0], [], None, None
-    if width >= 0.75 and w.flag("with_sink", 0.35):
-        sink_y = w.length(y[0] + 0.38, y[1] - 0.38) if width > 1.0 else 0.5 * (y[0] + y[1])
-        w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
-        hole = ((-0.20, 0.20), (sink_y - 0.24, sink_y + 0.24))
-        taken.append((sink_y - 0.30, sink_y + 0.30))
-    if width > 1.3 and w.flag("with_hob", 0.25):
-        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > 0.62]
-        if places:
-            place = w.choice(places)
-            w.put(w.make("appliances", use="hob"), (0.0, place, z))
-            taken.append((place - 0.32, place + 0.32))
-    free, start = [], y[0]
-    for low, high in sorted(taken):
-        free.append((start, low))
-        start = high
-    free.append((start, y[1]))
-    return hole, [r for r in free if r[1] - r[0] > 0.25]
-
-
-def _worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: _Hole) -> None:
-    """A slab with a rectangular hole for a sink."""
-    if hole is None:
-        w.box(x, y, z, look)
-        return
-    (hx0, hx1), (hy0, hy1) = hole
-    w.box(x, (y[0], hy0), z, look)
-    w.box(x, (hy1, y[1]), z, look)
-    w.box((x[0], hx0), (hy0, hy1), z, look)
-    w.box((hx1, x[1]), (hy0, hy1), z, look)
 
 
 def _base(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: _Hole) -> None:
@@ -81,24 +46,24 @@ def _upstand(w: Workbench, x: float, y: Range, z: float, look: Look) -> None:
 def shaker_run(w: Workbench) -> None:
     """Country run: framed doors, some under a drawer, end posts as furniture feet, thick overhanging worktop."""
     width, depth, height = w.width(1.10, 2.80), w.depth(0.60, 0.66), w.height(0.86, 0.94)
-    body, thick = parts.body(w), w.length(0.03, 0.06)
+    body, thick = parts.wood_look(w), w.length(0.03, 0.06)
     top = w.look("wood") if w.chance(0.5) else w.look("stone")
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
-    hole, free = _fittings(w, y, height)
+    x, y = parts.footprint(depth, width)
+    hole, free = parts.worktop_fittings(w, y, height)
     under, face, foot = height - thick, x[1] - 0.05, w.length(0.07, 0.15)
     _base(w, (x[0], face), (y[0] + 0.01, y[1] - 0.01), (foot, under), body, hole)
-    _worktop(w, x, y, (under, height), top, hole)
+    parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     if w.chance(0.5):
         w.box((x[0], face - 0.06), (y[0] + 0.02, y[1] - 0.02), (0.0, foot), w.look("dark"))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.box(
             (face - 0.05, face + 0.025),
-            shared.beside(side, 0.5 * width - 0.075, 0.5 * width - 0.01),
+            parts.on_side(side, 0.5 * width - 0.075, 0.5 * width - 0.01),
             (0.0, under),
             body,
         )
-        w.box((x[0], x[0] + 0.06), shared.beside(side, 0.5 * width - 0.07, 0.5 * width - 0.01), (0.0, foot), body)
+        w.box((x[0], x[0] + 0.06), parts.on_side(side, 0.5 * width - 0.07, 0.5 * width - 0.01), (0.0, foot), body)
     count = min(5 if hole is None else 4, max(1, round((width - 0.15) / w.length(0.48, 0.85))))
     each, knob = (width - 0.15) / count, w.look(w.choice(("brass", "iron", "wood")))
     split = under - 0.02 if w.chance(0.4) or count > 3 or hole else under - 0.19
@@ -123,11 +88,11 @@ def masonry_run(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 2.80), w.depth(0.60, 0.68), w.height(0.84, 0.92)
     wall = w.look("masonry") if w.chance(0.6) else w.look("stone")
     wood, thick = w.look("wood"), w.length(0.06, 0.11)
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
-    hole, free = _fittings(w, y, height)
+    x, y = parts.footprint(depth, width)
+    hole, free = parts.worktop_fittings(w, y, height)
     under, back = height - thick, x[1] - 0.10
     _base(w, (x[0], back), y, (0.0, under), wall, hole)
-    _worktop(w, x, y, (under, height), w.look("stone") if w.chance(0.6) else wall, hole)
+    parts.worktop(w, x, y, (under, height), w.look("stone") if w.chance(0.6) else wall, hole)
     _upstand(w, x[0], y, height, wall)
     pier = w.length(0.08, 0.16)
     count = max(1, round((width - pier) / w.length(0.55, 0.95)))
@@ -144,7 +109,7 @@ def masonry_run(w: Workbench) -> None:
         w.box(
             (back + 0.02, back + 0.035),
             (left + 0.05, left + wide - 0.05),
-            shared.about(ledge + 0.75 * (under - ledge), 0.04),
+            parts.centred(ledge + 0.75 * (under - ledge), 0.04),
             iron if planks == 2 else wood,
             solid=False,
         )
@@ -155,22 +120,24 @@ def masonry_run(w: Workbench) -> None:
 def hovering_run(w: Workbench) -> None:
     """Slim run that hangs on a panel before the wall: shallow drawers, air below, a thin top, maybe a glowing edge."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.86, 0.94)
-    front, top = parts.body(w), w.look(w.choice(("stone", "steel", "wood")))
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
-    hole, free = _fittings(w, y, height)
+    front, top = parts.wood_look(w), w.look(w.choice(("stone", "steel", "wood")))
+    x, y = parts.footprint(depth, width)
+    hole, free = parts.worktop_fittings(w, y, height)
     under, face, low = height - 0.02, x[1] - 0.03, w.length(0.24, 0.45)
     _base(w, (x[0], face), y, (low, under), front, hole)
-    _worktop(w, x, y, (under, height), top, hole)
+    parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     w.box((x[0], x[0] + 0.04), y, (0.0, low), w.look("dark") if w.chance(0.5) else front)
     if w.chance(0.4):
-        w.box((x[0] + 0.06, face), shared.beside(w.choice(BOTH), 0.5 * width - 0.06, 0.5 * width), (0.0, low), front)
+        w.box(
+            (x[0] + 0.06, face), parts.on_side(w.choice(BOTH_SIDES), 0.5 * width - 0.06, 0.5 * width), (0.0, low), front
+        )
     if w.chance(0.4):
         w.box((face - 0.05, face - 0.03), (y[0] + 0.05, y[1] - 0.05), (low - 0.012, low), w.look("glow"), solid=False)
     rows = 1 if low > 0.38 else w.whole(1, 2)
     columns = min(4 if hole is None else 3, max(1, round(width / w.length(0.6, 1.1))))
     handle = w.choice(("none", "bar", "knob"))
-    parts.drawers(w, face, y, (low, under - 0.015), rows, columns, front, w.look("metal"), handle)
+    parts.plain_drawers(w, face, y, (low, under - 0.015), rows, columns, front, w.look("metal"), handle)
     for span in free:
         w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
 
@@ -178,15 +145,15 @@ def hovering_run(w: Workbench) -> None:
 def niche_run(w: Workbench) -> None:
     """Run of tall narrow doors whose one end is an open niche with shelves, bottles or baskets, on turned feet."""
     width, depth, height = w.width(1.20, 2.60), w.depth(0.60, 0.64), w.height(0.86, 0.92)
-    body, front = parts.body(w), parts.body(w)
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
-    side, open_ = w.choice(BOTH), w.length(0.28, 0.45) if width > 1.15 else 0.0
+    body, front = parts.wood_look(w), parts.wood_look(w)
+    x, y = parts.footprint(depth, width)
+    side, open_ = w.choice(BOTH_SIDES), w.length(0.28, 0.45) if width > 1.15 else 0.0
     closed = (y[0], y[1] - open_) if side > 0 else (y[0] + open_, y[1])
-    hole, free = _fittings(w, closed, height)
+    hole, free = parts.worktop_fittings(w, closed, height)
     under, face, foot = height - 0.04, x[1] - 0.04, w.length(0.06, 0.14)
     top = w.look("stone")
     _base(w, (x[0], face), closed, (foot, under), body, hole)
-    _worktop(w, x, y, (under, height), top, hole)
+    parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     for cx in (x[0] + 0.05, face - 0.05):
         for cy in (y[0] + 0.05, y[1] - 0.05):
@@ -194,15 +161,15 @@ def niche_run(w: Workbench) -> None:
     count = max(1, round((closed[1] - closed[0]) / w.length(0.38, 0.6)))
     count = min(count, 5 if hole is None else 4)
     handle = w.choice(("bar", "knob", "none")) if count < 4 else "none"
-    parts.doors(w, face, closed, (foot, under), count, front, w.look("metal"), handle)
+    parts.plain_doors(w, face, closed, (foot, under), count, front, w.look("metal"), handle)
     if open_:
         near, far = 0.5 * width - open_, 0.5 * width
-        w.box((x[0], face), shared.beside(side, far - 0.02, far), (foot, under), body)
-        w.box((x[0], x[0] + 0.02), shared.beside(side, near, far - 0.02), (foot, under), body)
+        w.box((x[0], face), parts.on_side(side, far - 0.02, far), (foot, under), body)
+        w.box((x[0], x[0] + 0.02), parts.on_side(side, near, far - 0.02), (foot, under), body)
         shelves = w.whole(2, 3)
         for i in range(shelves):
             z = foot + i * (under - foot) / shelves
-            w.box((x[0] + 0.02, face), shared.beside(side, near, far - 0.02), (z, z + 0.02), body)
+            w.box((x[0] + 0.02, face), parts.on_side(side, near, far - 0.02), (z, z + 0.02), body)
             if w.chance(0.6):
                 look = w.look("wicker") if w.chance(0.5) else w.new_look("plastic")
                 size = (face - x[0] - 0.10, open_ - 0.06, w.length(0.10, 0.17))
@@ -215,7 +182,7 @@ def niche_run(w: Workbench) -> None:
 def oval_island(w: Workbench) -> None:
     """Island of rounded plan: a smooth or fluted body under a rounded top that reaches out to the front."""
     width, depth, height = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.88, 0.94)
-    body, top, power = parts.body(w), w.look("stone"), w.choice((2.4, 4.0, 6.0))
+    body, top, power = parts.wood_look(w), w.look("stone"), w.choice((2.4, 4.0, 6.0))
     thick, rx, ry = w.length(0.02, 0.06), 0.5 * depth, 0.5 * width
     under = height - thick
     bx, by = rx - 0.15, ry - w.length(0.06, 0.14)
@@ -238,23 +205,23 @@ def oval_island(w: Workbench) -> None:
 def post_island(w: Workbench) -> None:
     """Farmhouse island: framed cupboards behind, an overhanging top carried by posts at the front corners."""
     width, depth, height = w.width(1.30, 2.40), w.depth(0.90, 1.15), w.height(0.88, 0.94)
-    body, top = parts.body(w), w.look("wood") if w.chance(0.6) else w.look("stone")
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
+    body, top = parts.wood_look(w), w.look("wood") if w.chance(0.6) else w.look("stone")
+    x, y = parts.footprint(depth, width)
     thick, post = w.length(0.035, 0.07), w.length(0.06, 0.11)
     under, wall = height - thick, x[1] - w.length(0.30, 0.42)
     w.box(x, y, (under, height), top)
     w.box((x[0] + 0.04, wall), (y[0] + 0.05, y[1] - 0.05), (0.09, under), body)
     w.box((x[0] + 0.08, wall - 0.04), (y[0] + 0.09, y[1] - 0.09), (0.0, 0.09), w.look("dark"))
     turned = w.chance(0.6)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         at = (x[1] - 0.05 - 0.5 * post, side * (0.5 * width - 0.05 - 0.5 * post))
         if turned:
             levels = ((0.0, 0.32), (0.08, 0.42), (0.12, 0.26), (0.45, 0.5), (0.62, 0.28), (0.66, 0.5), (under, 0.5))
             w.mesh(loft([Ring(z, post * r, post * r) for z, r in levels], 12), (*at, 0.0), body)
         else:
-            w.box(shared.about(at[0], post), shared.about(at[1], post), (0.0, under), body)
-        w.box((wall, at[0]), shared.about(at[1], 0.03), (under - 0.09, under), body)
-    w.box(shared.about(x[1] - 0.05 - 0.5 * post, 0.03), (y[0] + 0.1, y[1] - 0.1), (under - 0.09, under), body)
+            w.box(parts.centred(at[0], post), parts.centred(at[1], post), (0.0, under), body)
+        w.box((wall, at[0]), parts.centred(at[1], 0.03), (under - 0.09, under), body)
+    w.box(parts.centred(x[1] - 0.05 - 0.5 * post, 0.03), (y[0] + 0.1, y[1] - 0.1), (under - 0.09, under), body)
     count = max(2, round(width / 0.7))
     each = (width - 0.1) / count
     for i in range(count):
@@ -266,7 +233,7 @@ def post_island(w: Workbench) -> None:
             w.bar(a, b, 0.05, 0.02, body, solid=False)
             w.bar((a[0], a[1], b[2]), (a[0], b[1], a[2]), 0.05, 0.02, body, solid=False)
     metal = w.look("iron")
-    parts.drawers(
+    parts.plain_drawers(
         w, x[0] + 0.04 - parts.FRONT_M, (y[0] + 0.05, y[1] - 0.05), (0.1, under), w.whole(1, 3), 2, body, metal, "none"
     )
     w.top((x[0] + 0.1, x[1] - 0.1), (y[0] + 0.1, y[1] - 0.1), height)
@@ -275,11 +242,11 @@ def post_island(w: Workbench) -> None:
 def table_island(w: Workbench) -> None:
     """A cupboard block whose one end runs on as a lower dining board on a leg frame or a panel."""
     width, depth, height = w.width(1.60, 2.60), w.depth(0.75, 1.0), w.height(0.88, 0.94)
-    body, top, board = parts.body(w), w.look("stone"), w.look("wood")
-    x = shared.about(0.0, depth)
-    side, split = w.choice(BOTH), w.length(0.45, 0.6) * width
+    body, top, board = parts.wood_look(w), w.look("stone"), w.look("wood")
+    x = parts.centred(0.0, depth)
+    side, split = w.choice(BOTH_SIDES), w.length(0.45, 0.6) * width
     near, far = 0.5 * width - split, 0.5 * width
-    block, low = shared.beside(side, -far, near), w.length(0.72, 0.78)
+    block, low = parts.on_side(side, -far, near), w.length(0.72, 0.78)
     bx = (x[0] + 0.02, x[1] - 0.04)
     w.box((bx[0] + 0.04, bx[1] - 0.06), (block[0] + 0.04, block[1] - 0.04), (0.0, 0.09), w.look("dark"))
     w.box(bx, (block[0] + 0.01, block[1] - 0.01), (0.09, height - 0.03), body)
@@ -287,20 +254,22 @@ def table_island(w: Workbench) -> None:
     count = max(1, round((block[1] - block[0]) / 0.55))
     span = (block[0] + 0.01, block[1] - 0.01)
     if w.chance(0.5):
-        parts.drawers(w, bx[1], span, (0.09, height - 0.04), w.whole(2, 3), count, body, w.look("metal"), "bar")
+        parts.plain_drawers(w, bx[1], span, (0.09, height - 0.04), w.whole(2, 3), count, body, w.look("metal"), "bar")
     else:
-        parts.doors(w, bx[1], span, (0.09, height - 0.04), count, body, w.look("metal"), w.choice(("bar", "knob")))
+        parts.plain_doors(
+            w, bx[1], span, (0.09, height - 0.04), count, body, w.look("metal"), w.choice(("bar", "knob"))
+        )
     inset = w.choice((0.0, 0.06, 0.12))
     tx, thick = (x[0] + inset, x[1] - inset), w.length(0.025, 0.06)
-    w.box(tx, shared.beside(side, near - 0.02, far), (low - thick, low), board)
+    w.box(tx, parts.on_side(side, near - 0.02, far), (low - thick, low), board)
     if w.chance(0.4):
-        w.box((tx[0] + 0.06, tx[1] - 0.06), shared.beside(side, far - 0.12, far - 0.08), (0.0, low - thick), board)
+        w.box((tx[0] + 0.06, tx[1] - 0.06), parts.on_side(side, far - 0.12, far - 0.08), (0.0, low - thick), board)
     else:
         leg = w.length(0.03, 0.07)
         for lx in (tx[0] + 0.04, tx[1] - 0.04 - leg):
-            w.box((lx, lx + leg), shared.beside(side, far - 0.04 - leg, far - 0.04), (0.0, low - thick), w.look("iron"))
+            w.box((lx, lx + leg), parts.on_side(side, far - 0.04 - leg, far - 0.04), (0.0, low - thick), w.look("iron"))
     w.top((x[0] + 0.08, x[1] - 0.08), (block[0] + 0.08, block[1] - 0.08), height)
-    w.top((tx[0] + 0.08, tx[1] - 0.08), shared.beside(side, near + 0.06, far - 0.08), low)
+    w.top((tx[0] + 0.08, tx[1] - 0.08), parts.on_side(side, near + 0.06, far - 0.08), low)
 
 
 STYLES: tuple[Style, ...] = (

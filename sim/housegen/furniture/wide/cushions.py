@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, pillow
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -42,7 +42,7 @@ def tasselled_cushion(w: Workbench) -> None:
     wide, tall, lean = w.length(0.36, 0.60), w.length(0.32, 0.46), 1.25
     cloth, trim, z = w.look("bright"), w.new_look("bright"), 0.5 * tall
     w.mesh(pillow((tall, wide, 0.15)), (0.0, 0.0, z), cloth, tilt=lean)
-    for sx, sy in itertools.product(BOTH, BOTH):
+    for sx, sy in itertools.product(BOTH_SIDES, BOTH_SIDES):
         along = -sx * 0.43 * tall
         at = (along * math.cos(lean), sy * 0.44 * wide, z - along * math.sin(lean))
         if w.chance(0.6):
@@ -60,7 +60,7 @@ def shaped_cushion(w: Workbench) -> None:
     if kind == "ball":
         w.ball((0.0, 0.0, r), r, cloth)
     elif kind == "heart":
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.ellipsoid((0.0, side * 0.45 * r, 1.35 * r), (0.07, 0.62 * r, 0.60 * r), cloth, tilt=-0.1)
         point = [Ring(0.0, 0.03, 0.02 * r), Ring(1.045 * r, 0.055, r), Ring(1.375 * r, 0.05, 0.95 * r)]
         w.mesh(loft(point, 12, hull=True), (0.0, 0.0, 0.0), cloth)
@@ -73,7 +73,7 @@ def shaped_cushion(w: Workbench) -> None:
         w.ellipsoid((0.02, 0.0, 1.05 * r), (0.055, 0.36 * r, 0.36 * r), w.new_look("bright"))
     else:
         w.ellipsoid((0.0, 0.0, r), (0.09, 1.15 * r, r), cloth)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.ellipsoid((0.0, side * 0.75 * r, 1.8 * r), (0.04, 0.32 * r, 0.38 * r), cloth)
             w.ellipsoid((0.075, side * 0.4 * r, 1.2 * r), (0.02, 0.02, 0.02), w.look("dark"), solid=False)
 
@@ -84,7 +84,7 @@ def mattress_cushion(w: Workbench) -> None:
     for k in range(count):
         cloth = w.look("bright") if k == 0 else w.new_look("bright")
         turn = w.length(-0.12, 0.12)
-        shared.pad(w, (side, side, thick), (0.0, 0.0, (k + 0.5) * thick), cloth, 0.03, turn=turn)
+        parts.pad(w, (side, side, thick), (0.0, 0.0, (k + 0.5) * thick), cloth, 0.03, turn=turn)
     top = count * thick
     for sx, sy in itertools.product((-1, 0, 1), repeat=2):
         w.ellipsoid((0.27 * sx * side, 0.27 * sy * side, top), (0.014, 0.014, 0.006), w.look("dark"), solid=False)
@@ -115,7 +115,7 @@ def thai_triangle(w: Workbench) -> None:
     long = w.length(0.42, 0.52)
     for i in range(panels):
         x = 0.5 * deep + (i + 0.5) * long
-        shared.pad(w, (long + 0.006, wide, 0.08), (x, 0.0, 0.04), cloth if i % 2 else w.look("fabric"), 0.03)
+        parts.pad(w, (long + 0.006, wide, 0.08), (x, 0.0, 0.04), cloth if i % 2 else w.look("fabric"), 0.03)
 
 
 STYLES: tuple[Style, ...] = (

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -17,12 +16,12 @@ def desk_hutch(w: Workbench) -> None:
         0.025,
         w.choice(("panel", "loop", "post")),
     )
-    x, y = shared.about(0.0, depth), shared.about(0.0, width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - thick, height), wood)
     if legs == "post":
         w.legs((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.0, height - thick), 0.05, wood)
         w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (height - 0.12, height - thick), wood)
-        parts.drawers(
+        parts.plain_drawers(
             w,
             x[1] - 0.02,
             (y[0] + 0.07, y[1] - 0.07),
@@ -33,18 +32,18 @@ def desk_hutch(w: Workbench) -> None:
             w.look("brass"),
             "knob",
         )
-    for side in BOTH if legs != "post" else ():
+    for side in BOTH_SIDES if legs != "post" else ():
         if legs == "panel":
-            w.box((x[0], x[1] - 0.03), shared.about(side * (0.5 * width - 0.02), 0.025), (0.0, height - thick), wood)
+            w.box((x[0], x[1] - 0.03), parts.centred(side * (0.5 * width - 0.02), 0.025), (0.0, height - thick), wood)
         else:
-            shared.loop(
+            parts.tube_frame(
                 w, (x[0] + 0.03, x[1] - 0.03), side * (0.5 * width - 0.05), (0.0, height - thick), 0.03, w.look("iron")
             )
     if legs != "post":
-        w.box(shared.about(x[0] + 0.05, 0.02), (y[0] + 0.03, y[1] - 0.03), (height - 0.25, height - thick), wood)
+        w.box(parts.centred(x[0] + 0.05, 0.02), (y[0] + 0.03, y[1] - 0.03), (height - 0.25, height - thick), wood)
     deep, tall = x[0] + w.length(0.18, 0.28), height + w.length(0.25, 0.60)
     for c in (y[0] + 0.01, y[1] - 0.01):
-        w.box((x[0], deep), shared.about(c, 0.02), (height, tall), wood)
+        w.box((x[0], deep), parts.centred(c, 0.02), (height, tall), wood)
     w.box((x[0], deep), y, (tall, tall + 0.02), wood)
     rows = 1 if tall < height + 0.35 else 2
     for i in range(1, rows):
@@ -54,7 +53,7 @@ def desk_hutch(w: Workbench) -> None:
         w.box((x[0], x[0] + 0.01), (y[0] + 0.02, y[1] - 0.02), (height, tall), wood)
     for i in range(w.whole(0, 3)):
         c = (-0.28, 0.28, 0.0)[i] * width
-        w.box((x[0] + 0.01, deep), shared.about(c, 0.015), (tall - (tall - height) / rows, tall), wood)
+        w.box((x[0] + 0.01, deep), parts.centred(c, 0.015), (tall - (tall - height) / rows, tall), wood)
     w.top((deep + 0.05, x[1] - 0.04), (y[0] + 0.06, y[1] - 0.06), height)
     w.top((x[0] + 0.03, deep - 0.03), (y[0] + 0.06, y[1] - 0.06), tall + 0.02)
 
@@ -66,10 +65,10 @@ def desk_kneehole(w: Workbench) -> None:
     x, y = parts.slab(w, depth, width, (height - w.length(0.02, 0.045), height), wood)
     under, foot, each = height - 0.02, w.length(0.05, 0.16), min(0.45, 0.3 * width)
     rows, handle = w.whole(2, 4), w.choice(("knob", "bar", "cup"))
-    for side in BOTH:
-        span = shared.beside(side, 0.5 * width - 0.03 - each, 0.5 * width - 0.03)
+    for side in BOTH_SIDES:
+        span = parts.on_side(side, 0.5 * width - 0.03 - each, 0.5 * width - 0.03)
         w.box((x[0] + 0.03, x[1] - 0.04), span, (foot, under), wood)
-        parts.drawers(w, x[1] - 0.04, span, (foot, under - 0.03), rows, 1, wood, metal, handle)
+        parts.plain_drawers(w, x[1] - 0.04, span, (foot, under - 0.03), rows, 1, wood, metal, handle)
         if foot < 0.10:
             w.box((x[0] + 0.05, x[1] - 0.06), (span[0] + 0.02, span[1] - 0.02), (0.0, foot), wood)
         else:
@@ -97,10 +96,10 @@ def desk_gaming(w: Workbench) -> None:
     frame, top = w.look("metal"), w.look("dark") if w.chance(0.6) else w.look("lacquer")
     x, y = parts.slab(w, depth, width, (height - 0.022, height), top)
     kind, apart = w.choice(("k", "z")), 0.5 * width - w.length(0.08, 0.2)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         c = side * apart
-        w.box((x[0] + 0.02, x[1] - 0.02), shared.about(c, 0.06), (0.0, 0.03), frame)
-        w.box((x[0] + 0.04, x[1] - 0.06), shared.about(c, 0.06), (height - 0.05, height - 0.022), frame)
+        w.box((x[0] + 0.02, x[1] - 0.02), parts.centred(c, 0.06), (0.0, 0.03), frame)
+        w.box((x[0] + 0.04, x[1] - 0.06), parts.centred(c, 0.06), (height - 0.05, height - 0.022), frame)
         a, b = (x[0] + 0.10, c, height - 0.04), (x[1] - 0.12, c, 0.02)
         if kind == "z":
             w.bar((a[0], c, 0.02), (b[0], c, height - 0.04), 0.06, 0.05, frame)
@@ -110,41 +109,41 @@ def desk_gaming(w: Workbench) -> None:
             w.bar(knee, (x[0] + 0.30, c, height - 0.04), 0.06, 0.05, frame)
             w.bar(knee, b, 0.06, 0.04, frame)
     rail = x[0] + 0.16 if kind == "k" else -0.01
-    w.box(shared.about(rail, 0.04), (-apart, apart), shared.about(0.5 * height - 0.01, 0.04), frame)
+    w.box(parts.centred(rail, 0.04), (-apart, apart), parts.centred(0.5 * height - 0.01, 0.04), frame)
     if w.chance(0.6):
         rise, span = w.length(0.09, 0.14), (y[0] + w.length(0.05, 0.25), y[1] - w.length(0.05, 0.25))
         for c in (span[0] + 0.03, span[1] - 0.03):
-            w.box((x[0] + 0.02, x[0] + 0.18), shared.about(c, 0.03), (height, height + rise), frame)
+            w.box((x[0] + 0.02, x[0] + 0.18), parts.centred(c, 0.03), (height, height + rise), frame)
         w.box((x[0], x[0] + 0.22), span, (height + rise, height + rise + 0.018), top)
     if w.chance(0.5):
         glow = (height - 0.016, height - 0.008)
         w.box((x[1] - 0.002, x[1] + 0.004), (y[0] + 0.05, y[1] - 0.05), glow, w.look("glow"), solid=False)
-    side = w.choice(BOTH)
+    side = w.choice(BOTH_SIDES)
     w.cylinder((0.1, side * (0.5 * width + 0.03)), (height - 0.09, height - 0.01), 0.04, frame, solid=False)
 
 
 def desk_tray(w: Workbench) -> None:
     """Mid-century writing desk: thin box with drawers or open slots, a low rim at back and sides, splayed legs."""
     width, depth, height = w.width(0.90, 1.35), w.depth(0.48, 0.65), w.length(0.73, 0.77)
-    wood, front = w.look("wood"), parts.body(w)
-    x, y, deep = shared.about(0.0, depth), shared.about(0.0, width), w.length(0.08, 0.14)
+    wood, front = w.look("wood"), parts.wood_look(w)
+    x, y, deep = parts.centred(0.0, depth), parts.centred(0.0, width), w.length(0.08, 0.14)
     w.box(x, y, (height - 0.018, height), wood)
     w.box((x[0], x[1] - 0.02), y, (height - deep, height - deep + 0.015), wood)
     w.box((x[0], x[0] + 0.015), y, (height - deep, height), wood)
     dividers = w.whole(1, 2)
     for c in (y[0] + 0.01, y[1] - 0.01, *((-0.17 * width, 0.17 * width) if dividers == 2 else (0.0,))):
-        w.box((x[0], x[1] - 0.01), shared.about(c, 0.016), (height - deep, height - 0.018), wood)
+        w.box((x[0], x[1] - 0.01), parts.centred(c, 0.016), (height - deep, height - 0.018), wood)
     if w.chance(0.7):
         span = (y[0] + 0.02, w.choice((0.0, y[1] - 0.02)))
         knob = w.look("brass")
         z = (height - deep, height - 0.016)
-        parts.drawers(w, x[1] - 0.028, span, z, 1, w.whole(1, 2), front, knob, w.choice(("knob", "none")))
+        parts.plain_drawers(w, x[1] - 0.028, span, z, 1, w.whole(1, 2), front, knob, w.choice(("knob", "none")))
         w.box((x[0] + 0.05, x[1] - 0.028), (span[0] + 0.01, span[1] - 0.01), (z[0] + 0.01, z[1] - 0.002), wood)
     rim = w.choice((0.0, 0.03, 0.12))
     if rim:
         w.box((x[0], x[0] + 0.015), y, (height, height + rim), wood)
         for c in (y[0] + 0.008, y[1] - 0.008):
-            w.box((x[0], x[0] + 0.4 * depth), shared.about(c, 0.016), (height, height + 0.7 * rim), wood)
+            w.box((x[0], x[0] + 0.4 * depth), parts.centred(c, 0.016), (height, height + 0.7 * rim), wood)
     thin, splay = w.length(0.025, 0.045), w.choice((0.0, 0.05, 0.08))
     w.legs(
         (x[0] + 0.08, x[1] - 0.09), (y[0] + 0.09, y[1] - 0.09), (0.0, height - deep + 0.005), thin, wood, splay=splay

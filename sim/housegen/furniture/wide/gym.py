@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, hoop, loft, named_mesh
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Point, Workbench
 
 
@@ -51,7 +51,7 @@ def elliptical(w: Workbench) -> None:
     )
     swing = w.length(-0.16, 0.16)
     w.rod((mast + 0.02, -0.26, 0.9), (mast + 0.02, 0.26, 0.9), 0.025, iron)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y, dx, dz = side * apart, side * swing, side * 0.08
         w.rod((mast + 0.02 - dx, side * 0.24, 0.30), (mast + 0.02, side * 0.24, 0.90), 0.022, grey)
         w.rod((mast + 0.02, side * 0.24, 0.90), (mast + 0.10 + dx, side * 0.24, high - 0.16), 0.020, grey)
@@ -93,7 +93,7 @@ def stair_climber(w: Workbench) -> None:
         )
     back, peak = x1 - count * run, count * rise
     w.box((-x1, back), (-half + 0.09, half - 0.09), (0.0, peak + 0.25), shell)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = sorted((side * (half - 0.09), side * half))
         outline = [(-x1, 0.0), (x1, 0.0), (x1, 0.20), (back, peak + 0.18), (-x1, peak + 0.30)]
         w.mesh(named_mesh("cheek", [(x, at, z) for at in y for x, z in outline]), (0.0, 0.0, 0.0), shell)
@@ -113,7 +113,7 @@ def functional_trainer(w: Workbench) -> None:
     half, high = 0.5 * w.width(1.20, 1.75), w.height(1.95, 2.15)
     iron, chrome = w.look("iron") if w.chance(0.6) else w.look("appliance"), w.look("chrome")
     angled = w.length(0.0, 0.25)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.13)
         w.box((-0.35, 0.45), (y - 0.11, y + 0.11), (0.0, 0.06), iron)
         for x in (-0.28, 0.10):
@@ -159,11 +159,11 @@ def vibration_plate(w: Workbench) -> None:
         )
         w.bar((x + 0.15, 0.0, high - 0.12), (x + 0.22, 0.0, high - 0.12), 0.10, 0.05, shell)
     else:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((x + 0.06, side * 0.14, plinth - 0.02), (x + 0.19, side * 0.12, high - 0.05), 0.024, w.look("metal"))
     w.box((x + 0.16, x + 0.21), (-0.17, 0.17), (high - 0.12, high + 0.10), shell, tilt=-0.5)
     w.box((x + 0.205, x + 0.215), (-0.11, 0.11), (high - 0.07, high + 0.06), w.look("screen"), tilt=-0.5, solid=False)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.75 * half
         w.rod((x + 0.18, 0.0, high - 0.05), (x + 0.18, y, high - 0.06), 0.020, w.look("dark"), round_ends=True)
         w.rod((x + 0.18, y, high - 0.06), (x + 0.42, y, high - 0.10), 0.020, w.look("dark"), round_ends=True)
@@ -174,7 +174,7 @@ def reformer(w: Workbench) -> None:
     length, half, z = w.depth(2.10, 2.40), 0.5 * w.width(0.60, 0.72), w.length(0.18, 0.42)
     frame = w.look("wood") if w.chance(0.7) else w.look("metal")
     x0, x1 = -0.5 * length, 0.5 * length
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = sorted((side * (half - 0.05), side * half))
         w.box((x0, x1), (y[0], y[1]), (z, z + 0.12), frame)
         for x in (x0 + 0.02, x1 - 0.10):
@@ -184,7 +184,7 @@ def reformer(w: Workbench) -> None:
     at = w.length(-0.35, 0.15)
     w.box((at - 0.40, at + 0.40), (-half + 0.04, half - 0.04), (z + 0.10, z + 0.14), w.look("dark"))
     _pad(w, (0.85, 2 * half - 0.12, 0.07), (at, 0.0, z + 0.17))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         _pad(w, (0.06, 0.14, 0.18), (at - 0.30, side * 0.15, z + 0.28))
         w.rod(
             (x0 + 0.06, side * (half - 0.03), z + 0.10),
@@ -217,7 +217,7 @@ def inversion_table(w: Workbench) -> None:
     half, pivot, tilt = 0.5 * w.width(0.62, 0.76), w.length(0.80, 1.00), w.length(0.25, 0.95)
     iron, y_in = w.look("iron") if w.chance(0.6) else w.look("paint"), 0.5 * w.length(0.36, 0.44)
     spread = w.length(0.45, 0.60)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.025)
         for foot in (-spread, spread):
             w.rod((foot, y, 0.025), (0.0, y, pivot), 0.022, iron)
@@ -247,7 +247,7 @@ def squat_rack(w: Workbench) -> None:
     iron, steel = w.look("iron") if w.chance(0.65) else w.look("paint"), w.look("chrome")
     cage = w.chance(0.6)
     x0, x1, t = -0.5 * deep, 0.5 * deep, 0.035
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - t)
         w.box((x0, x1), (y - t, y + t), (0.0, 0.07), iron)
         for x in (x0 + t, x1 - t) if cage else (x0 + 0.3 * deep,):
@@ -266,7 +266,7 @@ def squat_rack(w: Workbench) -> None:
     else:
         w.box((post - t, post + t), (-half, half), (high - 0.10, high - 0.02), iron)
     z, reach, x = w.length(0.95, 1.40), 0.5 * w.length(1.80, 2.10), post + t + 0.025
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.box((post, post + 0.12), (side * (half - t) - 0.03, side * (half - t) + 0.03), (z - 0.06, z - 0.014), iron)
         end = _plates(w, x, side * (reach - 0.30), z, side, w.length(0.18, 0.225), w.whole(1, 3))
         w.rod((x, end, z), (x, side * reach, z), 0.025, steel)
@@ -287,14 +287,14 @@ def plate_tree(w: Workbench) -> None:
         w.box((x - 0.04, x + 0.04), (-0.30, 0.30), (0.0, 0.06), iron)
     twin = w.chance(0.5)
     if twin:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.bar((side * (foot - 0.05), 0.0, 0.05), (side * 0.03, 0.0, high), 0.07, 0.06, iron)
     else:
         w.box((-0.04, 0.04), (-0.04, 0.04), (0.06, high), iron)
     levels = w.whole(2, 3)
     for i in range(levels):
         z = 0.30 + (high - 0.42) * i / (levels - 1)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.0, side * 0.02, z), (0.0, side * 0.26, z), 0.024, steel)
             _plates(w, 0.0, side * 0.05, z, side, (0.225, 0.17, 0.125)[i] * w.length(0.9, 1.0), w.whole(1, 3))
         if twin:
@@ -340,7 +340,7 @@ def trampoline(w: Workbench) -> None:
         w.rod((*at, 0.0), (*at, 0.035), 0.023, w.look("rubber"))
     if w.chance(0.55):
         high, x = w.length(0.95, 1.25), -0.86 * r
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((x, side * 0.30, 0.0), (x - 0.05, side * 0.30, high), 0.016, w.look("metal"))
         w.rod((x - 0.05, -0.32, high), (x - 0.05, 0.32, high), 0.022, w.look("rubber"), round_ends=True)
         w.rod((x, -0.30, z - 0.02), (x, 0.30, z - 0.02), 0.014, w.look("metal"))
@@ -362,7 +362,7 @@ def medicine_balls(w: Workbench) -> None:
     else:
         half = 0.5 * count * 2.15 * r
         rows = w.whole(1, 2)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.bar((0.18, side * half, 0.0), (-0.16, side * half, 0.35 + 0.40 * rows), 0.04, 0.05, iron)
             w.bar((-0.28, side * half, 0.0), (-0.10, side * half, 0.45), 0.04, 0.05, iron)
         for row in range(rows):
@@ -370,7 +370,7 @@ def medicine_balls(w: Workbench) -> None:
             x = 0.18 - 0.34 * z / (0.35 + 0.40 * rows)
             for dx in (0.0, 1.2 * r):
                 w.rod((x + dx, -half, z), (x + dx, half, z), 0.014, iron)
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.rod((x, side * half, z), (x + 1.2 * r, side * half, z), 0.014, iron)
             for i in range(count):
                 y = (i - 0.5 * (count - 1)) * 2.1 * r

@@ -9,8 +9,8 @@ import numpy as np
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, frustum, loft, named_mesh
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Point, Range, Workbench
 
 
@@ -83,7 +83,7 @@ def kiva(w: Workbench) -> None:
     reach = front + w.length(0.18, 0.32)
     w.box((0.3 * deep, reach), (-half - 0.02, half + 0.02), (0.0, ledge), look)
     if w.chance(0.5):
-        side = w.choice(BOTH)
+        side = w.choice(BOTH_SIDES)
         y = sorted((side * 0.7 * half, side * (half + w.length(0.35, 0.70))))
         w.box((0.0, 0.9 * deep), (y[0], y[1]), (0.0, ledge + 0.10), look)
     for i in range(3):
@@ -115,11 +115,11 @@ def smoke_hood(w: Workbench) -> None:
     )
     w.box((0.0, flue), (-0.7 * flue, 0.7 * flue), (hood + band + rise, top), w.look(shell))
     if w.chance(0.55):
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half - 0.07)
             w.rod((deep - 0.07, y, plinth), (deep - 0.07, y, hood), w.length(0.02, 0.06), w.look(shell))
     else:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half - 0.05)
             w.box((0.0, 0.7 * deep), (y - 0.05, y + 0.05), (plinth, hood), stone)
     _logs(w, (0.5 * deep, 0.0, plinth + 0.05), 0.35 * half)
@@ -168,7 +168,7 @@ def inglenook(w: Workbench) -> None:
     inner = half - pier
     w.box((pier, pier + 0.02), (-0.45 * inner, 0.45 * inner), (0.0, high), w.look("char"), solid=False)
     w.box((pier, deep + w.length(0.0, 0.35)), (-inner, inner), (0.0, 0.05), w.look("stone"))
-    for side in BOTH[: w.whole(0, 2)]:
+    for side in BOTH_SIDES[: w.whole(0, 2)]:
         c = side * (inner - 0.15)
         w.box((pier, deep - 0.05), (c - 0.15, c + 0.15), (0.38, 0.43), wood)
         w.box((pier, deep - 0.10), (c - 0.12, c + 0.12), (0.05, 0.38), brick)
@@ -177,7 +177,7 @@ def inglenook(w: Workbench) -> None:
         iron = w.look("iron")
         z = 0.20
         w.box((pier + 0.05, deep - 0.08), (-0.30, 0.30), (z - 0.03, z), iron)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.box((deep - 0.12, deep - 0.09), (side * 0.28 - 0.015, side * 0.28 + 0.015), (0.05, z + 0.22), iron)
             w.box((pier + 0.05, pier + 0.08), (side * 0.28 - 0.015, side * 0.28 + 0.015), (0.05, z + 0.15), iron)
         w.rod((deep - 0.10, -0.30, z + 0.12), (deep - 0.10, 0.30, z + 0.12), 0.012, iron, solid=False)
@@ -190,13 +190,13 @@ def inglenook(w: Workbench) -> None:
 def overmantel(w: Workbench) -> None:
     """Victorian: arched cast-iron insert with tiled cheeks in a surround of columns, a panel or mirror above."""
     half, deep, shelf = 0.5 * w.width(1.25, 1.60), w.length(0.22, 0.32), w.length(1.10, 1.30)
-    wood = parts.body(w)
+    wood = parts.wood_look(w)
     insert = w.length(0.42, 0.50)
     mouth, spring = w.length(0.19, 0.26), w.length(0.40, 0.55)
     frame_top = w.length(0.90, 1.00)
     iron, tile = w.look("iron"), w.new_look("ceramic") if w.chance(0.5) else w.new_look("paint")
     w.box((0.0, 0.03), (-half, half), (0.0, shelf), w.look("char"))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = sorted((side * insert, side * (half - 0.06)))
         w.box((0.03, deep), (y[0], y[1]), (0.0, shelf), wood)
         y = sorted((side * mouth, side * insert))
@@ -207,7 +207,7 @@ def overmantel(w: Workbench) -> None:
     w.box((0.03, deep), (-insert, insert), (frame_top, shelf), wood)
     w.box((0.0, deep + 0.10), (-half, half), (shelf, shelf + 0.045), wood)
     turned = w.chance(0.5)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.11)
         if turned:
             w.cylinder((deep + 0.03, y), (0.12, shelf), 0.035, wood)
@@ -234,7 +234,7 @@ def overmantel(w: Workbench) -> None:
             solid=False,
         )
         w.box((0.0, 0.12), (-over - 0.04, over + 0.04), (z[1], z[1] + 0.06), wood)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.09, side * (over - 0.05), z[0]), (0.09, side * (over - 0.05), z[1]), 0.025, wood)
     w.top((0.07, deep + 0.06), (-half + 0.05, half - 0.05), shelf + 0.045)
 
@@ -244,7 +244,7 @@ def log_wall(w: Workbench) -> None:
     half, deep, bench = 0.5 * w.width(1.60, 2.60), w.length(0.40, 0.55), w.length(0.22, 0.45)
     stone, dark = w.look("stone") if w.chance(0.6) else w.look("lacquer"), w.look("dark")
     box, high = w.length(0.35, 0.50), w.length(0.55, 0.85)
-    side = w.choice(BOTH)
+    side = w.choice(BOTH_SIDES)
     c = side * (half - box - w.length(0.05, 0.20))
     w.box((0.0, deep + 0.12), (-half, half), (bench - 0.08, bench), stone)
     w.box((0.0, deep + 0.04), (min(c - box, side * half), max(c + box, side * half)), (0.0, bench - 0.08), stone)
@@ -307,11 +307,11 @@ def bioethanol(w: Workbench) -> None:
         y = long * (2 * (i + 0.5) / flames - 1)
         rise = w.length(0.06, 0.13)
         w.ellipsoid((0.0, y, z + 0.02 + 0.9 * rise), (0.03, 0.9 * long / flames, rise), w.look("fire"), solid=False)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         x = side * (0.5 * deep - 0.03)
         w.box((x - 0.004, x + 0.004), (-0.9 * half, 0.9 * half), (z, z + high), w.look("glass"))
     if w.chance(0.6):
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half - 0.03)
             w.box((-0.5 * deep, 0.5 * deep), (y - 0.03, y + 0.03), (z, z + high), look)
         w.box((-0.5 * deep, 0.5 * deep), (-half, half), (z + high, z + high + 0.06), look)
@@ -321,11 +321,11 @@ def gas_radiant(w: Workbench) -> None:
     """Gas heater of the seventies: box with a row of glowing ceramic bars behind wires in a stepped surround."""
     half, top, deep = 0.5 * w.width(1.10, 1.60), w.length(0.70, 0.95), w.length(0.14, 0.24)
     tiles = w.chance(0.5)
-    look = w.look("masonry") if tiles else parts.body(w)
+    look = w.look("masonry") if tiles else parts.wood_look(w)
     steps = w.whole(0, 2)
     w.box((0.0, deep), (-0.5 * half if steps == 2 else -half, 0.5 * half if steps == 2 else half), (0.0, top), look)
     if steps == 2:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             for inner, outer, high in ((0.5, 0.75, 0.8), (0.75, 1.0, 0.6)):
                 y = sorted((side * inner * half, side * outer * half))
                 w.box((0.0, deep), (y[0], y[1]), (0.0, high * top), look)
@@ -361,7 +361,7 @@ def arched_oven(w: Workbench) -> None:
     spring = shelf + w.length(0.18, 0.38)
     top = spring + mouth + w.length(0.15, 0.40)
     w.box((0.0, 0.10), (-half, half), (0.0, top), w.look("char"))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = sorted((side * mouth, side * half))
         w.box((0.10, deep), (y[0], y[1]), (0.0, top), look)
         c = side * (mouth - 0.004)

@@ -6,8 +6,8 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, named_mesh
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
@@ -54,7 +54,7 @@ def tv_speakers(w: Workbench) -> None:
         solid=False,
     )
     cloth = w.look("iron")
-    for s in BOTH:
+    for s in BOTH_SIDES:
         if beside:
             low, top = sorted((s * 0.5 * panel, s * 0.5 * width))
             w.box((-0.02, 0.05), (low, top), (lift + 0.01, lift + high - 0.01), cloth)
@@ -82,8 +82,8 @@ def tv_serif(w: Workbench) -> None:
         w.box((-0.5 * ledge - 0.02, 0.5 * ledge + 0.02), y, (z, z + 0.02), shell)
     if legs:
         wood = w.look("wood")
-        for sx in BOTH:
-            for sy in BOTH:
+        for sx in BOTH_SIDES:
+            for sy in BOTH_SIDES:
                 top = (sx * 0.4 * ledge, sy * 0.36 * width, legs + 0.005)
                 w.rod((sx * (0.4 * ledge + 0.4 * legs), sy * 0.44 * width, 0.0), top, 0.012, wood)
 
@@ -101,7 +101,7 @@ def tv_curved(w: Workbench) -> None:
         w.mesh(_curved(0.6 * width, 0.12, 0.05, 0.016), (0.02, 0.0, 0.0), dark)
         w.box((-0.035, 0.0), (-0.10, 0.10), (0.005, lift + 0.05), dark)
     else:
-        for s in BOTH:
+        for s in BOTH_SIDES:
             at = s * 0.3 * width
             w.bar((-0.13, at, 0.008), (0.15, at + s * 0.03, 0.008), 0.025, 0.016, dark)
             w.box((-0.01, 0.02), (at - 0.015, at + 0.015), (0.005, lift + 0.03), dark)
@@ -151,12 +151,12 @@ def monitor_curved(w: Workbench) -> None:
     )
     w.box((-0.09, -0.05), (-0.03, 0.03), (0.005, lift + 0.65 * high), dark)
     w.box((-0.06, -0.02), (-0.05, 0.05), (lift + 0.4 * high, lift + 0.65 * high), dark)
-    for s in BOTH:
+    for s in BOTH_SIDES:
         w.bar((-0.08, 0.0, 0.008), (0.14, s * 0.24, 0.008), 0.03, 0.016, dark)
     w.box((0.20, 0.33), (-0.21, w.choice((0.08, 0.21))), (0.0, 0.018), w.look("dark"), solid=False)
     w.ellipsoid((0.26, 0.3, 0.014), (0.055, 0.032, 0.016), w.look("dark"), solid=False)
     if w.chance(0.3):
-        for s in BOTH:
+        for s in BOTH_SIDES:
             at = s * (0.5 * width + 0.08)
             w.box((-0.06, 0.06), (at - 0.05, at + 0.05), (0.0, w.length(0.15, 0.26)), w.look("iron"))
 
@@ -202,10 +202,10 @@ def desktop_tower(w: Workbench) -> None:
     elif way == "riser":
         base, wood = w.length(0.08, 0.13), w.look("wood")
         w.box((-0.14, 0.12), (-0.3, 0.3), (base - 0.018, base), wood)
-        for s in BOTH:
+        for s in BOTH_SIDES:
             w.box((-0.13, 0.11), (s * 0.28 - 0.01, s * 0.28 + 0.01), (0.0, base - 0.018), wood)
     else:
-        s, tall = w.choice(BOTH), w.length(0.34, 0.46)
+        s, tall = w.choice(BOTH_SIDES), w.length(0.34, 0.46)
         near = s * (0.5 * width + 0.06)
         low, top = sorted((near, near + s * w.length(0.16, 0.21)))
         w.box((-0.24, 0.16), (low, top), (0.0, tall), shell)
@@ -234,7 +234,7 @@ def tv_trolley(w: Workbench) -> None:
     _screen(w, 0.03, (-0.5 * width, 0.5 * width), (z0, z0 + high), w.look("dark"), w.length(0.01, 0.025), 0.04)
     single = w.chance(0.4)
     tops = z0 + 0.65 * high
-    for s in BOTH:
+    for s in BOTH_SIDES:
         at = s * half
         w.box((-0.28, 0.28), (at - 0.02, at + 0.02), (0.065, 0.095), metal)
         for px in (-0.26, 0.26):

@@ -5,63 +5,65 @@ from __future__ import annotations
 import itertools
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
 def _ends(w: Workbench, width: float, depth: float, top: float, look: Look, kind: str) -> None:
     """What carries a bench near both its ends: posts, a metal hoop, a trapezium of tube, a solid panel, a cross."""
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y, half = side * (0.5 * width - w.length(0.06, 0.14)), 0.5 * depth - 0.03
         if kind == "hoop":
-            shared.path(w, [(-half, y, top), (-half, y, 0.012), (half, y, 0.012), (half, y, top)], 0.012, look)
+            parts.tube_along(w, [(-half, y, top), (-half, y, 0.012), (half, y, 0.012), (half, y, top)], 0.012, look)
         elif kind == "trapezium":
-            for x in BOTH:
+            for x in BOTH_SIDES:
                 w.bar((x * half, y, 0.0), (0.75 * x * half, y, top), 0.045, 0.03, look)
             w.box((-half, half), (y - 0.022, y + 0.022), (0.0, 0.022), look)
             w.box((-half, half), (y - 0.022, y + 0.022), (top - 0.03, top), look)
         elif kind == "panel":
             w.box((-half, half), (y - 0.02, y + 0.02), (0.0, top), look)
         elif kind == "cross":
-            for x in BOTH:
+            for x in BOTH_SIDES:
                 w.bar((x * half, y, 0.0), (-x * half, y, top), 0.035, 0.05, look)
         else:
-            for x in BOTH:
+            for x in BOTH_SIDES:
                 w.bar((x * half, y + side * 0.02, 0.0), (0.9 * x * half, y, top), 0.045, 0.045, look)
 
 
 def slat_bench(w: Workbench) -> None:
     """Long slats with gaps between them on metal or wooden end frames."""
     width, depth, seat = w.width(0.95, 1.60), w.depth(0.34, 0.48), w.length(0.36, 0.46)
-    wood, slats = shared.timber(w, 0.2), w.whole(4, 10)
+    wood, slats = parts.wood_look(w, 0.2), w.whole(4, 10)
     legs = wood if w.chance(0.4) else w.look(w.choice(("iron", "chrome", "dark")))
     each, thick = depth / slats, w.choice((0.025, 0.04))
     for i in range(slats):
         x = (i + 0.5) * each - 0.5 * depth
         w.box((x - 0.36 * each, x + 0.36 * each), (-0.5 * width, 0.5 * width), (seat - thick, seat), wood)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.10)
         w.box(
             (-0.5 * depth + 0.01, 0.5 * depth - 0.01), (y - 0.07, y + 0.07), (seat - thick - 0.02, seat - thick), legs
         )
     _ends(w, width, depth, seat - thick - 0.01, legs, w.choice(("hoop", "trapezium", "posts", "panel")))
     if w.chance(0.25):
-        shared.pad(w, (depth - 0.02, 0.45 * width, 0.06), (0.0, 0.24 * width, seat + 0.03), shared.upholstery(w), 0.02)
+        parts.pad(
+            w, (depth - 0.02, 0.45 * width, 0.06), (0.0, 0.24 * width, seat + 0.03), parts.upholstery_look(w), 0.02
+        )
     w.top((-0.45 * depth, 0.45 * depth), (-0.45 * width, 0.45 * width), seat, "seat")
 
 
 def woven_bench(w: Workbench) -> None:
     """Turned or square posts at the corners with rails, a seat of cord or straps between them."""
     width, depth, seat = w.width(0.90, 1.40), w.depth(0.36, 0.46), w.length(0.42, 0.48)
-    wood, t = shared.timber(w, 0.2), w.length(0.035, 0.05)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    wood, t = parts.wood_look(w, 0.2), w.length(0.035, 0.05)
+    x, y = parts.footprint(depth, width)
     rise = w.choice((0.0, 0.0, 0.06, 0.16))
     w.legs((x[0] + 0.5 * t, x[1] - 0.5 * t), (y[0] + 0.5 * t, y[1] - 0.5 * t), (0.0, seat + rise), t, wood, round_=True)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         for z in (seat - 0.03, w.length(0.12, 0.20)):
             w.rod((side * 0.5 * (depth - t), y[0] + t, z), (side * 0.5 * (depth - t), y[1] - t, z), 0.014, wood)
             w.rod(
@@ -93,10 +95,10 @@ def woven_bench(w: Workbench) -> None:
 def roll_arm_bench(w: Workbench) -> None:
     """Window bench: a padded seat between two scrolled or boxed arms, no back."""
     width, depth, seat = w.width(1.0, 1.45), w.depth(0.40, 0.52), w.length(0.42, 0.48)
-    cloth, wood, half = shared.upholstery(w, 0.2), w.look(w.choice(("wood", "brass", "lacquer"))), 0.5 * width
+    cloth, wood, half = parts.upholstery_look(w, 0.2), w.look(w.choice(("wood", "brass", "lacquer"))), 0.5 * width
     arm = seat + w.length(0.14, 0.26)
     scroll = w.chance(0.6)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         if scroll:
             y = side * (half - 0.085)
             w.box(
@@ -109,7 +111,7 @@ def roll_arm_bench(w: Workbench) -> None:
                 cloth,
             )
         else:
-            shared.pad(
+            parts.pad(
                 w,
                 (depth, 0.10, arm - seat + 0.14),
                 (0.0, side * (half - 0.05), 0.5 * (arm + seat - 0.14)),
@@ -117,7 +119,7 @@ def roll_arm_bench(w: Workbench) -> None:
                 0.025,
             )
     thick = w.length(0.10, 0.16)
-    shared.pad(w, (depth, width - 0.16, thick), (0.0, 0.0, seat - 0.5 * thick), cloth, 0.03)
+    parts.pad(w, (depth, width - 0.16, thick), (0.0, 0.0, seat - 0.5 * thick), cloth, 0.03)
     w.box(
         (-0.5 * depth + 0.02, 0.5 * depth - 0.02),
         (-half + 0.06, half - 0.06),
@@ -142,31 +144,31 @@ def roll_arm_bench(w: Workbench) -> None:
 def banquette(w: Workbench) -> None:
     """Dining-nook bench on a closed plinth: padded seat, tall padded back in channels or panels."""
     width, depth, seat = w.width(1.0, 1.6), w.depth(0.50, 0.60), w.length(0.44, 0.48)
-    height, cloth, body = w.length(0.84, 1.10), shared.upholstery(w, 0.4), shared.timber(w, 0.5)
+    height, cloth, body = w.length(0.84, 1.10), parts.upholstery_look(w, 0.4), parts.wood_look(w, 0.5)
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
     w.box((x0, x1 - 0.06), (-half + 0.01, half - 0.01), (0.0, 0.09), w.look("dark"))
     w.box((x0, x1 - 0.02), (-half, half), (0.08, seat - 0.09), body)
     w.box((x0, x0 + 0.03), (-half, half), (seat - 0.1, height - 0.02), body)
-    parts = w.whole(1, 2)
-    for i in range(parts):
-        y = (i + 0.5) * width / parts - half
-        shared.pad(w, (depth - 0.03, width / parts - 0.004, 0.10), (0.015, y, seat - 0.05), cloth, 0.03)
+    pads = w.whole(1, 2)
+    for i in range(pads):
+        y = (i + 0.5) * width / pads - half
+        parts.pad(w, (depth - 0.03, width / pads - 0.004, 0.10), (0.015, y, seat - 0.05), cloth, 0.03)
     channels = w.choice((1, 2, 3, 8, 12))
     thick = w.length(0.07, 0.11)
     for i in range(channels):
         y = (i + 0.5) * width / channels - half
         size = (thick, width / channels - 0.002, height - seat + 0.02)
-        shared.pad(w, size, (x0 + 0.03 + 0.5 * thick, y, 0.5 * (height + seat) - 0.01), cloth, 0.03, tilt=-0.03)
+        parts.pad(w, size, (x0 + 0.03 + 0.5 * thick, y, 0.5 * (height + seat) - 0.01), cloth, 0.03, tilt=-0.03)
     w.top((x0 + 0.15, x1 - 0.03), (-half + 0.1, half - 0.1), seat, "seat")
 
 
 def garden_bench(w: Workbench) -> None:
     """Slatted park bench: cast or wooden end frames with arms, level slats for seat and back."""
     width, seat, height = w.width(1.0, 1.5), w.length(0.42, 0.46), w.length(0.76, 0.90)
-    wood, half = shared.timber(w, 0.25), 0.5 * width
+    wood, half = parts.wood_look(w, 0.25), 0.5 * width
     frame = wood if w.chance(0.4) else w.look("iron")
     t = 0.045 if frame == wood else 0.03
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.5 * t - w.choice((0.0, 0.06)))
         w.bar((0.24, y, 0.0), (0.21, y, seat + 0.20), t, t, frame)
         w.bar((-0.24, y, 0.0), (-0.19, y, seat), t, t, frame)
@@ -190,7 +192,7 @@ def trunk_bench(w: Workbench) -> None:
     """Lidded chest to sit on: panelled or woven body, a lid with or without a cushion, ring or cut-out handles."""
     width, depth, seat = w.width(0.80, 1.30), w.depth(0.38, 0.50), w.length(0.40, 0.48)
     body = w.look(w.choice(("wood", "wicker", "lacquer", "leather")))
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     foot = w.choice((0.0, 0.04, 0.08))
     w.box((x[0] + 0.012, x[1] - 0.012), (y[0] + 0.012, y[1] - 0.012), (foot, seat - 0.03), body)
     w.box(x, y, (seat - 0.035, seat), body)
@@ -207,7 +209,7 @@ def trunk_bench(w: Workbench) -> None:
         metal = w.look("brass")
         for c in (-0.28 * width, 0.28 * width):
             w.box((x[1] - 0.014, x[1] + 0.004), (c - 0.02, c + 0.02), (foot, seat), metal, solid=False)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (-0.05, side * 0.5 * width, seat - 0.12),
             (0.05, side * 0.5 * width, seat - 0.12),
@@ -217,7 +219,7 @@ def trunk_bench(w: Workbench) -> None:
         )
     top = seat
     if w.chance(0.85):
-        shared.pad(w, (depth - 0.02, width - 0.02, 0.06), (0.0, 0.0, seat + 0.027), shared.upholstery(w, 0.2), 0.02)
+        parts.pad(w, (depth - 0.02, width - 0.02, 0.06), (0.0, 0.0, seat + 0.027), parts.upholstery_look(w, 0.2), 0.02)
         top = seat + 0.057
     w.top((0.8 * x[0], 0.8 * x[1]), (0.85 * y[0], 0.85 * y[1]), top, "seat")
 
@@ -226,7 +228,7 @@ def footstool(w: Workbench) -> None:
     """Small domed footstool on turned, splayed or curved legs with a wooden rim."""
     w.mass_kg = 4.0
     width, depth, height = w.width(0.40, 0.62), w.depth(0.34, 0.46), w.length(0.28, 0.44)
-    cloth, wood, power = shared.upholstery(w, 0.35), shared.timber(w), w.choice((2.0, 5.0, 8.0))
+    cloth, wood, power = parts.upholstery_look(w, 0.35), parts.wood_look(w, 0.3), w.choice((2.0, 5.0, 8.0))
     rx, ry = 0.5 * depth, 0.5 * width
     rim = [Ring(z, rx - 0.01, ry - 0.01, power=power) for z in (0.0, 0.05)]
     w.mesh(loft(rim, 16, hull=True), (0.0, 0.0, height - 0.16), wood)
@@ -249,7 +251,7 @@ def footstool(w: Workbench) -> None:
         round_=True,
     )
     if w.chance(0.4):
-        for sx, sy in itertools.product(BOTH, BOTH):
+        for sx, sy in itertools.product(BOTH_SIDES, BOTH_SIDES):
             w.ball((sx * reach * rx, sy * reach * ry, height - 0.19), 0.8 * thick, wood)
     w.top((-0.3 * depth, 0.3 * depth), (-0.3 * width, 0.3 * width), height, "seat")
 
@@ -258,10 +260,10 @@ def storage_cube(w: Workbench) -> None:
     """Box ottoman to the floor with a lid that overhangs, seams and pull tab, or open shelves at its side."""
     w.mass_kg = 6.0
     width, depth, height = w.width(0.38, 0.95), w.depth(0.38, 0.50), w.length(0.36, 0.46)
-    cover = shared.upholstery(w, 0.5)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    cover = parts.upholstery_look(w, 0.5)
+    x, y = parts.footprint(depth, width)
     w.box((x[0] + 0.012, x[1] - 0.012), (y[0] + 0.012, y[1] - 0.012), (0.0, height - 0.07), cover)
-    shared.pad(
+    parts.pad(
         w, (depth, width, 0.08), (0.0, 0.0, height - 0.04), cover if w.chance(0.7) else w.new_look("leather"), 0.02
     )
     kind = w.choice(("tab", "buttons", "straps"))
@@ -282,17 +284,17 @@ def lounge_ottoman(w: Workbench) -> None:
     """Footrest of a lounge chair: a slanted cushion on a bent-wood, crossed or star base."""
     w.mass_kg = 6.0
     width, height = w.width(0.48, 0.66), w.length(0.36, 0.44)
-    cover, half, depth = shared.upholstery(w, 0.6), 0.5 * width, w.length(0.42, 0.54)
+    cover, half, depth = parts.upholstery_look(w, 0.6), 0.5 * width, w.length(0.42, 0.54)
     slant, thick = w.length(0.0, 0.22), w.length(0.08, 0.14)
-    shared.pad(w, (depth, width, thick), (0.0, 0.0, height - 0.5 * thick), cover, 0.035, tilt=slant)
+    parts.pad(w, (depth, width, thick), (0.0, 0.0, height - 0.5 * thick), cover, 0.035, tilt=slant)
     under = height - thick
     kind = w.choice(("star", "sled", "cross"))
     if kind == "star":
         w.mesh(chamfered_box((depth - 0.03, width - 0.03, 0.025), 0.012), (0.0, 0.0, under), w.look("wood"), tilt=slant)
-        shared.star(w, w.length(0.22, 0.28), 4, w.look("chrome"), under, castors=False)
+        parts.star_base(w, w.length(0.22, 0.28), 4, w.look("chrome"), under, castors=False)
         return
-    frame = w.look("wood") if w.chance(0.6) else shared.tubes(w)
-    for side in BOTH:
+    frame = w.look("wood") if w.chance(0.6) else parts.tube_look(w)
+    for side in BOTH_SIDES:
         y, reach = side * (half - 0.04), 0.5 * depth - 0.03
         if kind == "sled":
             rise = reach * math.tan(slant)
@@ -301,7 +303,7 @@ def lounge_ottoman(w: Workbench) -> None:
             ):
                 w.bar(a, b, 0.045, 0.022, frame)
         else:
-            for sx in BOTH:
+            for sx in BOTH_SIDES:
                 w.bar(
                     (sx * reach, y, 0.0),
                     (-0.8 * sx * reach, y, under + 0.8 * sx * reach * math.tan(slant)),
@@ -311,7 +313,7 @@ def lounge_ottoman(w: Workbench) -> None:
                 )
     w.bar((0.0, -half + 0.04, 0.5 * under), (0.0, half - 0.04, 0.5 * under), 0.03, 0.03, frame)
     if kind == "sled":
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.box(
                 (-0.5 * depth + 0.03, 0.5 * depth - 0.03),
                 (side * (half - 0.04) - 0.015, side * (half - 0.04) + 0.015),
@@ -337,7 +339,7 @@ def rattan_drum(w: Workbench) -> None:
         Ring(0.06, 0.95 * r, 0.95 * r),
         Ring(0.085, 0.6 * r, 0.6 * r),
     ]
-    w.mesh(loft(puff, 16, hull=True), (0.0, 0.0, body - 0.005), shared.upholstery(w, 0.1))
+    w.mesh(loft(puff, 16, hull=True), (0.0, 0.0, body - 0.005), parts.upholstery_look(w, 0.1))
 
 
 STYLES: tuple[Style, ...] = (

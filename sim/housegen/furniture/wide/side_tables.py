@@ -5,9 +5,8 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
@@ -22,17 +21,17 @@ def side_c(w: Workbench) -> None:
     width, depth, height = w.width(0.38, 0.55), w.depth(0.28, 0.42), w.length(0.52, 0.68)
     look, top = w.look(w.choice(("iron", "brass", "chrome"))), w.look(w.choice(("wood", "stone", "glass", "lacquer")))
     x, y = parts.slab(w, depth, width, (height - 0.02, height), top)
-    side, tube = w.choice(BOTH), w.length(0.015, 0.03)
+    side, tube = w.choice(BOTH_SIDES), w.length(0.015, 0.03)
     edge = side * (0.5 * width - 0.02)
     if w.chance(0.35):
-        w.box(x, shared.about(edge, 0.02), (0.0, height - 0.02), look)
+        w.box(x, parts.centred(edge, 0.02), (0.0, height - 0.02), look)
         w.box(x, y, (0.0, 0.015), look)
         return
     for c in (x[0] + 0.03, x[1] - 0.03):
-        w.box(shared.about(c, tube), shared.about(edge, tube), (0.0, height - 0.02), look)
-        w.box(shared.about(c, tube), y, (0.0, tube), look)
-        w.box(shared.about(c, tube), y, (height - 0.02 - tube, height - 0.02), look)
-    w.box((x[0] + 0.03, x[1] - 0.03), shared.about(edge, tube), (0.0, tube), look)
+        w.box(parts.centred(c, tube), parts.centred(edge, tube), (0.0, height - 0.02), look)
+        w.box(parts.centred(c, tube), y, (0.0, tube), look)
+        w.box(parts.centred(c, tube), y, (height - 0.02 - tube, height - 0.02), look)
+    w.box((x[0] + 0.03, x[1] - 0.03), parts.centred(edge, tube), (0.0, tube), look)
 
 
 def side_tray(w: Workbench) -> None:
@@ -55,19 +54,19 @@ def side_tray(w: Workbench) -> None:
         )
         depth = 0.85 * width
     else:
-        x, y = shared.about(0.0, depth), shared.about(0.0, width)
+        x, y = parts.footprint(depth, width)
         w.box(x, y, (height, height + 0.015), tray)
         for c in x:
-            w.box(shared.about(0.98 * c, 0.012), y, (height + 0.01, height + rim), tray)
+            w.box(parts.centred(0.98 * c, 0.012), y, (height + 0.01, height + rim), tray)
         for c in y:
-            w.box(x, shared.about(0.98 * c, 0.012), (height + 0.01, height + rim), tray)
+            w.box(x, parts.centred(0.98 * c, 0.012), (height + 0.01, height + rim), tray)
     for c in (-0.32 * width, 0.32 * width):
         _cross(w, (-0.42 * depth, 0.42 * depth), c, (0.012, height - 0.008), 0.024, wood)
-    for sx in BOTH:
+    for sx in BOTH_SIDES:
         for z in (0.1, height - 0.02):
             px = sx * 0.42 * depth * abs(2 * z / height - 1)
             w.rod((px, -0.32 * width, z), (px, 0.32 * width, z), 0.01, wood)
-    w.top(shared.about(0.0, 0.6 * depth), shared.about(0.0, 0.6 * width), height + 0.015)
+    w.top(parts.centred(0.0, 0.6 * depth), parts.centred(0.0, 0.6 * width), height + 0.015)
 
 
 def side_column(w: Workbench) -> None:
@@ -89,7 +88,7 @@ def side_column(w: Workbench) -> None:
 def bedside_tiers(w: Workbench) -> None:
     """Closed bedside case on a plinth or short feet: two or three drawers, or a door under an open niche."""
     width, depth, height = w.width(0.36, 0.60), w.depth(0.34, 0.48), w.length(0.46, 0.70)
-    body, front, foot = parts.body(w), parts.body(w), w.length(0.03, 0.14)
+    body, front, foot = parts.wood_look(w), parts.wood_look(w), w.length(0.03, 0.14)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), body)
     x, y = (x[0] + 0.01, x[1] - 0.025), (y[0] + 0.01, y[1] - 0.01)
     metal, handle = w.look("metal"), w.choice(("bar", "knob", "cup", "none"))
@@ -98,13 +97,13 @@ def bedside_tiers(w: Workbench) -> None:
     w.box(x, y, (foot, closed), body)
     if full or w.chance(0.4):
         rows = w.whole(2, 3) if full else w.whole(1, 2)
-        parts.drawers(w, x[1], y, (foot, closed), rows, 1, front, metal, handle)
+        parts.plain_drawers(w, x[1], y, (foot, closed), rows, 1, front, metal, handle)
     else:
-        parts.doors(w, x[1], y, (foot, closed), 1, front, metal, "knob" if handle == "cup" else handle)
+        parts.plain_doors(w, x[1], y, (foot, closed), 1, front, metal, "knob" if handle == "cup" else handle)
     if not full:
         w.box((x[0], x[0] + 0.015), y, (closed, height - 0.02), body)
         for c in (y[0] + 0.009, y[1] - 0.009):
-            w.box(x, shared.about(c, 0.018), (closed, height - 0.02), body)
+            w.box(x, parts.centred(c, 0.018), (closed, height - 0.02), body)
     if foot < 0.07:
         w.box((x[0] + 0.02, x[1] - 0.03), (y[0] + 0.02, y[1] - 0.02), (0.0, foot), w.look("dark"))
     else:
@@ -125,21 +124,24 @@ def bedside_frame(w: Workbench) -> None:
     x, y = parts.slab(w, depth, width, (height - 0.02, height), w.look("wood"))
     crate, shelves = w.chance(0.4), w.whole(1, 2)
     if crate:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             for i in range(4):
                 z = 0.01 + i * (height - 0.02) / 4
-                at = shared.about(side * (0.5 * width - 0.01), 0.014)
+                at = parts.centred(side * (0.5 * width - 0.01), 0.014)
                 w.box((x[0] + 0.012, x[1] - 0.012), at, (z, z + 0.18 * height), wood)
             for c in (x[0] + 0.01, x[1] - 0.01):
                 w.box(
-                    shared.about(c, 0.02), shared.about(side * (0.5 * width - 0.018), 0.03), (0.0, height - 0.02), wood
+                    parts.centred(c, 0.02),
+                    parts.centred(side * (0.5 * width - 0.018), 0.03),
+                    (0.0, height - 0.02),
+                    wood,
                 )
     else:
         w.legs(x, y, (0.0, height - 0.02), w.length(0.02, 0.035), wood)
     for i in range(shelves):
         z = 0.08 + i * 0.5 * (height - 0.1)
         for c in (y[0] + 0.012, y[1] - 0.012):
-            w.box((x[0] + 0.005, x[1] - 0.005), shared.about(c, 0.016), (z - 0.02, z), wood)
+            w.box((x[0] + 0.005, x[1] - 0.005), parts.centred(c, 0.016), (z - 0.02, z), wood)
         for k in range(4 if slats else 1):
             wide = (depth - 0.01) / (4 if slats else 1)
             a = x[0] + 0.005 + k * wide
@@ -158,14 +160,14 @@ def console_cross(w: Workbench) -> None:
     x, y = parts.slab(w, depth, width, (height - 0.025, height), top)
     inner, under = (x[0] + 0.01, x[1] - 0.01), height - 0.025
     back = w.chance(0.4)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.01 - 0.5 * tube)
-        shared.loop(w, inner, c, (0.0, under), tube, frame)
+        parts.tube_frame(w, inner, c, (0.0, under), tube, frame)
         if not back:
             _cross(w, (inner[0] + tube, inner[1] - tube), c, (tube, under - tube), 0.7 * tube, frame)
     if back:
         px = inner[0] + 0.5 * tube
-        for sign in BOTH:
+        for sign in BOTH_SIDES:
             a, b = (px, -sign * (0.5 * width - 0.02), 0.03), (px, sign * (0.5 * width - 0.02), under - 0.02)
             w.bar(a, b, 0.6 * tube, 0.6 * tube, frame)
     for i in range(w.whole(1, 2)):
@@ -185,9 +187,9 @@ def console_slabs(w: Workbench) -> None:
     look, thick = w.look(w.choice(("wood", "stone", "lacquer"))), w.length(0.03, 0.08)
     x, y = parts.slab(w, depth, width, (height - thick, height), top)
     under, c = height - thick, w.length(0.26, 0.40) * width
-    for side in BOTH:
+    for side in BOTH_SIDES:
         if kind == "slab":
-            w.box((x[0] + 0.03, x[1] - 0.03), shared.about(side * c, w.length(0.05, 0.16)), (0.0, under), look)
+            w.box((x[0] + 0.03, x[1] - 0.03), parts.centred(side * c, w.length(0.05, 0.16)), (0.0, under), look)
         elif kind == "drum":
             w.cylinder((0.0, side * c), (0.0, under), 0.36 * depth, look)
         elif kind == "vase":
@@ -195,7 +197,7 @@ def console_slabs(w: Workbench) -> None:
             rings = [Ring(z * under, r * depth, r * depth) for z, r in levels]
             w.mesh(loft(rings, 14), (0.0, side * c, 0.0), look)
         else:
-            w.box(x, shared.about(side * (0.5 * width - 0.5 * thick), thick), (0.0, under), top)
+            w.box(x, parts.centred(side * (0.5 * width - 0.5 * thick), thick), (0.0, under), top)
     if kind in ("slab", "flush") and w.chance(0.5):
         z = w.length(0.12, 0.4)
         w.box(

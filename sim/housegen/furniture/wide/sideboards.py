@@ -6,23 +6,22 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES, FeetKind, FrontKind, HandleKind
 from sim.housegen.furniture.shapes import frustum
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH, Feet, Front, Grip
 from sim.housegen.furniture.workbench import Workbench
 
 
 def sideboard_wine(w: Workbench) -> None:
     """Buffet with a lattice for bottles between cupboards, a drawer row over them, perhaps a plate rail behind."""
     width, depth, height = w.width(1.00, 1.60), w.depth(0.38, 0.48), w.length(0.82, 0.96)
-    look, metal = parts.body(w), w.look(w.choice(("iron", "brass")))
+    look, metal = parts.wood_look(w), w.look(w.choice(("iron", "brass")))
     top, foot = w.look("wood"), w.length(0.06, 0.14)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     third, split = w.length(0.30, 0.42), height - 0.2
     mid = (-0.5 * third, 0.5 * third) if w.chance(0.6) else (y[1] - third - 0.02, y[1] - 0.02)
     w.box((x[0] - 0.0, x[1] + 0.025), (y[0] - 0.02, y[1] + 0.02), (height - 0.03, height), top)
     w.box(x, y, (split, height - 0.03), look)
-    shared.drawers(
+    parts.styled_drawers(
         w,
         x[1],
         (y[0] + 0.01, y[1] - 0.01),
@@ -35,12 +34,12 @@ def sideboard_wine(w: Workbench) -> None:
     )
     w.box((x[0], x[0] + 0.02), y, (foot, split), look)
     w.box(x, y, (foot, foot + 0.02), look)
-    front: Front = w.choice(("frame", "raised", "flat"))
+    front: FrontKind = w.choice(("frame", "raised", "flat"))
     for span in ((y[0], mid[0]), (mid[1], y[1])):
         if span[1] - span[0] > 0.1:
             w.box(x, span, (foot, split), look)
             count = 2 if span[1] - span[0] > 0.75 else 1
-            shared.doors(
+            parts.styled_doors(
                 w, x[1], (span[0] + 0.01, span[1] - 0.01), (foot + 0.01, split), count, look, metal, front, "knob"
             )
         else:
@@ -58,8 +57,8 @@ def sideboard_wine(w: Workbench) -> None:
             w.rod((x[0] + 0.05, at, z), (x[1] - 0.02, at, z), 0.04, w.new_look("pot"), solid=False)
     if w.chance(0.4):
         w.box((x[0], x[0] + 0.02), y, (height, height + 0.14), top)
-    shared.feet(w, x, y, foot + 0.001, w.choice(("block", "plinth")), look)
-    shared.tops(w, x, y, height)
+    parts.feet(w, x, y, foot + 0.001, w.choice(("block", "plinth")), look)
+    parts.top_surface(w, x, y, height)
 
 
 def sideboard_altar(w: Workbench) -> None:
@@ -71,14 +70,14 @@ def sideboard_altar(w: Workbench) -> None:
     x = (-0.5 * depth, 0.5 * depth)
     w.box(x, (-0.5 * width, 0.5 * width), (height - 0.03, height), look)
     if w.chance(0.6):
-        for s in BOTH:
+        for s in BOTH_SIDES:
             w.mesh(
                 frustum((depth, 0.05), (depth, 0.02), 0.045, (0.0, s * 0.015)),
                 (0.0, s * (0.5 * width - 0.025), height),
                 look,
             )
     w.box((x[0], x[1] - 0.02), (-body, body), (foot, height - 0.03), look)
-    for s in BOTH:
+    for s in BOTH_SIDES:
         for px in (x[0] + 0.02, x[1] - 0.02):
             w.box((px - 0.02, px + 0.02), (s * body - 0.025, s * body + 0.025), (0.0, height - 0.03), look)
         bracket = frustum((0.02, 0.02), (0.02, 0.14), min(0.09, foot), (0.0, -s * 0.06))
@@ -86,12 +85,12 @@ def sideboard_altar(w: Workbench) -> None:
     split = height - 0.05
     face = x[1] - 0.02
     if w.chance(0.6):
-        shared.drawers(
+        parts.styled_drawers(
             w, face, (-body + 0.03, body - 0.03), (split - 0.16, split), look, brass, "flat", "drop", w.whole(2, 4)
         )
         split -= 0.16
     doors = 4 if width > 1.2 and w.chance(0.6) else 2
-    shared.doors(
+    parts.styled_doors(
         w,
         face,
         (-body + 0.03, body - 0.03),
@@ -106,19 +105,19 @@ def sideboard_altar(w: Workbench) -> None:
     front = face + parts.FRONT_M
     w.rod((front - 0.002, 0.0, z), (front + 0.006, 0.0, z), radius, brass, solid=False)
     w.box((front, front + 0.02), (-0.012, 0.012), (z - 0.05, z + 0.05), brass, solid=False)
-    shared.tops(w, x, (-body, body), height)
+    parts.top_surface(w, x, (-body, body), height)
 
 
 def sideboard_barn(w: Workbench) -> None:
     """Sideboard with barn doors that slide on a rail before open shelves, in a timber or steel frame."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.38, 0.46), w.length(0.72, 0.92)
     wood, iron = w.look("wood"), w.look("iron")
-    frame = iron if w.chance(0.4) else parts.body(w)
+    frame = iron if w.chance(0.4) else parts.wood_look(w)
     leaf = w.look("lacquer") if w.chance(0.4) else wood
     foot, x = w.length(0.05, 0.16), (-0.5 * depth, 0.5 * depth)
     y = (-0.5 * width, 0.5 * width)
     w.box((x[0], x[1] + 0.02), (y[0] - 0.015, y[1] + 0.015), (height - 0.035, height), wood)
-    shared.open_case(w, (x[0], x[1] - 0.03), y, (foot, height - 0.035), 0.025, frame)
+    parts.open_case(w, (x[0], x[1] - 0.03), y, (foot, height - 0.035), 0.025, frame)
     bays = w.whole(2, 3)
     rows = w.whole(1, 2)
     step = (height - 0.085 - foot) / (rows + 1)
@@ -129,7 +128,7 @@ def sideboard_barn(w: Workbench) -> None:
         z = foot + 0.025 + i * step
         if i:
             w.box((x[0], x[1] - 0.04), (y[0] + 0.02, y[1] - 0.02), (z - 0.018, z), wood)
-        shared.things(w, x, (y[0] + 0.06, y[1] - 0.06), z, bays + 1, step - 0.04)
+        parts.shelf_objects(w, x, (y[0] + 0.06, y[1] - 0.06), z, bays + 1, step - 0.04)
     rail = height - 0.07
     w.rod((x[1] - 0.008, y[0], rail), (x[1] - 0.008, y[1], rail), 0.012, iron, solid=False)
     w.box((x[1] - 0.03, x[1] - 0.005), y, (foot, foot + 0.025), frame, solid=False)
@@ -151,20 +150,20 @@ def sideboard_barn(w: Workbench) -> None:
             w.box((x[1], x[1] + 0.016), span, (edge, edge + 0.05), parts.darker(leaf, 0.85), solid=False)
         for at in (span[0] + 0.07, span[1] - 0.09):
             w.box((x[1], x[1] + 0.018), (at, at + 0.02), (z[1] - 0.08, z[1] + 0.02), iron, solid=False)
-    shared.feet(w, x, y, foot + 0.001, w.choice(("block", "castor", "sled")), frame, 0.045)
-    shared.tops(w, x, y, height)
+    parts.feet(w, x, y, foot + 0.001, w.choice(("block", "castor", "sled")), frame, 0.045)
+    parts.top_surface(w, x, y, height)
 
 
 def sideboard_round_ends(w: Workbench) -> None:
     """Sideboard with a rounded plan: open shelves in half-round ends, doors or drawers between them."""
     width, depth, height = w.width(1.10, 1.80), w.depth(0.36, 0.46), w.length(0.70, 0.90)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     face = w.look(w.choice(("wood", "lacquer"))) if w.chance(0.5) else look
     foot, reach = w.length(0.04, 0.16), min(0.5 * depth, 0.22)
     inner = 0.5 * width - reach
     x = (-0.5 * depth, 0.5 * depth)
     outline = []
-    for s in BOTH:
+    for s in BOTH_SIDES:
         for i in range(9):
             a = math.pi * (i / 8 - 0.5) - (0.0 if s > 0 else math.pi)
             outline.append((-s * 0.5 * depth * math.sin(a) * s, s * inner + reach * math.cos(a)))
@@ -172,9 +171,9 @@ def sideboard_round_ends(w: Workbench) -> None:
     rows = w.whole(2, 3)
     step = (height - foot - 0.025) / rows
     for i in range(rows + 1):
-        w.mesh(shared.prism(outline, 0.025), (0.0, 0.0, foot + i * step), look)
+        w.mesh(parts.prism(outline, 0.025), (0.0, 0.0, foot + i * step), look)
     w.box((x[0], x[1] - 0.02), (-inner, inner), (foot, height), look)
-    for s in BOTH:
+    for s in BOTH_SIDES:
         for i in range(rows):
             if w.chance(0.6):
                 z, thing = foot + 0.025 + i * step, w.choice(("pot", "ceramic", "book"))
@@ -186,18 +185,20 @@ def sideboard_round_ends(w: Workbench) -> None:
                     solid=False,
                 )
     metal = w.look(w.choice(("brass", "dark")))
-    grip: Grip = w.choice(("knob", "slot", "tab", "bar"))
+    grip: HandleKind = w.choice(("knob", "slot", "tab", "bar"))
     z = (foot + 0.025, height - 0.002)
-    front: Front = w.choice(("flat", "cane", "frame"))
+    front: FrontKind = w.choice(("flat", "cane", "frame"))
     if w.chance(0.6):
-        shared.doors(w, x[1] - 0.02, (-inner, inner), z, max(2, round(2 * inner / 0.45)), face, metal, front, grip)
-    else:
-        shared.drawers(
-            w, x[1] - 0.02, (-inner, inner), shared.graded(*z, rows, 1.0), face, metal, "flat", grip, w.whole(1, 2)
+        parts.styled_doors(
+            w, x[1] - 0.02, (-inner, inner), z, max(2, round(2 * inner / 0.45)), face, metal, front, grip
         )
-    kind: Feet = w.choice(("plinth", "block")) if foot < 0.09 else w.choice(("taper", "splay", "sled"))
-    shared.feet(w, x, (-inner, inner), foot + 0.001, kind, w.look("wood"))
-    shared.tops(w, x, (-inner, inner), height + 0.025)
+    else:
+        parts.styled_drawers(
+            w, x[1] - 0.02, (-inner, inner), parts.graded_rows(*z, rows, 1.0), face, metal, "flat", grip, w.whole(1, 2)
+        )
+    kind: FeetKind = w.choice(("plinth", "block")) if foot < 0.09 else w.choice(("taper", "splay", "sled"))
+    parts.feet(w, x, (-inner, inner), foot + 0.001, kind, w.look("wood"))
+    parts.top_surface(w, x, (-inner, inner), height + 0.025)
 
 
 def shoe_cabinet(w: Workbench) -> None:
@@ -209,15 +210,15 @@ def shoe_cabinet(w: Workbench) -> None:
         w.whole(2, 3 if columns > 1 else 4),
     )
     foot, tall = w.length(0.03, 0.14), w.length(0.30, 0.42)
-    look = parts.body(w)
+    look = parts.wood_look(w)
     face = w.look("wood") if w.chance(0.3) else look
     height = foot + rows * tall + 0.04
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[1] - 0.02), y, (foot, height), look)
     w.box((x[0], x[1] + 0.015), (y[0] - 0.01, y[1] + 0.01), (height, height + 0.02), w.look("wood"))
     inner = (y[0] + 0.015, y[1] - 0.015)
-    edges = shared.graded(foot + 0.01, height - 0.02, rows, 1.0)
-    grip: Grip = w.choice(("knob", "slot", "cup", "bar"))
+    edges = parts.graded_rows(foot + 0.01, height - 0.02, rows, 1.0)
+    grip: HandleKind = w.choice(("knob", "slot", "cup", "bar"))
     tilted = w.whole(0, 2 * rows)
     w.box((x[1] - 0.02, x[1] - 0.017), inner, (edges[0], edges[-1]), parts.darker(look), solid=False)
     each = (inner[1] - inner[0]) / columns
@@ -237,9 +238,9 @@ def shoe_cabinet(w: Workbench) -> None:
                     solid=False,
                 )
                 continue
-            front = shared.leaf(w, x[1] - 0.02, span, z, face, "flat")
-            shared.handle(w, grip, (front, 0.5 * (span[0] + span[1]), z[1] - 0.05), 0.14, w.look("metal"))
-    shared.feet(w, x, y, foot + 0.001, w.choice(("block", "taper")) if foot > 0.05 else "plinth", w.look("wood"), 0.03)
+            front = parts.front_panel(w, x[1] - 0.02, span, z, face, "flat")
+            parts.handle(w, grip, (front, 0.5 * (span[0] + span[1]), z[1] - 0.05), 0.14, w.look("metal"))
+    parts.feet(w, x, y, foot + 0.001, w.choice(("block", "taper")) if foot > 0.05 else "plinth", w.look("wood"), 0.03)
     w.top((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.05, y[1] - 0.05), height + 0.02)
 
 

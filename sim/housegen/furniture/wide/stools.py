@@ -5,11 +5,11 @@ from __future__ import annotations
 import itertools
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, frustum, loft, strip
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -27,22 +27,24 @@ def bar_backed(w: Workbench) -> None:
     seat, half, wood = (
         w.length(0.62, 0.78),
         0.5 * w.length(0.38, 0.46),
-        shared.timber(w) if w.chance(0.6) else shared.tubes(w),
+        parts.wood_look(w, 0.3) if w.chance(0.6) else parts.tube_look(w),
     )
     t, high = w.length(0.024, 0.036), w.length(0.16, 0.40)
     splay = w.choice((0.0, 0.0, 0.03))
     w.legs((-half, half), (-half, half), (0.0, seat - 0.03), t, wood, splay=splay)
-    shared.pad(w, (2 * half + 0.02, 2 * half + 0.02, 0.06), (0.0, 0.0, seat - 0.015), shared.upholstery(w, 0.5), 0.022)
+    parts.pad(
+        w, (2 * half + 0.02, 2 * half + 0.02, 0.06), (0.0, 0.0, seat - 0.015), parts.upholstery_look(w, 0.5), 0.022
+    )
     foot = w.length(0.18, 0.30)
     e = half + splay * (1.0 - foot / seat) - (0.0 if splay else 0.5 * t)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.box((-e, e), (side * e - 0.011, side * e + 0.011), (foot, foot + 0.025), wood)
         z = foot + 0.04 * side
         w.box((side * e - 0.011, side * e + 0.011), (-e, e), (z, z + 0.025), wood)
         y = side * (half - 0.5 * t)
         w.bar((-half + 0.01, y, seat - 0.05), (-half - 0.04, y, seat + high), t, t, wood)
-    board = wood if w.chance(0.5) else shared.upholstery(w, 0.5)
-    shared.curved_board(w, -half - 0.06, half, (seat + high - w.length(0.06, 0.14), seat + high), board, 0.025, 0.04)
+    board = wood if w.chance(0.5) else parts.upholstery_look(w, 0.5)
+    parts.curved_board(w, -half - 0.06, half, (seat + high - w.length(0.06, 0.14), seat + high), board, 0.025, 0.04)
 
 
 def bar_screw(w: Workbench) -> None:
@@ -60,21 +62,21 @@ def bar_screw(w: Workbench) -> None:
     points = [
         (reach * math.cos(math.tau * i / sides), reach * math.sin(math.tau * i / sides), ring) for i in range(sides + 1)
     ]
-    shared.path(w, points, 0.009, iron)
+    parts.tube_along(w, points, 0.009, iron)
     if w.chance(0.4):
         w.bar((-0.6 * r, 0.0, seat - 0.04), (-r - 0.03, 0.0, seat + 0.26), 0.04, 0.008, iron)
-        shared.curved_board(w, -r - 0.05, 0.15, (seat + 0.18, seat + 0.30), w.look("wood"), 0.02, 0.03)
+        parts.curved_board(w, -r - 0.05, 0.15, (seat + 0.18, seat + 0.30), w.look("wood"), 0.02, 0.03)
 
 
 def bar_sled(w: Workbench) -> None:
     """Bar stool of bent tube: two loops for runners with a footbar, a curved seat with a rolled-up low back."""
     w.mass_kg = 6.0
-    seat, half, tube = w.length(0.62, 0.78), 0.5 * w.length(0.38, 0.46), shared.tubes(w)
+    seat, half, tube = w.length(0.62, 0.78), 0.5 * w.length(0.38, 0.46), parts.tube_look(w)
     r = 0.010
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.03)
         loop = [(0.14, y, seat - 0.03), (0.21, y, r), (-0.21, y, r), (-0.14, y, seat - 0.03), (0.14, y, seat - 0.03)]
-        shared.path(w, loop, r, tube)
+        parts.tube_along(w, loop, r, tube)
     for x, z in ((0.21, r), (-0.21, r), (0.21 - 0.07 * 0.25 / seat, 0.25)):
         w.rod((x, -half + 0.03, z), (x, half - 0.03, z), r, tube)
     back = w.length(0.03, 0.28)
@@ -92,18 +94,18 @@ def bar_sled(w: Workbench) -> None:
 def bar_block(w: Workbench) -> None:
     """Bar stool with flat panels for legs and a plinth or a column, seat like a box."""
     w.mass_kg = 8.0
-    seat, half, look = w.length(0.62, 0.76), 0.5 * w.length(0.32, 0.42), shared.timber(w, 0.4)
+    seat, half, look = w.length(0.62, 0.76), 0.5 * w.length(0.32, 0.42), parts.wood_look(w, 0.4)
     pad = w.length(0.03, 0.10)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.015)
         w.box((-half, half), (y - 0.015, y + 0.015), (0.0, seat - pad + 0.01), look)
     for z in (w.length(0.18, 0.28), seat - pad - 0.02):
         w.box((-half + 0.02, half - 0.02), (-half, half), (z - 0.015, z + 0.015), look)
-    shared.pad(
-        w, (2 * half + 0.01, 2 * half + 0.01, pad), (0.0, 0.0, seat - 0.5 * pad), shared.upholstery(w, 0.6), 0.02
+    parts.pad(
+        w, (2 * half + 0.01, 2 * half + 0.01, pad), (0.0, 0.0, seat - 0.5 * pad), parts.upholstery_look(w, 0.6), 0.02
     )
     if w.chance(0.4):
-        shared.pad(w, (0.05, 2 * half, 0.24), (-half + 0.02, 0.0, seat + 0.10), shared.upholstery(w, 0.6), 0.02)
+        parts.pad(w, (0.05, 2 * half, 0.24), (-half + 0.02, 0.0, seat + 0.10), parts.upholstery_look(w, 0.6), 0.02)
 
 
 def plastic_stool(w: Workbench) -> None:
@@ -117,13 +119,13 @@ def plastic_stool(w: Workbench) -> None:
     for k in range(2 if stack else 1):
         z, colour = 0.05 * k, plastic if k == 0 else w.new_look("plastic")
         if square:
-            shared.pad(w, (top, top, 0.03), (0.0, 0.0, z + seat - 0.015), colour, 0.012)
+            parts.pad(w, (top, top, 0.03), (0.0, 0.0, z + seat - 0.015), colour, 0.012)
             skirt = frustum((top + 0.015, top + 0.015), (top - 0.005, top - 0.005), 0.07)
             w.mesh(skirt, (0.0, 0.0, z + seat - 0.09), colour)
         else:
             w.cylinder((0.0, 0.0), (z + seat - 0.02, z + seat), 0.5 * top + 0.015, colour)
             w.cylinder((0.0, 0.0), (z + seat - 0.07, z + seat - 0.015), 0.5 * top + 0.025, colour)
-        for sx, sy in itertools.product(BOTH, BOTH):
+        for sx, sy in itertools.product(BOTH_SIDES, BOTH_SIDES):
             at = (sx * (0.5 * foot - 0.03), sy * (0.5 * foot - 0.03))
             lean = (sx * (0.5 * top - 0.045) - at[0], sy * (0.5 * top - 0.045) - at[1])
             w.mesh(frustum((0.05, 0.05), (0.08, 0.08), seat - 0.03, lean), (*at, z), colour)
@@ -157,9 +159,9 @@ def curule(w: Workbench) -> None:
     w.mass_kg = 5.0
     seat, half, depth = w.length(0.42, 0.47), 0.5 * w.length(0.44, 0.56), w.length(0.34, 0.42)
     frame = w.look(w.choice(("wood", "brass", "chrome", "lacquer")))
-    for side in BOTH:
+    for side in BOTH_SIDES:
         x = side * (0.5 * depth - 0.03)
-        for way in BOTH:
+        for way in BOTH_SIDES:
             ends = [
                 (x, way * (half - 0.03), 0.0),
                 (x, way * 0.10, 0.38 * seat),
@@ -169,24 +171,24 @@ def curule(w: Workbench) -> None:
             for a, b in itertools.pairwise(ends):
                 w.bar(a, b, 0.035, 0.025, frame)
     w.rod((-0.5 * depth + 0.03, 0.0, 0.465 * seat), (0.5 * depth - 0.03, 0.0, 0.465 * seat), 0.013, frame)
-    shared.pad(w, (depth, 2 * half, w.length(0.06, 0.11)), (0.0, 0.0, seat - 0.035), shared.upholstery(w, 0.4), 0.03)
+    parts.pad(w, (depth, 2 * half, w.length(0.06, 0.11)), (0.0, 0.0, seat - 0.035), parts.upholstery_look(w, 0.4), 0.03)
 
 
 def rush_stool(w: Workbench) -> None:
     """Square stool: four posts, double stretchers, seat of woven cord or a loose pad."""
     w.mass_kg = 3.5
-    seat, half, wood = w.length(0.42, 0.47), 0.5 * w.length(0.32, 0.42), shared.timber(w, 0.25)
+    seat, half, wood = w.length(0.42, 0.47), 0.5 * w.length(0.32, 0.42), parts.wood_look(w, 0.25)
     t = w.length(0.03, 0.045)
     w.legs((-half, half), (-half, half), (0.0, seat - 0.002), t, wood, round_=w.chance(0.5))
     e = half - 0.25 * t
     for z in (0.10, 0.20)[w.whole(0, 1) :]:
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((-e, side * e, z), (e, side * e, z), 0.010, wood)
             w.rod((side * e, -e, z + 0.04), (side * e, e, z + 0.04), 0.010, wood)
     w.box((-half + 0.005, half - 0.005), (-half + 0.005, half - 0.005), (seat - 0.05, seat - 0.005), w.look("wicker"))
     if w.chance(0.3):
-        shared.pad(
-            w, (2 * half - 0.02, 2 * half - 0.02, 0.04), (0.0, 0.0, seat + 0.012), shared.upholstery(w, 0.1), 0.018
+        parts.pad(
+            w, (2 * half - 0.02, 2 * half - 0.02, 0.04), (0.0, 0.0, seat + 0.012), parts.upholstery_look(w, 0.1), 0.018
         )
 
 
@@ -194,7 +196,7 @@ def swivel_low(w: Workbench) -> None:
     """Round padded work stool that rolls on a five-armed star."""
     w.mass_kg = 6.0
     seat, r = w.length(0.43, 0.47), 0.5 * w.length(0.32, 0.40)
-    shared.star(
+    parts.star_base(
         w,
         w.length(0.22, 0.27),
         w.choice((4, 5)),
@@ -204,10 +206,10 @@ def swivel_low(w: Workbench) -> None:
     )
     thick = w.length(0.06, 0.10)
     puff = [Ring(0.0, 0.92 * r, 0.92 * r), Ring(0.015, r, r), Ring(thick - 0.02, r, r), Ring(thick, 0.88 * r, 0.88 * r)]
-    w.mesh(loft(puff, 16, hull=True), (0.0, 0.0, seat - thick), shared.upholstery(w, 0.6))
+    w.mesh(loft(puff, 16, hull=True), (0.0, 0.0, seat - thick), parts.upholstery_look(w, 0.6))
     if w.chance(0.35):
         w.bar((-0.4 * r, 0.0, seat - 0.5 * thick), (-r - 0.04, 0.0, seat + 0.20), 0.04, 0.02, w.look("chrome"))
-        shared.pad(w, (0.05, 0.28, 0.11), (-r - 0.03, 0.0, seat + 0.18), shared.upholstery(w, 0.6), 0.02)
+        parts.pad(w, (0.05, 0.28, 0.11), (-r - 0.03, 0.0, seat + 0.18), parts.upholstery_look(w, 0.6), 0.02)
 
 
 STYLES: tuple[Style, ...] = (

@@ -8,9 +8,8 @@ import numpy as np
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, frustum, loft, named_mesh
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -28,7 +27,7 @@ def coffee_nest(w: Workbench) -> None:
             a = math.tau * (i + 0.5) / feet + 0.5 * k
             c, s = 0.8 * r * math.cos(a), 0.8 * r * math.sin(a)
             w.rod((x + c, y + s, 0.0), (x + c, y + s, z - thick), 0.011, look)
-    w.top(shared.about(0.0, radius), shared.about(-0.7 * radius, radius), height)
+    w.top(parts.centred(0.0, radius), parts.centred(-0.7 * radius, radius), height)
 
 
 def coffee_trunk(w: Workbench) -> None:
@@ -37,8 +36,8 @@ def coffee_trunk(w: Workbench) -> None:
     body = w.look(w.choice(("wood", "leather", "lacquer", "wicker")))
     metal = w.look("brass") if w.chance(0.5) else w.look("iron")
     x, y, lid, foot = (
-        shared.about(0.0, depth),
-        shared.about(0.0, width),
+        parts.centred(0.0, depth),
+        parts.centred(0.0, width),
         height - w.length(0.07, 0.14),
         w.choice((0.0, 0.06)),
     )
@@ -50,14 +49,14 @@ def coffee_trunk(w: Workbench) -> None:
     if w.chance(0.6):
         for i in range(w.whole(2, 3)):
             c = (-0.33, 0.33, 0.0)[i] * width
-            w.box((x[0] - 0.004, x[1] + 0.004), shared.about(c, 0.045), (foot, height + 0.004), metal, solid=False)
+            w.box((x[0] - 0.004, x[1] + 0.004), parts.centred(c, 0.045), (foot, height + 0.004), metal, solid=False)
     else:
         for cx in x:
             for cy in y:
                 for z in ((foot, foot + 0.06), (height - 0.06, height + 0.003)):
-                    w.box(shared.about(0.96 * cx, 0.06), shared.about(0.97 * cy, 0.06), z, metal, solid=False)
-    w.box((x[1] - 0.01, x[1] + 0.008), shared.about(0.0, 0.07), (lid - 0.05, lid + 0.04), metal, solid=False)
-    for side in BOTH:
+                    w.box(parts.centred(0.96 * cx, 0.06), parts.centred(0.97 * cy, 0.06), z, metal, solid=False)
+    w.box((x[1] - 0.01, x[1] + 0.008), parts.centred(0.0, 0.07), (lid - 0.05, lid + 0.04), metal, solid=False)
+    for side in BOTH_SIDES:
         at = side * 0.5 * width
         w.bar((-0.07, at, lid - 0.08), (0.07, at, lid - 0.08), 0.03, 0.025, metal, solid=False)
     w.top((x[0] + 0.06, x[1] - 0.06), (y[0] + 0.06, y[1] - 0.06), height + 0.004)
@@ -79,23 +78,23 @@ def coffee_pebble(w: Workbench) -> None:
         a = math.tau * (i + 0.5) / count + (0.0 if count == 4 else 0.3)
         at = (0.27 * depth * math.cos(a), 0.32 * width * math.sin(a), 0.0)
         w.mesh(loft(rings, 12, hull=True), at, legs)
-    w.top(shared.about(0.0, 0.5 * depth), shared.about(0.0, 0.55 * width), height)
+    w.top(parts.centred(0.0, 0.5 * depth), parts.centred(0.0, 0.55 * width), height)
 
 
 def coffee_drawer(w: Workbench) -> None:
     """Low chest with an open through-shelf over or beside drawers, on sled, short legs or castors."""
     width, depth, height = w.width(0.85, 1.25), w.depth(0.50, 0.70), w.length(0.36, 0.48)
-    body, front, foot = w.look("wood"), parts.body(w), w.length(0.03, 0.16)
+    body, front, foot = w.look("wood"), parts.wood_look(w), w.length(0.03, 0.16)
     x, y = parts.slab(w, depth, width, (height - 0.03, height), body)
     split = height - 0.03 - w.length(0.09, 0.15) if height - foot > 0.3 else foot + 0.02
     drawn = (foot, split) if split > foot + 0.08 else (foot, foot + 0.025)
     w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), drawn, body)
     if drawn[1] - drawn[0] > 0.06:
-        parts.drawers(
+        parts.plain_drawers(
             w, x[1] - 0.02, (y[0] + 0.02, y[1] - 0.02), drawn, 1, w.whole(1, 3), front, w.look("brass"), "knob"
         )
     for c in (y[0] + 0.035, y[1] - 0.035, *((0.0,) if w.chance(0.4) else ())):
-        w.box((x[0] + 0.02, x[1] - 0.02), shared.about(c, 0.03), (drawn[1], height - 0.03), body)
+        w.box((x[0] + 0.02, x[1] - 0.02), parts.centred(c, 0.03), (drawn[1], height - 0.03), body)
     if foot < 0.08:
         w.legs((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), (0.0, foot), 0.05, w.look("dark"), round_=True)
     else:
@@ -109,25 +108,25 @@ def drop_leaf(w: Workbench) -> None:
     up = w.choice(((True, True), (True, False), (True, True)))
     middle = w.length(0.30, 0.5) * width
     leaf, half = 0.5 * (width - middle), 0.5 * middle
-    thick, x = 0.022, shared.about(0.0, depth)
+    thick, x = 0.022, parts.centred(0.0, depth)
     w.box(x, (-half, half), (height - thick, height), wood)
     frame = (x[0] + 0.08, x[1] - 0.08)
     w.legs(frame, (-half + 0.02, half - 0.02), (0.0, height - thick), leg, wood)
-    for side in BOTH:
-        w.box(frame, shared.about(side * (half - 0.03), 0.02), (height - 0.14, height - thick), wood)
+    for side in BOTH_SIDES:
+        w.box(frame, parts.centred(side * (half - 0.03), 0.02), (height - 0.14, height - thick), wood)
     for edge in frame:
-        w.box(shared.about(edge * 0.95, 0.02), (-half + 0.03, half - 0.03), (height - 0.14, height - thick), wood)
-    w.box(shared.about(0.0, 0.05), (-half + 0.03, half - 0.03), (0.10, 0.14), wood)
-    for side in BOTH:
-        w.box(frame, shared.about(side * (half - 0.04), 0.03), (0.10, 0.14), wood)
-    for side, raised in zip(BOTH, up, strict=True):
+        w.box(parts.centred(edge * 0.95, 0.02), (-half + 0.03, half - 0.03), (height - 0.14, height - thick), wood)
+    w.box(parts.centred(0.0, 0.05), (-half + 0.03, half - 0.03), (0.10, 0.14), wood)
+    for side in BOTH_SIDES:
+        w.box(frame, parts.centred(side * (half - 0.04), 0.03), (0.10, 0.14), wood)
+    for side, raised in zip(BOTH_SIDES, up, strict=True):
         if raised:
             rounded = w.choice((0.55, 0.8, 1.0))
             plate = frustum((depth, leaf), (depth, leaf), thick)
             if rounded < 1.0:
                 edge = [
                     (sx * 0.5 * depth * k, side * (half + leaf * t))
-                    for sx in BOTH
+                    for sx in BOTH_SIDES
                     for k, t in ((1.0, 0.0), (1.0, 0.5), (rounded, 1.0))
                 ]
                 plate = named_mesh("leaf", [(a, b, z) for z in (0.0, thick) for a, b in edge])
@@ -135,12 +134,12 @@ def drop_leaf(w: Workbench) -> None:
             else:
                 w.mesh(plate, (0.0, side * (half + 0.5 * leaf), height - thick), wood)
             gate = side * (half + 0.6 * leaf)
-            w.box(shared.about(0.0, leg), shared.about(gate, leg), (0.0, height - thick), wood)
+            w.box(parts.centred(0.0, leg), parts.centred(gate, leg), (0.0, height - thick), wood)
             for z in (0.12, height - 0.10):
                 w.bar((frame[0] + 0.03, side * (half - 0.03), z), (0.0, gate, z), 0.03, 0.03, wood)
         else:
             drop = min(leaf, height - 0.12)
-            w.box(x, shared.beside(side, half, half + thick), (height - drop, height), wood)
+            w.box(x, parts.on_side(side, half, half + thick), (height - drop, height), wood)
     low, high = -half - (leaf if up[0] else 0.0), half + (leaf if up[1] else 0.0)
     w.top((x[0] + 0.15, x[1] - 0.15), (low + 0.15, high - 0.15), height)
 
@@ -148,11 +147,15 @@ def drop_leaf(w: Workbench) -> None:
 def twin_pedestal(w: Workbench) -> None:
     """Long oval or boat-shaped top on two columns: turned with claw feet, or fat drums, or wedges of lacquer."""
     width, depth, height = w.width(1.60, 2.40), w.depth(0.90, 1.10), w.length(0.73, 0.77)
-    top, look, power = w.look("wood") if w.chance(0.7) else w.look("stone"), parts.body(w), w.choice((2.0, 3.0, 6.0))
+    top, look, power = (
+        w.look("wood") if w.chance(0.7) else w.look("stone"),
+        parts.wood_look(w),
+        w.choice((2.0, 3.0, 6.0)),
+    )
     thick, kind = w.length(0.025, 0.05), w.choice(("claw", "drum", "wedge"))
     rings = [Ring(z, 0.5 * depth, 0.5 * width, power=power) for z in (height - thick, height)]
     w.mesh(loft(rings, 40, hull=True), (0.0, 0.0, 0.0), top)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.24 * width
         if kind == "claw":
             levels = ((0.12, 0.05), (0.2, 0.07), (0.32, 0.04), (0.55, 0.06), (height - thick, 0.09))
@@ -166,8 +169,8 @@ def twin_pedestal(w: Workbench) -> None:
         else:
             w.mesh(frustum((0.45, 0.14), (0.25, 0.40), height - thick), (0.0, y, 0.0), look)
     if kind == "claw" and w.chance(0.5):
-        w.box(shared.about(0.0, 0.03), (-0.24 * width, 0.24 * width), (0.24, 0.30), look)
-    w.top(shared.about(0.0, 0.6 * depth), shared.about(0.0, 0.65 * width), height)
+        w.box(parts.centred(0.0, 0.03), (-0.24 * width, 0.24 * width), (0.24, 0.30), look)
+    w.top(parts.centred(0.0, 0.6 * depth), parts.centred(0.0, 0.65 * width), height)
 
 
 def cafe_cross(w: Workbench) -> None:
@@ -197,15 +200,15 @@ def parsons(w: Workbench) -> None:
     """Table of one thickness: corner legs flush with the top, or a plastic one with rounded corners and cone legs."""
     width, depth, height = w.width(1.00, 2.00), w.depth(0.75, 1.00), w.length(0.71, 0.76)
     if w.chance(0.5):
-        look, thick = parts.body(w), w.length(0.04, 0.10)
+        look, thick = parts.wood_look(w), w.length(0.04, 0.10)
         x, y = parts.slab(w, depth, width, (height - thick, height), look)
         w.legs(x, y, (0.0, height - thick), thick * w.choice((1.0, 1.3)), look)
         return
     look = w.look("plastic")
     rings = [Ring(z, 0.5 * depth, 0.5 * width, power=8.0) for z in (height - 0.05, height)]
     w.mesh(loft(rings, 24, hull=True), (0.0, 0.0, 0.0), look)
-    for sx in BOTH:
-        for sy in BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             at = (sx * (0.5 * depth - 0.10), sy * (0.5 * width - 0.10), 0.0)
             w.mesh(frustum((0.04, 0.04), (0.11, 0.11), height - 0.05), at, look)
     w.top((-0.5 * depth + 0.1, 0.5 * depth - 0.1), (-0.5 * width + 0.1, 0.5 * width - 0.1), height)

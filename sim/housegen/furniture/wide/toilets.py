@@ -5,9 +5,8 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, named_mesh
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -59,16 +58,16 @@ def bidet(w: Workbench) -> None:
         Ring(rim, 0.70 * r, 0.80 * half, 0.06, power=2.2), Ring(rim - 0.12, 0.45 * r, 0.5 * half, 0.05, power=2.2),
     ], 16), (0.0, 0.0, 0.0), white)  # fmt: skip
     w.box((-r, -r + 0.12), (-0.7 * half, 0.7 * half), (0.0 if base > 0.7 else 0.1, rim - 0.01), white)
-    metal = shared.fittings(w)
+    metal = parts.fitting_look(w)
     w.cylinder((0.05, 0.0), (rim - 0.122, rim - 0.115), 0.025, metal, solid=False)
-    shared.faucet(w, (-r + 0.08, 0.0, rim - 0.005), 0.11, w.length(0.07, 0.12), metal)
+    parts.any_tap(w, (-r + 0.08, 0.0, rim - 0.005), 0.11, w.length(0.07, 0.12), metal)
 
 
 def squat(w: Workbench) -> None:
     """Squat pan in a raised step: long hollow with a hood and ribbed footrests, cistern and pipe or a bucket."""
     width, depth, step = w.length(0.60, 0.90), w.length(0.75, 1.0), w.length(0.12, 0.28)
     white, base = w.look("ceramic"), w.look(w.choice(("stone", "masonry", "ceramic")))
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     px, py, c = 0.5 * w.length(0.48, 0.58), w.length(0.10, 0.14), 0.04
     w.mesh(loft([
         Ring(0.0, x[1], y[1], power=24), Ring(step, x[1], y[1], power=24), Ring(step, px + 0.05, py + 0.12, c, power=5),
@@ -78,7 +77,7 @@ def squat(w: Workbench) -> None:
         Ring(step + 0.015, px, py, c, power=2.6), Ring(step + 0.002, 0.8 * px, 0.6 * py, c, power=2.6),
     ], 16), (0.0, 0.0, 0.0), white)  # fmt: skip
     w.ellipsoid((c, 0.0, step + 0.003), (0.8 * px, 0.6 * py, 0.004), w.look("screen"), solid=False)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         for i in range(3):
             a, b = sorted((side * (py + 0.02), side * (py + 0.10)))
             w.box((-0.10 + 0.07 * i, -0.06 + 0.07 * i), (a, b), (step + 0.012, step + 0.024), white, solid=False)
@@ -90,9 +89,9 @@ def squat(w: Workbench) -> None:
     if w.chance(0.65):
         z = w.length(0.75, 1.2)
         w.mesh(chamfered_box((0.16, 0.40, 0.34), 0.03), (x[0] + 0.08, 0.0, z + 0.17), white)
-        w.rod((x[0] + 0.05, 0.0, step), (x[0] + 0.05, 0.0, z), 0.018, shared.fittings(w))
+        w.rod((x[0] + 0.05, 0.0, step), (x[0] + 0.05, 0.0, z), 0.018, parts.fitting_look(w))
     else:
-        rings = [Ring(0.0, 0.09, 0.09), *shared.hollow_top(0.24, 0.12, 0.12, 0.2, 0.008, 2.0)]
+        rings = [Ring(0.0, 0.09, 0.09), *parts.hollow_rings(0.24, 0.12, 0.12, 0.2, 0.008, 2.0)]
         w.mesh(loft(rings, 14), (x[0] + 0.13, y[1] - 0.13, step), w.look("plastic"))
 
 
@@ -118,7 +117,7 @@ def smart(w: Workbench) -> None:
     else:
         w.mesh(lid, (-r + 0.17, 0.0, seat + 0.42 * depth), white, tilt=-1.4)
         w.ellipsoid((0.08, 0.0, seat - 0.03), (0.24, 0.12, 0.006), w.look("screen"), solid=False)
-    side = w.choice(BOTH)
+    side = w.choice(BOTH_SIDES)
     if w.chance(0.7):
         w.box((-0.20, 0.10), (side * (half - 0.05), side * (half + 0.07)), (seat - 0.02, seat + 0.03), white, tilt=0.1)
         w.box((-0.10, 0.06), (side * (half + 0.02), side * (half + 0.06)), (seat + 0.022, seat + 0.036), w.look("dark"))
@@ -161,7 +160,7 @@ def accessible(w: Workbench) -> None:
     w.mesh(chamfered_box((0.16, 2 * half, 0.41), 0.02), (x0 + 0.08, 0.0, seat + 0.155), white)
     reach, grip = half + w.length(0.08, 0.14), seat + w.length(0.20, 0.28)
     if w.chance(0.5):
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * reach
             for x in (x0 + 0.16, x1 - 0.12):
                 w.rod((x, y, 0.0), (x, y, grip), 0.014, metal)
@@ -170,7 +169,7 @@ def accessible(w: Workbench) -> None:
         w.rod((x0 + 0.16, -reach, seat - 0.02), (x0 + 0.16, reach, seat - 0.02), 0.012, metal)
     else:
         w.box((x0 - 0.03, x0), (-reach - 0.06, reach + 0.06), (0.0, grip + 0.12), w.look("lacquer"))
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * reach
             up = side > 0 and w.chance(0.3)
             end = (x0 + 0.05, y, grip + 0.55) if up else (x1 - 0.05, y, grip)
@@ -191,10 +190,10 @@ def hand_basin_tank(w: Workbench) -> None:
     w.mesh(loft([
         Ring(seat - 0.06, 0.42 * deep, 0.8 * wide, power=power),
         Ring(seat + 0.05, 0.5 * deep, 0.95 * wide, power=power),
-        *shared.hollow_top(top, 0.5 * deep, wide, 0.05, 0.02, power),
+        *parts.hollow_rings(top, 0.5 * deep, wide, 0.05, 0.02, power),
     ], 16), (x0 + 0.5 * deep, 0.0, 0.0), white)  # fmt: skip
     metal = w.look("chrome")
-    shared.arc(w, (x0 + 0.03, 0.0, top - 0.01), (x0 + 0.6 * deep, 0.0, top + 0.06), 0.07, 0.009, metal, 3)
+    parts.arched_pipe(w, (x0 + 0.03, 0.0, top - 0.01), (x0 + 0.6 * deep, 0.0, top + 0.06), 0.07, 0.009, metal, 3)
     w.rod((x0 + deep - 0.01, -0.6 * wide, top - 0.08), (x0 + deep + 0.02, -0.6 * wide, top - 0.08), 0.012, metal)
     w.box(
         (x0 + deep + 0.01, x0 + deep + 0.02),
@@ -217,7 +216,7 @@ def slim_panel(w: Workbench) -> None:
     w.box((0.0, 0.16), (-0.75 * half, 0.75 * half), (0.16, seat - 0.05), white)
     plate = w.choice(("round", "bar", "none"))
     if plate == "round":
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.01, side * 0.05, 0.85), (0.02, side * 0.05, 0.85), 0.03, w.look("chrome"), solid=False)
     elif plate == "bar":
         w.box((0.01, 0.018), (-0.13, 0.13), (0.82, 0.90), w.look("chrome"), solid=False)
@@ -239,7 +238,7 @@ def corner_tank(w: Workbench) -> None:
     _bowl_and_seat(w, x0 + 0.22, 0.5 * depth, half, seat, white)
     w.box((x0 + 0.02, x0 + 0.30), (-0.10, 0.10), (0.0, seat - 0.03), white)
     if w.chance(0.5):
-        side = w.choice(BOTH)
+        side = w.choice(BOTH_SIDES)
         w.cylinder((x0 + 0.10, side * 0.30), (0.0, 0.12), 0.05, w.look("plastic"))
         w.cylinder((x0 + 0.10, side * 0.30), (0.10, 0.38), 0.009, w.look("chrome"))
 
@@ -255,7 +254,7 @@ def portable(w: Workbench) -> None:
         w.box((-0.98 * r, 0.98 * r), (-0.98 * half, 0.98 * half), (0.44 * seat, 0.475 * seat), dark)
     else:
         metal, arm = w.look("metal"), seat + 0.22
-        for side in BOTH:
+        for side in BOTH_SIDES:
             y = side * (half + 0.05)
             for x in (-r, r):
                 w.rod((x, y, 0.0), (x, y, arm), 0.013, metal)

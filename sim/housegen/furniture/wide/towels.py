@@ -5,9 +5,8 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import chamfered_box, drape
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -17,19 +16,19 @@ def _towel(w: Workbench) -> Look:
 
 def hotel_rack(w: Workbench) -> None:
     """Shelf of thin bars high on the wall with folded towels on it and towels over the rail below."""
-    width, deep, metal = w.width(0.45, 0.75), w.length(0.20, 0.26), shared.fittings(w)
+    width, deep, metal = w.width(0.45, 0.75), w.length(0.20, 0.26), parts.fitting_look(w)
     tall = w.length(0.45, 0.75)
     w.mount_height_m = 1.65 - tall
     for i in range(w.whole(3, 5)):
         x = 0.03 + i * (deep - 0.03) / 4
         w.rod((x, -0.5 * width, tall), (x, 0.5 * width, tall), 0.006, metal)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.01)
         w.box((0.0, deep), (y - 0.006, y + 0.006), (tall - 0.01, tall + 0.02), metal)
         w.box((0.0, 0.012), (y - 0.02, y + 0.02), (tall - 0.12, tall + 0.04), metal)
         w.rod((0.0, y, tall - 0.09), (0.6 * deep, y, tall - 0.09), 0.007, metal)
     w.rod((0.6 * deep, -0.5 * width, tall - 0.09), (0.6 * deep, 0.5 * width, tall - 0.09), 0.008, metal)
-    shared.over(
+    parts.towel_over_bar(
         w, 0.6 * deep, 0.0, tall - 0.09, w.length(0.5, 0.85) * width, tall - 0.11, w.length(0.5, 0.8) * tall, _towel(w)
     )
     z, cloth = tall + 0.004, _towel(w)
@@ -47,7 +46,7 @@ def hanging_rungs(w: Workbench) -> None:
     tall = count * gap + 0.12
     w.mount_height_m = w.length(1.60, 1.85) - tall
     w.box((0.0, 0.02), (-0.5 * width, 0.5 * width), (tall - 0.05, tall), wood)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.04)
         w.rod((0.0, y, tall - 0.025), (0.07, y, tall - 0.025), 0.008, wood)
         w.box((0.062, 0.070), (y - 0.012, y + 0.012), (0.30, tall - 0.02), cord)
@@ -56,7 +55,9 @@ def hanging_rungs(w: Workbench) -> None:
         w.rod((0.068, -0.5 * width, z), (0.068, 0.5 * width, z), 0.012, wood)
         if i == 0 or w.chance(0.75):
             wide = w.length(0.4, 0.75) * width
-            shared.over(w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel(w))
+            parts.towel_over_bar(
+                w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel(w)
+            )
 
 
 def panel_radiator(w: Workbench) -> None:
@@ -82,10 +83,10 @@ def panel_radiator(w: Workbench) -> None:
     for i in range(w.whole(1, 2)):
         z = high * (0.72, 0.36)[i]
         w.rod((0.11, -y, z), (0.11, y, z), 0.010, metal)
-        for side in BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.045, side * (y - 0.03), z), (0.11, side * (y - 0.03), z), 0.008, metal)
         drop = w.length(0.24, 0.32) * high
-        shared.over(w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel(w))
+        parts.towel_over_bar(w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel(w))
 
 
 def towel_line(w: Workbench) -> None:
@@ -94,7 +95,7 @@ def towel_line(w: Workbench) -> None:
     tall, out = w.length(0.55, 0.85), w.length(0.12, 0.25)
     w.mount_height_m = 1.65 - tall
     z = tall - 0.03
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.015)
         w.box((0.0, 0.02), (y - 0.015, y + 0.015), (tall - 0.10, tall), metal)
         w.rod((0.0, y, z), (out, y, z), 0.009, metal)
@@ -105,18 +106,18 @@ def towel_line(w: Workbench) -> None:
         y, drop = -0.5 * width + 0.04 + (i + 0.5) * each, z if i == low else w.length(0.45, 0.95) * z
         wide = min(each - 0.03, w.length(0.3, 0.7))
         w.mesh(drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), _towel(w))
-        for side in BOTH:
+        for side in BOTH_SIDES:
             c = y + side * (0.5 * wide - 0.02)
             w.box((out - 0.012, out + 0.03), (c - 0.006, c + 0.006), (z - 0.04, z + 0.03), w.look("wood"), solid=False)
 
 
 def towel_tiers(w: Workbench) -> None:
     """Two or three bars in front of each other and stepped in height between two side plates."""
-    width, metal, count = w.width(0.45, 0.75), shared.fittings(w), w.whole(2, 3)
+    width, metal, count = w.width(0.45, 0.75), parts.fitting_look(w), w.whole(2, 3)
     tall, step = w.length(0.55, 0.80), w.length(0.06, 0.14)
     w.mount_height_m = 1.35 - tall
     top, last = tall - 0.015, 0.06 + 0.075 * (count - 1)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.008)
         w.box((0.0, 0.02), (y - 0.008, y + 0.008), (top - step * count, tall), metal)
         for i in range(count):
@@ -128,7 +129,7 @@ def towel_tiers(w: Workbench) -> None:
         wide = w.length(0.35, 0.85) * width
         drop = z if i == count - 1 else w.length(0.5, 0.95) * z
         shift = w.length(-0.5, 0.5) * (width - wide - 0.04)
-        shared.over(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel(w))
+        parts.towel_over_bar(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel(w))
     w.box((0.0, last), (-0.5 * width, -0.5 * width + 0.01), (top - 0.01, top + 0.01), metal)
 
 
@@ -136,20 +137,20 @@ def towel_airer(w: Workbench) -> None:
     """Folding drying rack with crossed legs, a bed of wires and perhaps wings, towels hung over the wires."""
     width, high, metal = w.width(0.55, 0.95), w.length(0.85, 1.05), w.look(w.choice(("plastic", "steel", "ceramic")))
     y, half, spread = 0.5 * width, w.length(0.24, 0.32), w.length(0.22, 0.30)
-    for side in BOTH:
-        for way in BOTH:
+    for side in BOTH_SIDES:
+        for way in BOTH_SIDES:
             w.rod((-way * spread, side * (y - 0.02), 0.0), (way * half, side * (y - 0.02), high), 0.011, metal)
-    for way in BOTH:
+    for way in BOTH_SIDES:
         w.rod((way * spread, -y, 0.012), (way * spread, y, 0.012), 0.011, metal)
         w.rod((way * half, -y, high), (way * half, y, high), 0.011, metal)
-    for side in BOTH:
+    for side in BOTH_SIDES:
         w.rod((-half, side * (y - 0.02), high), (half, side * (y - 0.02), high), 0.010, metal)
     wires = [(-half + (i + 1) * 2 * half / 6, high) for i in range(5)]
     lift = w.length(0.0, 0.22)
     if w.chance(0.6):
-        for way in BOTH:
+        for way in BOTH_SIDES:
             end = (way * (half + 0.32), high + lift)
-            for side in BOTH:
+            for side in BOTH_SIDES:
                 w.rod((way * half, side * (y - 0.03), high), (end[0], side * (y - 0.03), end[1]), 0.009, metal)
             w.rod((end[0], -y, end[1]), (end[0], y, end[1]), 0.009, metal)
             wires.append((way * (half + 0.16), high + 0.5 * lift))
@@ -159,7 +160,7 @@ def towel_airer(w: Workbench) -> None:
     for i in w.rng.permutation(len(wires))[: w.whole(2, 4)]:
         x, z = wires[int(i)]
         wide = w.length(0.4, 0.9) * width
-        shared.over(
+        parts.towel_over_bar(
             w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), _towel(w)
         )
 
@@ -168,13 +169,13 @@ def towel_cart(w: Workbench) -> None:
     """Narrow open shelf or trolley on feet or castors with folded towels on every tier."""
     width, depth, high = w.width(0.35, 0.60), w.depth(0.28, 0.40), w.length(0.65, 1.30)
     frame, tiers = w.look(w.choice(("wood", "metal", "lacquer", "steel"))), w.whole(2, 4)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     wheels = w.chance(0.4)
     low = 0.06 if wheels else 0.0
     w.legs(x, y, (low, high), 0.022, frame)
     if wheels:
-        for sx in BOTH:
-            for sy in BOTH:
+        for sx in BOTH_SIDES:
+            for sy in BOTH_SIDES:
                 cx, cy = sx * (0.5 * depth - 0.012), sy * (0.5 * width - 0.02)
                 w.rod((cx, cy - 0.01, 0.03), (cx, cy + 0.01, 0.03), 0.03, w.look("dark"))
     for i in range(tiers):
@@ -204,7 +205,7 @@ def towel_dropped(w: Workbench) -> None:
         )
         z = 0.03
     for i in range(w.whole(1, 3)):
-        shape = shared.crumpled(w, w.length(0.35, 0.85), w.length(0.3, 0.55), w.length(0.06, 0.22))
+        shape = parts.crumpled_cloth(w, w.length(0.35, 0.85), w.length(0.3, 0.55), w.length(0.06, 0.22))
         at = (w.length(-0.1, 0.1), w.length(-0.1, 0.1), z)
         w.mesh(shape, at, _towel(w), turn=w.length(0.0, 3.0), solid=i == 0)
         z += 0.02

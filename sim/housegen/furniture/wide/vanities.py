@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES, FeetKind, FrontKind, HandleKind
 from sim.housegen.furniture.shapes import chamfered_box
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH, Feet, Front, Grip
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -16,13 +15,13 @@ def vanity_frame(w: Workbench) -> None:
     frame = w.look(w.choice(("wood", "iron", "brass", "lacquer")))
     top = w.look(w.choice(("wood", "stone")))
     thick = w.length(0.025, 0.06)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - thick, height), top)
     w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, height - thick), thick, frame)
     if w.chance(0.5):
         under = height - thick - w.length(0.10, 0.18)
         w.box((x[0] + 0.015, x[1] - 0.035), (y[0] + 0.025, y[1] - 0.025), (under, height - thick), frame)
-        shared.drawers(
+        parts.styled_drawers(
             w,
             x[1] - 0.035,
             (y[0] + 0.07, y[1] - 0.07),
@@ -60,7 +59,7 @@ def _basins(w: Workbench, width: float, depth: float, height: float) -> None:
     """One basin in the middle or to one side, or two, with room beside."""
     spots = (-0.25 * width, 0.25 * width) if width > 1.2 and w.chance(0.6) else (0.0,)
     if len(spots) == 1 and width > 0.95 and w.chance(0.4):
-        spots = (w.choice(BOTH) * (0.5 * width - 0.32),)
+        spots = (w.choice(BOTH_SIDES) * (0.5 * width - 0.32),)
     basin = w.make("sink", use="vessel")
     for at in spots:
         w.put(basin, (0.02, at, height))
@@ -74,28 +73,28 @@ def _basins(w: Workbench, width: float, depth: float, height: float) -> None:
 def vanity_drawers(w: Workbench) -> None:
     """Washstand with a column of drawers beside doors, a stone top that overhangs and a splashback."""
     width, depth, height = w.width(0.75, 1.60), w.depth(0.46, 0.56), w.length(0.76, 0.86)
-    look, metal = parts.body(w), w.look(w.choice(("brass", "metal", "dark")))
-    kind: Feet = w.choice(("bun", "taper", "block", "plinth", "cabriole"))
+    look, metal = parts.wood_look(w), w.look(w.choice(("brass", "metal", "dark")))
+    kind: FeetKind = w.choice(("bun", "taper", "block", "plinth", "cabriole"))
     foot = w.length(0.07, 0.11) if kind in ("bun", "plinth", "block") else w.length(0.12, 0.25)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     stone = w.look(w.choice(("stone", "ceramic", "wood")))
     w.box((x[0], x[1] - 0.03), (y[0] + 0.015, y[1] - 0.015), (foot, height - 0.03), look)
     w.box(x, y, (height - 0.03, height), stone)
     if w.chance(0.6):
         w.box((x[0], x[0] + 0.02), y, (height, height + w.length(0.08, 0.2)), stone)
-    share, side = w.length(0.28, 0.42) * width, w.choice(BOTH)
+    share, side = w.length(0.28, 0.42) * width, w.choice(BOTH_SIDES)
     z = (foot + 0.015, height - 0.045)
     left, right = (y[0] + 0.025, y[0] + share), (y[0] + share, y[1] - 0.025)
     if side > 0:
         left, right = (-left[1], -left[0]), (-right[1], -right[0])
-    grip: Grip = w.choice(("knob", "bar", "slot"))
-    front: Front = w.choice(("flat", "frame", "raised"))
-    shared.drawers(w, x[1] - 0.03, left, shared.graded(*z, w.whole(2, 3), 1.1), look, metal, "flat", grip)
+    grip: HandleKind = w.choice(("knob", "bar", "slot"))
+    front: FrontKind = w.choice(("flat", "frame", "raised"))
+    parts.styled_drawers(w, x[1] - 0.03, left, parts.graded_rows(*z, w.whole(2, 3), 1.1), look, metal, "flat", grip)
     if w.chance(0.3):
-        shared.drawers(w, x[1] - 0.03, right, shared.graded(*z, 2, 1.0), look, metal, "flat", grip)
+        parts.styled_drawers(w, x[1] - 0.03, right, parts.graded_rows(*z, 2, 1.0), look, metal, "flat", grip)
     else:
-        shared.doors(w, x[1] - 0.03, right, z, 1 if width < 0.9 else 2, look, metal, front, grip)
-    shared.feet(w, (x[0], x[1] - 0.03), y, foot + 0.001, kind, look)
+        parts.styled_doors(w, x[1] - 0.03, right, z, 1 if width < 0.9 else 2, look, metal, front, grip)
+    parts.feet(w, (x[0], x[1] - 0.03), y, foot + 0.001, kind, look)
     _basins(w, width, depth, height)
 
 

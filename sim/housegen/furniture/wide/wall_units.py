@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH, Front, Grip
+from sim.housegen.furniture.parts import BOTH_SIDES, FrontKind, HandleKind
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -13,17 +12,17 @@ def wall_unit_open(w: Workbench) -> None:
     """Kitchen wall cupboard, part doors, part open shelves with crockery, hooks with cups under it."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.26, 0.36), w.height(0.50, 0.80)
     w.mount_height_m = 1.42
-    look, metal = parts.body(w), w.look(w.choice(("metal", "dark", "brass")))
+    look, metal = parts.wood_look(w), w.look(w.choice(("metal", "dark", "brass")))
     half, count = 0.5 * width, max(1, round(width / 0.45))
     shut = count // 2 if w.chance(0.5) else (count + 1) // 2
     split = -half + shut * width / count
-    side = w.choice(BOTH)
+    side = w.choice(BOTH_SIDES)
     span, rest = (-half, split), (split, half)
     if side < 0:
         span, rest = (-split, half), (-half, -split)
     if shut:
         w.box((0.0, depth - 0.018), span, (0.0, height), look)
-        shared.doors(
+        parts.styled_doors(
             w,
             depth - 0.018,
             span,
@@ -35,14 +34,14 @@ def wall_unit_open(w: Workbench) -> None:
             w.choice(("knob", "bar")),
         )
     if rest[1] - rest[0] > 0.05:
-        shared.open_case(w, (0.0, depth), rest, (0.0, height), 0.018, look)
+        parts.open_case(w, (0.0, depth), rest, (0.0, height), 0.018, look)
         shelves = w.whole(1, 2)
         step = height / (shelves + 1)
         for i in range(shelves + 1):
             if i:
                 w.box((0.0, depth - 0.02), (rest[0] + 0.01, rest[1] - 0.01), (i * step - 0.009, i * step + 0.009), look)
             count = max(1, round((rest[1] - rest[0]) / 0.22))
-            shared.things(
+            parts.shelf_objects(
                 w,
                 (0.02, depth),
                 (rest[0] + 0.03, rest[1] - 0.03),
@@ -62,17 +61,17 @@ def wall_unit_tiers(w: Workbench) -> None:
     """Kitchen wall cupboards in two tiers: doors below, low lift-up flaps above, perhaps set back, a cornice."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.32, 0.38), w.height(0.75, 0.95)
     w.mount_height_m = 1.42
-    look, metal = parts.body(w), w.look(w.choice(("metal", "dark", "brass")))
+    look, metal = parts.wood_look(w), w.look(w.choice(("metal", "dark", "brass")))
     upper = w.new_look("lacquer") if w.chance(0.3) else look
     half, split = 0.5 * width, height - w.length(0.24, 0.36)
     inset = w.choice((0.0, 0.0, 0.08))
     w.box((0.0, depth - 0.018), (-half, half), (0.0, split), look)
     w.box((0.0, depth - inset - 0.018), (-half, half), (split, height), upper)
-    grip: Grip = w.choice(("bar", "knob", "slot", "rail"))
-    front: Front = w.choice(("flat", "frame"))
+    grip: HandleKind = w.choice(("bar", "knob", "slot", "rail"))
+    front: FrontKind = w.choice(("flat", "frame"))
     y = (-half, half)
-    shared.doors(w, depth - 0.018, y, (0.0, split), max(1, round(width / 0.45)), look, metal, front, grip)
-    shared.drawers(
+    parts.styled_doors(w, depth - 0.018, y, (0.0, split), max(1, round(width / 0.45)), look, metal, front, grip)
+    parts.styled_drawers(
         w,
         depth - inset - 0.018,
         y,

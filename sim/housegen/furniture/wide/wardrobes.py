@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES, FeetKind, FrontKind, HandleKind
 from sim.housegen.furniture.shapes import chamfered_box, frustum
-from sim.housegen.furniture.wide import shared
-from sim.housegen.furniture.wide.shared import BOTH, Feet, Front, Grip
 from sim.housegen.furniture.workbench import Workbench
 
 
 def wardrobe_combi(w: Workbench) -> None:
     """Asymmetric wardrobe: tall doors on one side, a lower stack of drawers, open shelves or a mirror on the other."""
     width, depth, height = w.width(1.10, 1.90), w.depth(0.50, 0.62), w.height(1.80, 2.20)
-    look, side = parts.body(w), w.choice(BOTH)
+    look, side = parts.wood_look(w), w.choice(BOTH_SIDES)
     face = w.look(w.choice(("wood", "lacquer", "lacquer")))
     metal, foot = w.look(w.choice(("metal", "dark", "brass"))), w.length(0.05, 0.14)
     share = w.length(0.45, 0.66) * width
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     split = side * (0.5 * width - share)
     tall = (split, y[1]) if side > 0 else (y[0], split)
     rest = (y[0], split) if side > 0 else (split, y[1])
@@ -25,20 +24,20 @@ def wardrobe_combi(w: Workbench) -> None:
     top = height if w.chance(0.6) else low + w.length(0.3, 0.6)
     w.box(x, tall, (foot, height), look)
     w.box(x, rest, (foot, low), look)
-    shared.open_case(w, (x[0], x[1] - 0.04), rest, (low, top), 0.02, look)
-    front: Front = w.choice(("flat", "frame", "cane"))
-    grip: Grip = w.choice(("bar", "knob", "rail", "slot"))
-    shared.doors(w, x[1], tall, (foot, height), max(1, round(share / 0.5)), face, metal, front, grip)
-    edges = shared.graded(foot, low, w.whole(2, 4), 1.1)
-    shared.drawers(w, x[1], rest, edges, face, metal, "flat", "bar" if grip == "rail" else grip)
+    parts.open_case(w, (x[0], x[1] - 0.04), rest, (low, top), 0.02, look)
+    front: FrontKind = w.choice(("flat", "frame", "cane"))
+    grip: HandleKind = w.choice(("bar", "knob", "rail", "slot"))
+    parts.styled_doors(w, x[1], tall, (foot, height), max(1, round(share / 0.5)), face, metal, front, grip)
+    edges = parts.graded_rows(foot, low, w.whole(2, 4), 1.1)
+    parts.styled_drawers(w, x[1], rest, edges, face, metal, "flat", "bar" if grip == "rail" else grip)
     shelves = w.whole(1, 2) if top - low > 0.5 else 0
     step = (top - low) / (shelves + 1)
     for i in range(shelves + 1):
         z = low + i * step
         if i:
             w.box((x[0], x[1] - 0.05), (rest[0] + 0.02, rest[1] - 0.02), (z - 0.018, z), look)
-        shared.things(w, x, (rest[0] + 0.03, rest[1] - 0.03), z + (0.0 if i else 0.02), 2, step - 0.04)
-    shared.feet(w, x, y, foot + 0.001, w.choice(("plinth", "block", "taper")), w.look("dark") if foot < 0.09 else look)
+        parts.shelf_objects(w, x, (rest[0] + 0.03, rest[1] - 0.03), z + (0.0 if i else 0.02), 2, step - 0.04)
+    parts.feet(w, x, y, foot + 0.001, w.choice(("plinth", "block", "taper")), w.look("dark") if foot < 0.09 else look)
 
 
 def wardrobe_cloth(w: Workbench) -> None:
@@ -46,7 +45,7 @@ def wardrobe_cloth(w: Workbench) -> None:
     width, depth, height = w.width(0.75, 1.40), w.depth(0.44, 0.52), w.height(1.55, 1.80)
     cloth, tube = w.look(w.choice(("fabric", "linen", "curtain"))), w.look(w.choice(("metal", "dark", "bright")))
     pitch = w.length(0.06, 0.16) if w.chance(0.5) else 0.0
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     eaves, open_ = height - pitch, w.chance(0.6)
     share = w.choice((0.35, 0.5, 0.65))
     split = y[0] + share * width
@@ -90,7 +89,7 @@ def wardrobe_lockers(w: Workbench) -> None:
     height, foot = w.height(1.65, 1.95), w.length(0.03, 0.16)
     look = w.look(w.choice(("appliance", "lacquer", "steel")))
     door = w.new_look("lacquer") if w.chance(0.4) else look
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     slope = w.length(0.08, 0.16) if w.chance(0.3) else 0.0
     w.box(x, y, (foot, height - slope), look)
     if slope:
@@ -105,32 +104,32 @@ def wardrobe_lockers(w: Workbench) -> None:
     for i in range(columns):
         for j in range(rows):
             left, low = y[0] + i * each, foot + j * tall
-            face = shared.leaf(w, x[1], (left, left + each), (low, low + tall), door, "flat")
+            face = parts.front_panel(w, x[1], (left, left + each), (low, low + tall), door, "flat")
             middle = left + 0.5 * each
             for k in range(3 if columns * rows < 6 else 1):
                 for z in (low + tall - 0.10 - 0.03 * k, low + 0.10 + 0.03 * k)[: 3 - rows]:
                     slot = (middle - 0.25 * each, middle + 0.25 * each)
                     w.box((face - 0.001, face + 0.002), slot, (z, z + 0.01), dark, solid=False)
             hand = (face, left + 0.15 * each, low + 0.52 * tall)
-            shared.handle(w, "bar", hand, 0.08, w.look("metal"), upright=True)
-    shared.feet(w, x, y, foot + 0.001, "block" if foot > 0.07 else "plinth", w.look("dark"), 0.03)
+            parts.handle(w, "bar", hand, 0.08, w.look("metal"), upright=True)
+    parts.feet(w, x, y, foot + 0.001, "block" if foot > 0.07 else "plinth", w.look("dark"), 0.03)
 
 
 def wardrobe_ceiling(w: Workbench) -> None:
     """Built-in wardrobe up to the ceiling: tall doors, a row of top boxes over them, louvred, framed or mirrored."""
     width, depth, height = w.width(1.20, 2.30), w.depth(0.55, 0.65), w.height(2.25, 2.45)
     count = max(2, round(width / w.choice((0.42, 0.55))))
-    look = parts.body(w)
-    x, y = shared.plan(depth, width)
+    look = parts.wood_look(w)
+    x, y = parts.footprint(depth, width)
     split = height - w.length(0.35, 0.55)
     metal = w.look(w.choice(("metal", "brass", "iron")))
     w.box(x, y, (0.0, height), look)
-    front: Front = w.choice(("slats" if count < 4 else "frame", "frame", "flat"))
-    grip: Grip = w.choice(("knob", "bar"))
+    front: FrontKind = w.choice(("slats" if count < 4 else "frame", "frame", "flat"))
+    grip: HandleKind = w.choice(("knob", "bar"))
     drawers = w.chance(0.4)
     low = 0.08 if not drawers else 0.45
     if drawers:
-        shared.drawers(
+        parts.styled_drawers(
             w,
             x[1],
             (y[0] + 0.02, y[1] - 0.02),
@@ -141,8 +140,8 @@ def wardrobe_ceiling(w: Workbench) -> None:
             grip if grip == "bar" else "cup",
             max(1, count // 2),
         )
-    shared.doors(w, x[1], (y[0] + 0.02, y[1] - 0.02), (low, split), count, look, metal, front, grip)
-    shared.doors(w, x[1], (y[0] + 0.02, y[1] - 0.02), (split, height - 0.03), count, look, metal, "flat", grip)
+    parts.styled_doors(w, x[1], (y[0] + 0.02, y[1] - 0.02), (low, split), count, look, metal, front, grip)
+    parts.styled_doors(w, x[1], (y[0] + 0.02, y[1] - 0.02), (split, height - 0.03), count, look, metal, "flat", grip)
     if w.chance(0.5):
         each = (width - 0.04) / count
         for i in range(count):
@@ -162,21 +161,21 @@ def wardrobe_ceiling(w: Workbench) -> None:
 def wardrobe_cane(w: Workbench) -> None:
     """Slender wardrobe on legs with rounded corners and doors of cane, mesh or framed panels."""
     width, depth, height = w.width(0.80, 1.30), w.depth(0.48, 0.60), w.height(1.65, 1.95)
-    look, metal = parts.body(w), w.look(w.choice(("brass", "dark")))
-    kind: Feet = w.choice(("splay", "taper", "sled"))
+    look, metal = parts.wood_look(w), w.look(w.choice(("brass", "dark")))
+    kind: FeetKind = w.choice(("splay", "taper", "sled"))
     foot, radius = w.length(0.14, 0.30), w.length(0.02, 0.06)
-    x, y = shared.plan(depth, width)
+    x, y = parts.footprint(depth, width)
     w.mesh(chamfered_box((depth, width, height - foot), radius), (0.0, 0.0, 0.5 * (foot + height)), look)
     split = height - radius
     low = foot + radius
     inner = (y[0] + radius, y[1] - radius)
     if w.chance(0.5):
-        shared.drawers(
+        parts.styled_drawers(
             w, x[1] - 0.003, inner, (low, low + 0.22), look, metal, "flat", w.choice(("knob", "tab")), w.whole(1, 2)
         )
         low += 0.22
-    grip: Grip = w.choice(("tab", "knob", "bar"))
-    shared.doors(
+    grip: HandleKind = w.choice(("tab", "knob", "bar"))
+    parts.styled_doors(
         w,
         x[1] - 0.003,
         inner,
@@ -187,7 +186,7 @@ def wardrobe_cane(w: Workbench) -> None:
         w.choice(("cane", "cane", "frame")),
         grip,
     )
-    shared.feet(
+    parts.feet(
         w,
         (x[0] + 0.03, x[1] - 0.03),
         (y[0] + 0.05, y[1] - 0.05),
@@ -195,7 +194,7 @@ def wardrobe_cane(w: Workbench) -> None:
         kind,
         w.look("wood") if kind != "sled" else w.look("iron"),
     )
-    shared.tops(w, x, y, height)
+    parts.top_surface(w, x, y, height)
 
 
 STYLES: tuple[Style, ...] = (

@@ -1,0 +1,128 @@
+"""Tops and bodies of tables and cabinets, worktops with their sink and hob, and objects on shelves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim.housegen.furniture.item import Look, MeshShape
+from sim.housegen.furniture.parts.spans import footprint
+from sim.housegen.furniture.shapes import named_mesh
+from sim.housegen.furniture.workbench import Range, Workbench
+
+
+def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tuple[Range, Range]:
+    """Adds a rectangular top on which objects may stand, and returns its x and y ranges."""
+    x, y = footprint(depth, width)
+    w.box(x, y, z, look)
+    w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x, y
+
+
+def round_top(w: Workbench, radius: float, z: Range, look: Look) -> None:
+    """Adds a round top on which objects may stand."""
+    w.cylinder((0.0, 0.0), z, radius, look)
+    half = 0.65 * radius
+    w.top((-half, half), (-half, half), z[1])
+
+
+def top_surface(w: Workbench, x: Range, y: Range, z: float) -> None:
+    """Declares the top of a case, 4 cm inside its edges, as a surface on which objects may stand."""
+    w.top((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[1] - 0.04), z)
+
+
+def case(w: Workbench, depth: float, width: float, z: Range, look: Look, *, foot: float = 0.0) -> tuple[float, Range]:
+    """Adds a closed body on which objects may stand, on a dark plinth of height `foot`.
+
+    Returns:
+        The x of its front plane and its y range.
+    """
+    x, y = footprint(depth, width)
+    w.box(x, y, z, look)
+    if foot:
+        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (z[0] - foot, z[0]), w.look("dark"))
+    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), z[1])
+    return x[1], y
+
+
+def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Look, *, back: bool = True) -> None:
+    """Adds the boards of a box that is open in front, and also behind without `back`."""
+    for edge in (y[0], y[1] - board):
+        w.box(x, (edge, edge + board), z, look)
+    for low in (z[0], z[1] - board):
+        w.box(x, (y[0] + board, y[1] - board), (low, low + board), look)
+    if back:
+        w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
+
+
+def prism(outline: Sequence[tuple[float, float]], high: float) -> MeshShape:
+    """Returns an upright prism from z = 0; its star-shaped outline runs counter-clockwise seen from above."""
+    n = len(outline)
+    points = np.asarray(outline, dtype=np.float64)
+    ring = np.vstack([points, points.mean(axis=0)])
+    vertices = np.vstack([np.column_stack([ring, np.full(n + 1, z)]) for z in (0.0, high)])
+    faces = []
+    for i in range(n):
+        j, up = (i + 1) % n, n + 1
+        faces += [(i, j, up + j), (i, up + j, up + i), (n, j, i), (up + n, up + i, up + j)]
+    return named_mesh("prism", vertices, faces)
+
+
+def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, free: float) -> None:
+    """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `free` metres of room above it."""
+    each = (y[1] - y[0]) / count
+    for i in range(count):
+        at, room = y[0] + (i + 0.5) * each, min(0.8 * free, 0.24)
+        half = min(0.42 * each, 0.09)
+        middle = 0.5 * (x[0] + x[1])
+        kind = w.choice(("book", "pot", "ceramic", "cardboard", "none"))
+        if kind in ("book", "cardboard"):
+            deep = min(0.1, 0.35 * (x[1] - x[0]))
+            high = z + w.length(0.5, 0.95) * room
+            w.box((middle - deep, middle + deep), (at - half, at + half), (z, high), w.new_look(kind), solid=False)
+        elif kind != "none":
+            w.cylinder((middle, at), (z, z + w.length(0.3, 0.8) * room), 0.8 * half, w.new_look(kind), solid=False)
+
+
+def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:
+    """Adds a slab, if asked with a rectangular hole, given as x and y ranges, for a sink."""
+    if hole is None:
+        w.box(x, y, z, look)
+        return
+    (hx0, hx1), (hy0, hy1) = hole
+    w.box(x, (y[0], hy0), z, look)
+    w.box(x, (hy1, y[1]), z, look)
+    w.box((x[0], hx0), (hy0, hy1), z, look)
+    w.box((hx1, x[1]), (hy0, hy1), z, look)
+
+
+def worktop_fittings(w: Workbench, y: Range, z: float) -> tuple[tuple[Range, Range] | None, list[Range]]:
+    """Adds a sink and a hob to a worktop whose upper face is at z; hints `with_sink`, `with_hob`.
+
+    Returns:
+        The x and y ranges of the sink's hole, or None, and the y ranges that stay free.
+    """
+    width, taken, hole, sink_y = y[1] - y[0], [], None, None
+    if width >= 0.75 and w.flag("with_sink", 0.35):
+        sink_y = w.length(y[0] + 0.38, y[1] - 0.38) if width > 1.0 else 0.5 * (y[0] + y[1])
+        w.put(w.make("sink", use="inset"), (0.0, sink_y, z - 0.18))
+        hole = ((-0.20, 0.20), (sink_y - 0.24, sink_y + 0.24))
+        taken.append((sink_y - 0.30, sink_y + 0.30))
+    if width > 1.3 and w.flag("with_hob", 0.25):
+        places = [p for p in (y[0] + 0.36, y[1] - 0.36) if sink_y is None or abs(p - sink_y) > 0.62]
+        if places:
+            place = w.choice(places)
+            w.put(w.make("appliances", use="hob"), (0.0, place, z))
+            taken.append((place - 0.32, place + 0.32))
+    return hole, _free_ranges(y, taken)
+
+
+def _free_ranges(y: Range, taken: Sequence[Range]) -> list[Range]:
+    """Returns the parts of a range outside the taken ones that are longer than 0.25 m."""
+    free, start = [], y[0]
+    for low, high in sorted(taken):
+        free.append((start, low))
+        start = high
+    free.append((start, y[1]))
+    return [r for r in free if r[1] - r[0] > 0.25]

@@ -1,0 +1,43 @@
+"""Choices of a material for a part. Each function draws from the item's random generator."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.workbench import Workbench
+
+
+def darker(look: Look, factor: float = 0.45) -> Look:
+    """Returns a darker version of a look without its texture, for example for the shadow in a joint."""
+    r, g, b, a = look.rgba
+    return dataclasses.replace(
+        look, rgba=(round(factor * r, 3), round(factor * g, 3), round(factor * b, 3), a), texture=None
+    )
+
+
+def wood_look(w: Workbench, painted: float = 0.45) -> Look:
+    """Returns lacquer with the probability `painted`, otherwise plain wood."""
+    return w.look("lacquer") if w.chance(painted) else w.look("wood")
+
+
+def fitting_look(w: Workbench) -> Look:
+    """Returns the metal of taps, pipes and hooks."""
+    return w.look(w.choice(("chrome", "chrome", "brass", "dark", "steel")))
+
+
+def sanitary_look(w: Workbench) -> Look:
+    """Returns the material of a basin or a shower tray."""
+    return w.look(w.choice(("ceramic", "ceramic", "ceramic", "stone", "steel", "plastic")))
+
+
+def upholstery_look(w: Workbench, leather: float = 0.35) -> Look:
+    """Returns leather with the probability `leather`, otherwise plain or bright cloth."""
+    if w.chance(leather):
+        return w.look("leather")
+    return w.look("bright") if w.chance(0.2) else w.look("fabric")
+
+
+def tube_look(w: Workbench) -> Look:
+    """Returns the metal or the paint of tubes and wires."""
+    return w.look(w.choice(("chrome", "iron", "lacquer", "brass")))
