@@ -1,4 +1,4 @@
-"""Furniture of your own: a stool made of a crate, and an apartment with such stools.
+"""A new style of furniture: a stool made from a crate, and an apartment in which all stools are such crates.
 
 python examples/my_furniture.py my_house.xml
 """
@@ -16,8 +16,8 @@ from sim.paths import assets_dir
 
 
 def crate(w: Workbench) -> None:
-    """An open crate stood on its end: two sides, bottom and seat, a slatted back."""
-    w.mass_kg = 4.0  # light: it may be made movable
+    """An open crate on its end: two sides, a bottom, a seat and a slatted back."""
+    w.mass_kg = 4.0  # light enough to be movable
     high, wide, deep = w.height(0.42, 0.46), w.width(0.34, 0.40), w.depth(0.30, 0.34)
     wood, board, slats = w.look("wood"), 0.02, 4
     x, y = (-deep / 2, deep / 2), (-wide / 2, wide / 2)
@@ -26,7 +26,7 @@ def crate(w: Workbench) -> None:
     for bottom in (0.0, high - board):
         w.box(x, (y[0] + board, y[1] - board), (bottom, bottom + board), wood)
     step = (high - 2 * board) / slats
-    for i in range(slats):  # depth sees through the gaps
+    for i in range(slats):  # the depth camera sees through the gaps
         low = board + i * step
         w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (low, low + 0.7 * step), wood)
     w.top(x, y, high, kind="seat")
@@ -36,17 +36,13 @@ CRATE = Style("stool", "crate", "train", crate, uses=("low",))
 
 
 def main(file: Path, seed: int = 3) -> None:
-    """Write the apartment of this seed, with a crate for each stool."""
-    shipped, CATALOGUE["stool"] = CATALOGUE["stool"], {CRATE.name: CRATE}
-    try:
-        house = generate(seed, pool="train", kind="studio")
-    finally:
-        CATALOGUE["stool"] = shipped  # other styles would give other houses
+    """Writes the apartment of this seed; all its stools are crates."""
+    house = generate(seed, pool="train", kind="studio", catalogue=CATALOGUE.replacing("stool", CRATE))
     # A house file names its textures relative to itself.
     textures = os.path.relpath(assets_dir() / "textures", file.resolve().parent)
     file.write_text(house_text(house, textures))
     stools = sum(body.name.startswith("stool_") for body in house.bodies)
-    print(f"{file}: {stools} crates stand where stools would")
+    print(f"{file}: {stools} stools, all of them crates")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from sim.housegen.furniture import CATALOGUE
 from sim.interface import ConfigError
 from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.worlds import room, with_box
-from tools import make_episodes
+from tools import generate_views, make_episodes
 from tools.generate_views import FRESH_SEEDS_FROM, Args, main, plan
 
 
@@ -97,7 +97,8 @@ def test_the_wide_pool_is_freshly_generated_houses_alone(tmp_path: Path, monkeyp
     index = json.loads((tmp_path / "index.json").read_text())
     assert [entry["house"] for entry in index["shards"]] == [f"wide_{FRESH_SEEDS_FROM}"]
     assert "--pool wide" in index["command"]
-    monkeypatch.setitem(CATALOGUE["chair"], "throne", replace(CATALOGUE["chair"]["slat_back"], name="throne"))
+    throne = replace(CATALOGUE.styles("chair", "wide")[0], name="throne")
+    monkeypatch.setattr(generate_views, "CATALOGUE", CATALOGUE.with_styles(throne))
     with pytest.raises(ConfigError, match="holds shards with styles_sha256 = "):
         main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
 

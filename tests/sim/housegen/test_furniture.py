@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import sys
 from collections import defaultdict
 from functools import cache
 
@@ -13,16 +14,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.gl import mujoco
-from sim.housegen import materials
-from sim.housegen.furniture import CATALOGUE, make_item, styles
-from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape
+from sim.housegen import furniture, generate, materials
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Pool
 from sim.housegen.furniture.shapes import MAX_VERTICES
-from sim.housegen.furniture.workbench import euler_from_matrix, matrix_from_euler
+from sim.housegen.furniture.workbench import Workbench, euler_from_matrix, matrix_from_euler
 from sim.housegen.mjcf import ASSETS_DIR
 from sim.housegen.textures import TEXTURES
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
 
-STYLES = [style for of_category in CATALOGUE.values() for style in of_category.values()]
+STYLES = [style for category in CATALOGUE.categories for style in CATALOGUE.styles(category)]
 SEEDS = (0, 1, 2)
 TOUCH_M = 0.01
 FAR_M = 0.05
@@ -44,9 +46,26 @@ every_style = pytest.mark.parametrize("style", STYLES, ids=lambda s: f"{s.catego
 
 
 @cache
-def items(category: str, name: str) -> tuple[Item, ...]:
-    style = CATALOGUE[category][name]
-    return tuple(make_item(category, np.random.default_rng(seed), pool=style.pool, style=name) for seed in SEEDS)
+def items(style: Style) -> tuple[Item, ...]:
+    """Some items of a style, which need not be in the shipped catalogue."""
+    return tuple(item_of(style, seed) for seed in SEEDS)
+
+
+def item_of(style: Style, seed: int) -> Item:
+    catalogue = CATALOGUE.replacing(style.category, style)
+    return catalogue.make_item(style.category, np.random.default_rng(seed), pool=style.pool, style=style.name)
+
+
+def names(category: str, pool: Pool, use: str | None = None) -> list[str]:
+    return [style.name for style in CATALOGUE.styles(category, pool, use)]
+
+
+def build_block(w: Workbench) -> None:
+    w.box((-0.15, 0.15), (-0.16, 0.16), (0.0, 0.44), Look())
+
+
+def stool(name: str) -> Style:
+    return Style("stool", name, "train", build_block, uses=("low", "bar"))
 
 
 def with_children(item: Item) -> list[Item]:
@@ -113,7 +132,7 @@ def slab_ids(model: mujoco.MjModel) -> dict[str, int]:
 
 @every_style
 def test_item_keeps_the_conventions(style):
-    for item in items(style.category, style.name):
+    for item in items(style):
         assert item.category == style.category
         assert item.style == style.name
         assert item.mount == style.mount
@@ -131,8 +150,7 @@ def test_item_keeps_the_conventions(style):
 
 @every_style
 def test_same_seed_gives_the_same_item(style):
-    again = make_item(style.category, np.random.default_rng(SEEDS[0]), pool=style.pool, style=style.name)
-    assert described(again) == described(items(style.category, style.name)[0])
+    assert described(item_of(style, SEEDS[0])) == described(items(style)[0])
 
 
 def described(item: Item) -> str:
@@ -147,7 +165,7 @@ def described(item: Item) -> str:
 
 @every_style
 def test_bounding_box_holds_every_geom_and_fits(style):
-    for item in items(style.category, style.name):
+    for item in items(style):
         model, data = compiled(item)
         slabs = slab_ids(model)
         own = [i for i in range(model.ngeom) if i not in slabs.values()]
@@ -161,7 +179,7 @@ def test_bounding_box_holds_every_geom_and_fits(style):
 @every_style
 def test_no_part_floats(style):
     support = {"floor": "z-", "top": "z-", "wall": "x-", "ceiling": "z+"}[style.mount]
-    for item in items(style.category, style.name):
+    for item in items(style):
         model, data = compiled(item)
         slabs = slab_ids(model)
         own = [i for i in range(model.ngeom) if i not in slabs.values()]
@@ -180,7 +198,7 @@ def test_no_part_floats(style):
 
 @every_style
 def test_meshes_are_closed_and_face_outwards(style):
-    shapes = {g.mesh.name: g.mesh for item in items(style.category, style.name) for g in all_geoms(item) if g.mesh}
+    shapes = {g.mesh.name: g.mesh for item in items(style) for g in all_geoms(item) if g.mesh}
     for shape in shapes.values():
         if not len(shape.faces):
             continue
@@ -193,27 +211,27 @@ def test_meshes_are_closed_and_face_outwards(style):
 
 def test_every_goal_has_styles_enough_in_both_pools():
     for category in GOAL_CATEGORIES:
-        assert len(styles(category, "train")) >= 4, category
-        assert len(styles(category, "heldout")) >= 2, category
-        assert len(styles(category)) >= 6, category
+        assert len(CATALOGUE.styles(category, "train")) >= 4, category
+        assert len(CATALOGUE.styles(category, "heldout")) >= 2, category
+        assert len(CATALOGUE.styles(category)) >= 6, category
 
 
-@pytest.mark.parametrize("category", CATALOGUE)
+@pytest.mark.parametrize("category", CATALOGUE.categories)
 def test_every_use_exists_in_both_pools(category):
     uses = defaultdict(set)
-    for style in CATALOGUE[category].values():
+    for style in CATALOGUE.styles(category):
         uses[style.pool].update(style.uses)
     assert uses["train"] == uses["heldout"]
-    assert styles(category, "train")
-    assert styles(category, "heldout")
+    assert CATALOGUE.styles(category, "train")
+    assert CATALOGUE.styles(category, "heldout")
 
 
 @pytest.mark.parametrize("category", GOAL_CATEGORIES)
 def test_wide_houses_show_all_that_train_s_do_and_more_and_nothing_held_out(category):
-    train, wide, heldout = (set(styles(category, pool)) for pool in ("train", "wide", "heldout"))
+    train, wide, heldout = (set(names(category, pool)) for pool in ("train", "wide", "heldout"))
     assert train < wide
     assert not wide & heldout
-    drawn = {make_item(category, np.random.default_rng(seed), pool="wide").style for seed in range(40)}
+    drawn = {CATALOGUE.make_item(category, np.random.default_rng(seed), pool="wide").style for seed in range(40)}
     assert drawn & (wide - train)
     assert drawn <= wide
 
@@ -221,7 +239,7 @@ def test_wide_houses_show_all_that_train_s_do_and_more_and_nothing_held_out(cate
 def test_train_never_shows_a_look_of_the_heldout_pool():
     looks: dict[str, set[tuple]] = {"train": set(), "heldout": set()}
     for style in STYLES:
-        for item in items(style.category, style.name):
+        for item in items(style):
             looks[PAINTED_AS[style.pool]] |= {(g.look.rgba, g.look.texture) for g in all_geoms(item)}
     for material in materials.MATERIALS:
         for pool, of_pool in looks.items():
@@ -234,38 +252,38 @@ def test_train_never_shows_a_look_of_the_heldout_pool():
 @pytest.mark.parametrize("category", EXACT_WIDTHS)
 @pytest.mark.parametrize("pool", ["train", "heldout", "wide"])
 def test_width_hint_is_kept(category, pool):
-    for name in styles(category, pool):
-        item = make_item(category, np.random.default_rng(3), pool=pool, style=name, width_m=1.23)
+    for name in names(category, pool):
+        item = CATALOGUE.make_item(category, np.random.default_rng(3), pool=pool, style=name, width_m=1.23)
         assert item.size_m[1] == pytest.approx(1.23, abs=0.03), name
 
 
 @pytest.mark.parametrize("pool", ["train", "heldout", "wide"])
 @pytest.mark.parametrize("use", ["run", "island"])
 def test_sink_of_a_counter_is_a_child_only_when_asked_for(pool, use):
-    for wanted, style in itertools.product((True, False), styles("counter", pool, use)):
+    for wanted, style in itertools.product((True, False), names("counter", pool, use)):
         if use == "island" and wanted:
             continue
         rng = np.random.default_rng(0)
-        item = make_item("counter", rng, pool=pool, style=style, use=use, width_m=2.4, with_sink=wanted)
+        item = CATALOGUE.make_item("counter", rng, pool=pool, style=style, use=use, width_m=2.4, with_sink=wanted)
         assert ("sink" in {child.item.category for child in item.children}) == wanted
 
 
 def test_looks_hint_takes_the_place_of_drawn_looks():
     red = Look((1.0, 0.0, 0.0, 1.0))
-    item = make_item("table", np.random.default_rng(0), pool="train", style="farmhouse", looks={"wood": red})
+    item = CATALOGUE.make_item("table", np.random.default_rng(0), pool="train", style="farmhouse", looks={"wood": red})
     assert red in {geom.look for geom in item.geoms}
 
 
 def test_unknown_requests_say_what_there_is():
     rng = np.random.default_rng(0)
     with pytest.raises(ConfigError, match="sofa"):
-        make_item("spaceship", rng, pool="train")
+        CATALOGUE.make_item("spaceship", rng, pool="train")
     with pytest.raises(ConfigError, match="slat_back"):
-        make_item("chair", rng, pool="train", style="windsor")
+        CATALOGUE.make_item("chair", rng, pool="train", style="windsor")
     with pytest.raises(ConfigError, match="office"):
-        make_item("chair", rng, pool="train", use="throne")
+        CATALOGUE.make_item("chair", rng, pool="train", use="throne")
     with pytest.raises(ConfigError, match="width_m"):
-        make_item("chair", rng, pool="train", widht_m=0.4)
+        CATALOGUE.make_item("chair", rng, pool="train", widht_m=0.4)
 
 
 def test_committed_textures_are_what_the_catalogue_draws():
@@ -275,6 +293,63 @@ def test_committed_textures_are_what_the_catalogue_draws():
         assert stored is not None, f"{path} is missing: run tools/make_textures.py"
         # FFTs differ in the last bit between machines, which may move a pixel by one grey level.
         assert np.abs(stored[:, :, ::-1].astype(int) - texture.pixels()).max() <= 12
+
+
+def test_a_style_from_outside_is_in_a_house_and_the_shipped_catalogue_is_unchanged():
+    shipped = CATALOGUE.styles("stool")
+    block = stool("block")
+    house = generate(3, kind="studio", catalogue=CATALOGUE.replacing("stool", block))
+    stools = [body for body in house.bodies if body.name.startswith("stool_")]
+    assert stools
+    assert all([list(geom.size) for geom in body.geoms] == [[0.15, 0.16, 0.22]] for body in stools)
+    assert CATALOGUE.styles("stool") == shipped
+
+
+def test_an_added_style_comes_last_and_only_in_the_new_catalogue():
+    block = stool("block")
+    assert CATALOGUE.with_styles(block).styles("stool") == (*CATALOGUE.styles("stool"), block)
+    assert block not in CATALOGUE.styles("stool")
+
+
+def test_replaced_styles_leave_other_categories_unchanged():
+    block = stool("block")
+    replaced = CATALOGUE.replacing("stool", block)
+    assert replaced.categories == CATALOGUE.categories
+    for category in CATALOGUE.categories:
+        assert replaced.styles(category) == ((block,) if category == "stool" else CATALOGUE.styles(category))
+
+
+def test_children_come_from_the_catalogue_of_their_parent():
+    catalogue = CATALOGUE.replacing("cushion", Style("cushion", "slab", "train", build_block, uses=("throw",)))
+    sofa = catalogue.make_item("sofa", np.random.default_rng(0), pool="train", style="block_arm", cushions=2)
+    assert [child.item.style for child in sofa.children] == ["slab", "slab"]
+
+
+def test_two_styles_of_one_name_in_a_category_are_refused():
+    with pytest.raises(ConfigError, match="two styles 'block' of category 'stool'"):
+        CATALOGUE.with_styles(stool("block"), stool("block"))
+    with pytest.raises(ConfigError, match=f"two styles '{CATALOGUE.styles('stool')[0].name}' of category 'stool'"):
+        CATALOGUE.with_styles(stool(CATALOGUE.styles("stool")[0].name))
+
+
+def test_a_replacement_of_another_category_is_refused():
+    with pytest.raises(ConfigError, match="'block' is of category 'stool', not 'chair'"):
+        CATALOGUE.replacing("chair", stool("block"))
+    with pytest.raises(ConfigError, match="No furniture of category 'spaceship'"):
+        CATALOGUE.replacing("spaceship")
+
+
+def test_a_module_that_declares_styles_is_a_family_without_further_entries(tmp_path, monkeypatch):
+    (tmp_path / "zeppelins.py").write_text(
+        "from sim.housegen.furniture.catalogue import Style\n"
+        "STYLES = (Style('stool', 'zeppelin', 'train', lambda w: None),)\n"
+    )
+    monkeypatch.setattr(furniture, "__path__", [*furniture.__path__, str(tmp_path)])
+    try:
+        found = list(furniture.shipped_styles())
+    finally:
+        sys.modules.pop("sim.housegen.furniture.zeppelins", None)
+    assert {(style.category, style.name) for style in found if style not in STYLES} == {("stool", "zeppelin")}
 
 
 @given(angles=st.tuples(*[st.floats(-1.5, 1.5)] * 3))
