@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from sim.geometry.grid import GridFrame, Window
+from sim.geometry.pose import Pose
 from sim.interface import (
     GOAL_CATEGORIES,
     Action,
@@ -23,7 +25,6 @@ from sim.interface import (
 )
 from stubborn.exploration.corners import CornerExplorer, ExplorationConfig, Explorer, Route
 from stubborn.exploration.glance import GlanceConfig, Glancer
-from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping.collision_marks import CollisionConfig, Jitter, is_collision, mark_collision, mark_visited
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.object_layers import ObjectLayers
@@ -130,7 +131,7 @@ class StubbornAgent:
         self.step = 0
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
         self.window: Window | None = None
-        self.pose: PlanarPose | None = None
+        self.pose: Pose | None = None
         self.last_action: Action | None = None
         self.jitter = Jitter()
         self.route: Route | None = None
@@ -152,9 +153,9 @@ class StubbornAgent:
         self.step += 1
         return self.last_action
 
-    def _feel(self, before: PlanarPose, pose: PlanarPose) -> None:
+    def _feel(self, before: Pose, pose: Pose) -> None:
         """Learn from how the last action went."""
-        config, moved_m = self.config.collisions, pose.distance_to(before.x_m, before.y_m)
+        config, moved_m = self.config.collisions, pose.distance_to(before)
         self.jitter.observe(self.last_action, moved_m)
         failed = is_collision(self.last_action, moved_m, self.jitter.failed_below_m(config))
         mark_visited(self.navmap, before, pose, self.robot.radius_m, config)
@@ -163,14 +164,14 @@ class StubbornAgent:
         if self.config.avoidance.untrap:
             self.untrap.observe(self.last_action, failed)
 
-    def _look(self, observation: Observation, pose: PlanarPose) -> Sighting:
+    def _look(self, observation: Observation, pose: Pose) -> Sighting:
         """Enter the frame into the map."""
         exact = self.mapper.add_depth(self.navmap, observation["depth"], pose)
         scores = self.segmenter.scores(observation, self.goal)
         exact &= self._true_outlines
         return self.mapper.add_scores(self.navmap, observation["depth"], scores, pose, self.step, exact=exact)
 
-    def _decide(self, pose: PlanarPose, sighting: Sighting) -> Action:
+    def _decide(self, pose: Pose, sighting: Sighting) -> Action:
         """Stop at the target, else get unstuck, else approach a candidate, else explore."""
         self.route, self.approach = None, None
         cell = self.seeker.in_reach(self.navmap, sighting)
@@ -194,7 +195,7 @@ class StubbornAgent:
             return Action.MOVE_FORWARD if self.last_action is Action.TURN_LEFT else Action.TURN_LEFT
         return self.planner.next_action(self.route.plan, self.route.free, pose)
 
-    def _inspect(self, approach: Approach, pose: PlanarPose) -> Action:
+    def _inspect(self, approach: Approach, pose: Pose) -> Action:
         """On a stand: face the candidate, then judge it."""
         off_rad = wrap_angle(approach.bearing_rad - pose.yaw_rad)
         if abs(off_rad) > self.config.planning.aligned_rad:
@@ -205,14 +206,14 @@ class StubbornAgent:
             self.seeker.postpone(self.navmap, self.step)
         return Action.TURN_LEFT
 
-    def _follow(self, pose: PlanarPose) -> Window:
+    def _follow(self, pose: Pose) -> Window:
         """The local window, moved with the robot when its time has come."""
         if self.window is None or self.step % self.config.recentre_every_steps == 0:
             self.window = self.navmap.frame.window_at(pose.x_m, pose.y_m, self.config.window_cells)
         return self.window
 
 
-def read_pose(observation: Observation) -> PlanarPose:
+def read_pose(observation: Observation) -> Pose:
     """The pose in the start frame from `gps` (metres forward, left) and `compass` (radians)."""
     x_m, y_m = (float(v) for v in np.asarray(observation["gps"]).reshape(2))
-    return PlanarPose(x_m, y_m, math.remainder(float(np.asarray(observation["compass"]).reshape(())), math.tau))
+    return Pose(x_m, y_m, math.remainder(float(np.asarray(observation["compass"]).reshape(())), math.tau))

@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import Action, Agent
 from stubborn.agent import StubbornAgent
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Plan, trace
 
@@ -50,7 +51,7 @@ def draw_belief(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False
 
     `whole` shows all that is known instead of the local window.
     """
-    pose = agent.pose or PlanarPose(0.0, 0.0, 0.0)
+    pose = agent.pose or Pose(0.0, 0.0, 0.0)
     window = agent.navmap.frame.window_at(pose.x_m, pose.y_m, agent.config.window_cells)
     if whole:
         known = agent.navmap.known_window(margin_cells=10).frame
@@ -87,7 +88,7 @@ class BeliefPainter:
         if agent.navmap is not self._navmap:
             self._navmap, self._side_m = agent.navmap, _SMALLEST_SIDE_M
             self._middle_m = (0.0, 0.0)
-        pose = agent.pose or PlanarPose(0.0, 0.0, 0.0)
+        pose = agent.pose or Pose(0.0, 0.0, 0.0)
         self._frame_all(pose)
         cells = round(self._side_m / agent.config.cell_m)
         view = agent.navmap.view(agent.navmap.frame.window_at(*self._middle_m, cells))
@@ -103,7 +104,7 @@ class BeliefPainter:
         """What the agent is about; "" where its plan is not shown."""
         return describe_intention(self.agent) if self.show_plan else ""
 
-    def _frame_all(self, pose: PlanarPose) -> None:
+    def _frame_all(self, pose: Pose) -> None:
         """Widen the picture when what is known, or the robot, comes near its edge."""
         low, high = _extent_xy_m(self.agent.navmap, pose)
         half_m = 0.5 * self._side_m - _EDGE_M
@@ -125,16 +126,16 @@ _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
 _ROOM_FOR_WORDS_PX = 240
 
 
-def _extent_xy_m(navmap: NavMap, pose: PlanarPose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _extent_xy_m(navmap: NavMap, pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest and largest x and y of what was seen and of the robot."""
     view = navmap.view(navmap.known_window(margin_cells=0))
     seen = (view.frames_in_view > 0) | view.seen_obstacle
     rows, cols = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     if rows.size == 0:
-        return np.array(pose[:2]), np.array(pose[:2])
+        return np.array(pose.xy_m), np.array(pose.xy_m)
     x_m, y_m = view.frame.centres(rows[[0, -1]], cols[[0, -1]])
     low, high = np.stack([x_m, y_m], axis=1)
-    return np.minimum(low, pose[:2]), np.maximum(high, pose[:2])
+    return np.minimum(low, pose.xy_m), np.maximum(high, pose.xy_m)
 
 
 def describe_intention(agent: StubbornAgent) -> str:
@@ -152,14 +153,14 @@ def describe_intention(agent: StubbornAgent) -> str:
     )
 
 
-def trace_xy_m(plan: Plan, pose: PlanarPose) -> NDArray[np.float64]:
+def trace_xy_m(plan: Plan, pose: Pose) -> NDArray[np.float64]:
     """The way from the robot down the plan, (n, 2) metres."""
     cells = trace(plan, pose, max_cells=plan.frame.shape[0] * 6)
     x_m, y_m = plan.frame.centres([c[0] for c in cells], [c[1] for c in cells])
     return np.stack([x_m, y_m], axis=1)
 
 
-def _draw_intention(canvas: _Canvas, agent: StubbornAgent, pose: PlanarPose) -> None:
+def _draw_intention(canvas: _Canvas, agent: StubbornAgent, pose: Pose) -> None:
     """The way ahead, the cells that would end it, and what it is for: a corner or a candidate."""
     if agent.route is not None:
         plan = agent.route.plan
@@ -247,7 +248,7 @@ class _Canvas:
             points = np.array([self.pixel(float(x), float(y)) for x, y in zip(x_m, y_m, strict=True)], np.int32)
             cv2.polylines(self.image, [points.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
 
-    def robot(self, pose: PlanarPose, radius_m: float) -> None:
+    def robot(self, pose: Pose, radius_m: float) -> None:
         small_px = max(1, self.image.shape[0] // 110)
         radius_px = max(small_px, round(radius_m / self.frame.cell_m * self.scale))
         middle, rim_px = self.pixel(pose.x_m, pose.y_m), self.width_px

@@ -9,7 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from stubborn.grid import GridFrame, Window
+from sim.geometry.grid import GridFrame, Window
 
 _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest first, so that each is aligned

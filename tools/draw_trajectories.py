@@ -26,7 +26,7 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
 from sim.analysis.report.drawings import split_of
-from sim.geometry.grid import PlanFrame
+from sim.geometry.grid import GridFrame
 from sim.interface import ConfigError
 from sim.task.failures import cause_of_failure, first_looping_step, first_trapped_step
 from sim.task.ground_truth import GroundTruth
@@ -163,7 +163,7 @@ def draw_chart(trajectory: Trajectory, width_px: int) -> Picture:
     return image
 
 
-def to_pixels(frame: PlanFrame, places_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
+def to_pixels(frame: GridFrame, places_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
     """(n, 2) column and row in the picture of places (n, 2) in the world."""
     from_corner_m = np.asarray(places_m, np.float64) - np.asarray(frame.origin_xy_m)
     return (

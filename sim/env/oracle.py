@@ -17,9 +17,9 @@ from typing import Protocol
 import cv2
 import numpy as np
 
-from sim.geometry.grid import CELL_M
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
 from sim.task.objectnav import Stage
+from sim.world.freespace import CELL_M
 
 HEADINGS = round(math.tau / TURN_RAD)
 GREED = 1.5

@@ -70,7 +70,7 @@ def view_points(
 
 def _near(space: FreeSpace, inside: NDArray[np.bool_], footprint: Footprint) -> NDArray[np.float64]:
     """(n, 2) centres of all the cells of a mask around a footprint, metres."""
-    rows, cols = space.frame.window(footprint.bounds_m, SuccessRule().distance_m)
+    rows, cols = space.frame.index_of(footprint.bounds_m, SuccessRule().distance_m)
     corner = np.array([rows.start, cols.start])
     return space.frame.to_metres(np.argwhere(inside[rows, cols]) + corner)
 

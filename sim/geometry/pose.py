@@ -1,4 +1,4 @@
-"""Poses of the robot on a floor, in the world and relative to where an episode started."""
+"""Poses of the robot on a floor, in the world and relative to the pose at which an episode started."""
 
 from __future__ import annotations
 
@@ -8,15 +8,27 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the robot stands: its centre in plan, its heading and the height of the floor under it."""
+    """The robot's centre in plan, its heading and the height of the floor under it.
+
+    In the world, or in the start frame of an episode: x forward and y left of the start pose.
+    """
 
     x_m: float
     y_m: float
     yaw_rad: float
     floor_z_m: float = 0.0
 
+    @property
+    def xy_m(self) -> tuple[float, float]:
+        """The robot's centre in plan."""
+        return self.x_m, self.y_m
+
+    def ahead(self, distance_m: float) -> tuple[float, float]:
+        """Returns the x and y of the point that far in front of the robot."""
+        return self.x_m + distance_m * math.cos(self.yaw_rad), self.y_m + distance_m * math.sin(self.yaw_rad)
+
     def relative_to(self, start: Pose) -> Pose:
-        """This pose in the start's frame: x forward, y left, yaw in (-pi, pi]."""
+        """Returns this pose in the start's frame: x forward, y left, yaw in (-pi, pi]."""
         dx, dy = self.x_m - start.x_m, self.y_m - start.y_m
         c, s = math.cos(start.yaw_rad), math.sin(start.yaw_rad)
         return Pose(
@@ -27,7 +39,7 @@ class Pose:
         )
 
     def distance_to(self, other: Pose) -> float:
-        """Distance in plan, metres."""
+        """Returns the distance in plan, metres."""
         return math.hypot(self.x_m - other.x_m, self.y_m - other.y_m)
 
 

@@ -1,8 +1,9 @@
-"""Where STOP succeeds: near a point of the goal's footprint that is in free line of sight (contract, section 2).
+"""Places where a STOP succeeds: near a point of the goal's footprint in free line of sight (contract, section 2).
 
-One function, `GoalRegion.satisfied`, decides both the mask of places that the distances are measured to and the test
-at STOP. It looks at the boundary of a footprint only: a line to a point inside one crosses the boundary first, at a
-point that is nearer and in sight too. A robot inside the footprint (under a table) has its goal right there.
+One function, `GoalRegion.satisfied`, computes both the mask of places to which distances are measured and the test at
+STOP. It uses the boundary of a footprint only: a line to a point inside it crosses the boundary at a point that is
+nearer and in sight too. A robot inside the footprint (under a table) is at the goal. Distance, height of the line of
+sight and storey are those of one `SuccessRule`.
 """
 
 from __future__ import annotations
@@ -20,22 +21,21 @@ from sim.geometry.convex import ConvexPolygon, lines_blocked, plan_polygon
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
-from sim.interface import MPCAT40_ID, SuccessRule, CameraModel
-from sim.world.freespace import SAME_STOREY_M, FreeSpace
+from sim.interface import MPCAT40_ID, SuccessRule
+from sim.world.freespace import FreeSpace
 
-SIGHT_HEIGHT_M = CameraModel().height_m
-"""Height above the floor at which the line of sight runs."""
 SIGHT_BLOCKERS = ("wall", "door", "window")
+"""Categories that block the line of sight."""
 SAMPLE_M = 0.025
 """Largest gap between neighbouring sample points on a footprint's boundary."""
 FLOOR_CONTACT_M = 0.1
-"""How far a thing may sink into the floor it stands on."""
+"""Largest depth by which an object may sink into the floor that it stands on."""
 _PIXEL_M = 0.005
 _BORDER_PX = 2
 
 
 class _Floor(NamedTuple):
-    """A piece of floor: the height of its top and where it lies."""
+    """A piece of floor: the height of its top, and its outline in plan."""
 
     top_m: float
     plan: ConvexPolygon | None
@@ -47,22 +47,22 @@ class Footprint:
 
     instance: Instance
     parts: tuple[ConvexPolygon, ...]
-    """Convex pieces whose union it is."""
+    """Convex polygons; the footprint is their union."""
     boundary_m: KDTree
     """Points (n, 2) on its boundary, `SAMPLE_M` apart or nearer."""
     bounds_m: tuple[float, float, float, float]
     z_m: tuple[float, float]
-    """Its lowest and highest point."""
+    """Heights of the lowest and the highest point."""
     floor_z_m: float
-    """Height of the floor it stands on, hangs over or lies on."""
+    """Height of the floor below the instance."""
 
-    def near(self, xy_m: NDArray[np.float64], reach_m: float) -> NDArray[np.bool_]:
-        """(n,) which places (n, 2) are within reach of the bounding box."""
+    def near(self, xy_m: NDArray[np.float64], margin_m: float) -> NDArray[np.bool_]:
+        """Returns (n,) which places (n, 2) are in the bounding box grown by a margin."""
         x0, y0, x1, y1 = self.bounds_m
-        return np.all((xy_m >= (x0 - reach_m, y0 - reach_m)) & (xy_m <= (x1 + reach_m, y1 + reach_m)), axis=1)
+        return np.all((xy_m >= (x0 - margin_m, y0 - margin_m)) & (xy_m <= (x1 + margin_m, y1 + margin_m)), axis=1)
 
     def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) which places (n, 2) are in it."""
+        """Returns (n,) which places (n, 2) are in the footprint."""
         inside = np.zeros(len(xy_m), dtype=np.bool_)
         candidates = np.flatnonzero(self.near(xy_m, 0.0))
         for part in self.parts if candidates.size else ():
@@ -72,7 +72,7 @@ class Footprint:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """What does not hang on the goal: the floors of the house, and what hides things on one storey."""
+    """Geometry that does not depend on the goal: floors of the house, and what blocks the sight on one storey."""
 
     floors: tuple[_Floor, ...]
     blockers: tuple[ConvexPolygon, ...]
@@ -84,16 +84,24 @@ class Surroundings:
         data: mujoco.MjData,
         labels: Labels,
         *,
+        sight_height_m: float,
         floor_z_m: float = 0.0,
-        sight_height_m: float = SIGHT_HEIGHT_M,
     ) -> Surroundings:
-        """The surroundings of one storey; kinematics of `data` must be computed."""
+        """Returns the surroundings of one storey; kinematics of `data` must be computed.
+
+        Args:
+            model: compiled world.
+            data: its state.
+            labels: category and instance of each geom.
+            sight_height_m: height of the line of sight above the floor.
+            floor_z_m: height of the storey's floor.
+        """
         blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
         return cls(_floors(model, data, labels), blockers)
 
 
 class GoalRegion:
-    """All places of one storey at which a STOP for one goal category succeeds, for things where they now stand."""
+    """All places of one storey at which a STOP for one goal category succeeds, with objects where they are now."""
 
     def __init__(
         self,
@@ -102,30 +110,39 @@ class GoalRegion:
         labels: Labels,
         goal: str,
         *,
+        surroundings: Surroundings,
+        success: SuccessRule,
         floor_z_m: float = 0.0,
-        surroundings: Surroundings | None = None,
-        reach_m: float = SuccessRule().distance_m,
     ) -> None:
-        """Gather the footprints of a category; kinematics of `data` must be computed."""
+        """Computes the footprints of a category; kinematics of `data` must be computed.
+
+        Args:
+            model: compiled world.
+            data: its state.
+            labels: category and instance of each geom.
+            goal: the category.
+            surroundings: of the same storey.
+            success: when a STOP succeeds; the height of its line of sight is that of `surroundings`.
+            floor_z_m: height of the storey's floor.
+        """
         self.goal = goal
-        self.reach_m = reach_m
-        around = surroundings or Surroundings.of(model, data, labels, floor_z_m=floor_z_m)
-        self._blockers = around.blockers
-        everywhere = [footprint_of(model, data, instance, around.floors) for instance in labels.of_category(goal)]
+        self.distance_m = success.distance_m
+        self._blockers = surroundings.blockers
+        everywhere = [footprint_of(model, data, instance, surroundings.floors) for instance in labels.of_category(goal)]
         self.exists = any(footprint is not None for footprint in everywhere)
         """Whether some storey of the house has an instance."""
         self.footprints = tuple(
             footprint
             for footprint in everywhere
-            if footprint is not None and abs(footprint.floor_z_m - floor_z_m) < SAME_STOREY_M
+            if footprint is not None and abs(footprint.floor_z_m - floor_z_m) < success.same_storey_m
         )
 
     def succeeds(self, x_m: float, y_m: float) -> bool:
-        """Whether a STOP at this place of the storey succeeds."""
+        """Returns whether a STOP at this place of the storey succeeds."""
         return bool(self.satisfied(np.array([[x_m, y_m]], dtype=np.float64))[0])
 
     def nearest_m(self, x_m: float, y_m: float) -> float | None:
-        """Metres in plan from a place to the nearest footprint, walls ignored; None where the storey has none."""
+        """Returns the metres in plan to the nearest footprint, walls ignored; None where the storey has none."""
         here = np.array([[x_m, y_m]], dtype=np.float64)
         distances = [
             0.0 if footprint.contains(here)[0] else float(footprint.boundary_m.query(here)[0][0])
@@ -134,35 +151,35 @@ class GoalRegion:
         return min(distances, default=None)
 
     def satisfied(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) at which of the places (n, 2) a STOP succeeds."""
+        """Returns (n,) at which of the places (n, 2) a STOP succeeds."""
         satisfied = np.zeros(len(xy_m), dtype=np.bool_)
         for footprint in self.footprints:
-            near = np.flatnonzero(~satisfied & footprint.near(xy_m, self.reach_m))
+            near = np.flatnonzero(~satisfied & footprint.near(xy_m, self.distance_m))
             if near.size:
                 satisfied[near] = self.reaches(footprint, xy_m[near])
         return satisfied
 
     def mask(self, space: FreeSpace) -> NDArray[np.bool_]:
-        """(rows, cols) of a free space: the free cells at whose centre a STOP succeeds."""
+        """Returns (rows, cols) the free cells at whose centre a STOP succeeds."""
         candidates = np.zeros(space.frame.shape, dtype=np.bool_)
         for footprint in self.footprints:
-            candidates[space.frame.window(footprint.bounds_m, self.reach_m)] = True
+            candidates[space.frame.index_of(footprint.bounds_m, self.distance_m)] = True
         cells = np.argwhere(candidates & space.free)
         mask = np.zeros(space.frame.shape, dtype=np.bool_)
         mask[tuple(cells.T)] = self.satisfied(space.frame.to_metres(cells))
         return mask
 
     def reaches(self, footprint: Footprint, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) from which places some point of the footprint is within reach and in sight."""
+        """Returns (n,) from which places (n, 2) some point of the footprint is near enough and in sight."""
         x0, y0, x1, y1 = footprint.bounds_m
-        r = self.reach_m
+        r = self.distance_m
         blockers = [b for b in self._blockers if _overlap(b.bounds_m, (x0 - r, y0 - r, x1 + r, y1 + r))]
         points = footprint.boundary_m.data
         distance, nearest = footprint.boundary_m.query(xy_m, distance_upper_bound=r * (1.0 + 1e-12))
         reached = footprint.contains(xy_m)
         within = np.flatnonzero(~reached & np.isfinite(distance))
         reached[within] = ~lines_blocked(xy_m[within], points[nearest[within]], blockers)
-        for hidden in _chunks(_not_shadowed(within[~reached[within]], xy_m, footprint.bounds_m, blockers)):
+        for hidden in _chunks(_not_hidden(within[~reached[within]], xy_m, footprint.bounds_m, blockers)):
             place, point = np.nonzero(_distances(xy_m[hidden], points) <= r)
             seen = ~lines_blocked(xy_m[hidden][place], points[point], blockers)
             reached[hidden[place[seen]]] = True
@@ -172,7 +189,7 @@ class GoalRegion:
 def footprint_of(
     model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[_Floor] = ()
 ) -> Footprint | None:
-    """The footprint of an instance where it stands; None when nothing of it is rendered."""
+    """Returns the footprint of an instance; None where nothing of it is rendered."""
     rendered = rendered_geoms(model)
     geoms = [geom for geom in instance.geom_ids if rendered[geom]]
     parts = tuple(part for geom in geoms for part in _rendered_parts(model, data, geom))
@@ -190,7 +207,7 @@ def footprint_of(
 def sight_blockers(
     model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, height_m: float
 ) -> tuple[ConvexPolygon, ...]:
-    """Cross sections, at a height, of the rendered geoms that one cannot see through."""
+    """Returns the cross sections, at a height, of the rendered geoms that block the line of sight."""
     opaque = np.isin(labels.geom_category, [MPCAT40_ID[name] for name in SIGHT_BLOCKERS]) & rendered_geoms(model)
     sections: list[ConvexPolygon | None] = []
     for geom in geoms_between(model, data, np.flatnonzero(opaque), height_m, height_m).tolist():
@@ -203,14 +220,14 @@ def sight_blockers(
 
 
 def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
-    """Convex pieces of a rendered geom's plan projection: the geom's own, or a hollow mesh's triangles."""
+    """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh."""
     whole = plan_polygon(geom_polytope(model, data, geom, rendered=True))
     if whole is None or not _is_hollow(model, geom):
         return [whole] if whole is not None else []
     corners = mesh_triangles(model, data, geom)[..., :2]
     low = np.array(whole.bounds_m[:2])
-    drawn = _raster([whole.vertices_m], low, whole.bounds_m[2:])
-    missing = drawn & ~_raster(corners, low, whole.bounds_m[2:])
+    hull = _raster([whole.vertices_m], low, whole.bounds_m[2:])
+    missing = hull & ~_raster(corners, low, whole.bounds_m[2:])
     if not _eroded(missing, 1).any():
         return [whole]
     parts = (ConvexPolygon.of_corners(corner) for corner in corners)
@@ -218,12 +235,12 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
 
 
 def _is_hollow(model: mujoco.MjModel, geom: int) -> bool:
-    """Whether a geom shows less than its convex hull."""
+    """Returns whether a geom is a mesh that is not convex."""
     return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
 
 
 def _mesh_section(triangles_m: NDArray[np.float64], height_m: float) -> list[ConvexPolygon | None]:
-    """Thin strips along the lines in which a mesh's triangles (n, 3, 3) meet a horizontal plane."""
+    """Returns thin strips along the lines in which triangles (n, 3, 3) of a mesh meet a horizontal plane."""
     z = triangles_m[..., 2] - height_m
     sections = []
     for corners, above in zip(triangles_m, z >= 0.0, strict=True):
@@ -243,14 +260,14 @@ def _mesh_section(triangles_m: NDArray[np.float64], height_m: float) -> list[Con
 
 
 def _floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> tuple[_Floor, ...]:
-    """All that carries wheels, on any storey."""
+    """Returns the floors of all storeys that wheels can stand on."""
     geoms = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
     bodies = [geom_polytope(model, data, geom) for geom in geoms.tolist()]
     return tuple(_Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies)
 
 
 def _floor_under(floors: Sequence[_Floor], xy_m: NDArray[np.float64], bottom_m: float) -> float:
-    """Height of the highest floor under a place and not above `bottom_m`, else of the highest floor below that."""
+    """Returns the height of the highest floor under a place, not above `bottom_m`; elsewhere of any floor below it."""
     below = [floor for floor in floors if floor.top_m <= bottom_m + FLOOR_CONTACT_M]
     under = [floor for floor in below if floor.plan is not None and floor.plan.contains(xy_m[None])[0]]
     return max((floor.top_m for floor in under or below), default=0.0)
@@ -259,7 +276,7 @@ def _floor_under(floors: Sequence[_Floor], xy_m: NDArray[np.float64], bottom_m: 
 def _boundary_points(
     parts: Sequence[ConvexPolygon], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(n, 2) corners and points `SAMPLE_M` apart on the parts' edges, without those well inside the union."""
+    """Returns (n, 2) corners and points `SAMPLE_M` apart on the edges of the parts, without those inside the union."""
     points = np.concatenate([_edge_points(part) for part in parts])
     if len(parts) == 1:
         return points
@@ -270,7 +287,7 @@ def _boundary_points(
 
 
 def _edge_points(part: ConvexPolygon) -> NDArray[np.float64]:
-    """(n, 2) the corners of a polygon and points between them."""
+    """Returns (n, 2) the corners of a polygon and points on its edges."""
     ahead = np.roll(part.vertices_m, -1, axis=0)
     points = []
     for start, end in zip(part.vertices_m, ahead, strict=True):
@@ -282,7 +299,7 @@ def _edge_points(part: ConvexPolygon) -> NDArray[np.float64]:
 def _raster(
     polygons: Sequence[NDArray[np.float64]] | NDArray[np.float64], low: NDArray[np.float64], high: ArrayLike
 ) -> NDArray[np.bool_]:
-    """Convex polygons (k, 2) drawn on pixels of `_PIXEL_M` with a border around them."""
+    """Returns an image of convex polygons (k, 2), pixels of `_PIXEL_M` with a border around them."""
     size = np.ceil((np.asarray(high) - low) / _PIXEL_M).astype(int) + 1 + 2 * _BORDER_PX
     image = np.zeros((size[1], size[0]), dtype=np.uint8)
     for polygon in polygons:
@@ -296,24 +313,24 @@ def _eroded(image: NDArray[np.bool_], radius_px: int) -> NDArray[np.bool_]:
     return cv2.erode(image.astype(np.uint8), kernel, borderValue=0).astype(np.bool_)
 
 
-def _not_shadowed(
+def _not_hidden(
     places: NDArray[np.int64],
     xy_m: NDArray[np.float64],
     bounds_m: tuple[float, float, float, float],
     blockers: Sequence[ConvexPolygon],
 ) -> NDArray[np.int64]:
-    """Those of the places, indices of points (n, 2), from which no single blocker hides a whole rectangle.
+    """Returns the places, indices of points (n, 2), from which no single blocker hides a whole rectangle.
 
-    What a convex thing hides from one place is convex, so a rectangle is hidden when its four corners are.
+    The region that a convex blocker hides from one place is convex, so a rectangle is hidden if its four corners are.
     """
     x0, y0, x1, y1 = bounds_m
     for blocker in blockers:
-        shadowed = np.ones(len(places), dtype=np.bool_)
+        hidden = np.ones(len(places), dtype=np.bool_)
         for corner in ((x0, y0), (x1, y0), (x1, y1), (x0, y1)):
-            lit = np.flatnonzero(shadowed)
-            ends = np.broadcast_to(np.array(corner), (len(lit), 2))
-            shadowed[lit] = lines_blocked(xy_m[places[lit]], ends, (blocker,))
-        places = places[~shadowed]
+            left = np.flatnonzero(hidden)
+            ends = np.broadcast_to(np.array(corner), (len(left), 2))
+            hidden[left] = lines_blocked(xy_m[places[left]], ends, (blocker,))
+        places = places[~hidden]
     return places
 
 
@@ -322,11 +339,11 @@ def _overlap(a: Sequence[float], b: Sequence[float]) -> bool:
 
 
 def _distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, m) metres between points (n, 2) and (m, 2)."""
+    """Returns (n, m) metres between points (n, 2) and (m, 2)."""
     return np.hypot(a[:, None, 0] - b[None, :, 0], a[:, None, 1] - b[None, :, 1])
 
 
 def _chunks(indices: NDArray[np.int64], size: int = 2048) -> Iterator[NDArray[np.int64]]:
-    """The indices in pieces that keep the tables of all pairs in the cache."""
+    """Yields the indices in pieces, so that tables of all pairs stay in the processor's cache."""
     for start in range(0, len(indices), size):
         yield indices[start : start + size]

@@ -9,8 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from stubborn.grid import GridFrame, PlanarPose, Window, cells_near_segment
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Bumps, FreeSpace, Plan, Planner, trace
 from stubborn.raster import connected, distance_to, large_parts
@@ -67,7 +68,7 @@ class Explorer(Protocol):
         """Whether the next step of exploring is a turn on the spot rather than a route; counts the turns."""
         ...
 
-    def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+    def route(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
         """The way to go on exploring; None when the robot is walled in."""
         ...
 
@@ -141,7 +142,7 @@ class CornerExplorer:
         self._turns_left -= 1
         return self._turns_left >= 0
 
-    def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+    def route(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
         """The way to go on exploring; None when the robot is walled in."""
         whole = navmap.known_window(self.config.margin_cells)
         if self._errand is not None:
@@ -150,7 +151,7 @@ class CornerExplorer:
                 return route
         return self._corner_route(navmap, window, pose) or self._new_errand(navmap, window, whole, pose)
 
-    def _corner_route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+    def _corner_route(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
         """The way to the corner or, clockwise, to the next feasible one."""
         seen_m2 = navmap.seen_area_m2()
         view = navmap.view(window)
@@ -171,7 +172,7 @@ class CornerExplorer:
         for corner in corners:
             self._wanted_m2[corner] = seen_m2 + self.config.regain_m2
 
-    def _plan_to_corner(self, free: FreeSpace, corner: int, pose: PlanarPose) -> Plan | None:
+    def _plan_to_corner(self, free: FreeSpace, corner: int, pose: Pose) -> Plan | None:
         """The way to a corner, None when it is infeasible."""
         xy_m = corner_xy_m(free.frame, corner, self.config.inset)
         goal = np.zeros(free.frame.shape, np.bool_)
@@ -179,7 +180,7 @@ class CornerExplorer:
         goal[index] = inside
         return self.planner.plan(free, goal, pose, farthest_m=self.config.farthest_way_m)
 
-    def _new_errand(self, navmap: NavMap, window: Window, whole: Window, pose: PlanarPose) -> Route | None:
+    def _new_errand(self, navmap: NavMap, window: Window, whole: Window, pose: Pose) -> Route | None:
         """Choose a place and the way to it."""
         view = navmap.view(whole)
         unseen = self.planner.unseen(view)
@@ -201,7 +202,7 @@ class CornerExplorer:
                     return route
         return self._nearest_place(navmap, window, pose)
 
-    def _to_nearest_part(self, free: FreeSpace, places: NDArray[np.bool_], pose: PlanarPose) -> Route | None:
+    def _to_nearest_part(self, free: FreeSpace, places: NDArray[np.bool_], pose: Pose) -> Route | None:
         """The way to that connected part of some places which is nearest; the plan's goal is the whole part."""
         plan = self.planner.plan(free, places, pose)
         if plan is None:
@@ -209,7 +210,7 @@ class CornerExplorer:
         row, col = trace(plan, pose, max_cells=places.size)[-1]
         return Route(replace(plan, goal=connected(plan.goal, row, col, connectivity=8)), free)
 
-    def _nearest_place(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+    def _nearest_place(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
         """The way to the reachable cell nearest the corner; one where the robot stands already is passed over."""
         free = self.planner.free_space(navmap.view(window), pose, self._maps[0])
         cell_x_m, cell_y_m = free.frame.mesh()
@@ -224,7 +225,7 @@ class CornerExplorer:
                 return Route(plan, free)
         return None
 
-    def _follow_errand(self, navmap: NavMap, whole: Window, pose: PlanarPose) -> Route | None:
+    def _follow_errand(self, navmap: NavMap, whole: Window, pose: Pose) -> Route | None:
         """The way on; None when the errand is done or has become impossible."""
         errand, self._errand = self._errand, None
         if errand is None:

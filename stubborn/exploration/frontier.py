@@ -13,9 +13,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
 from stubborn.exploration.corners import Route
-from stubborn.grid import GridFrame, PlanarPose, Window, cells_near_segment
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Bumps, FreeSpace, Planner, trace
 from stubborn.raster import connected, distance_to, large_parts
@@ -77,7 +78,7 @@ class FrontierExplorer:
         """None: what is headed for is the end of the route itself."""
         return None
 
-    def route(self, navmap: NavMap, window: Window, pose: PlanarPose) -> Route | None:
+    def route(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
         """The way to the frontier pursued, else to the nearest, else to where the robot was least; None: walled in."""
         whole = navmap.known_window(self.config.margin_cells)
         view = navmap.view(whole)
@@ -98,7 +99,7 @@ class FrontierExplorer:
         gap_cells = self.planner.config.unseen_gap_m / view.frame.cell_m
         return distance_to(self.planner.unseen(view)) <= gap_cells
 
-    def _go_on(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: PlanarPose) -> Route | None:
+    def _go_on(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
         """The way to what is left of the frontier pursued; None when it is done with."""
         if self._goal is None:
             return None
@@ -114,9 +115,7 @@ class FrontierExplorer:
             return None
         return Route(plan, free)
 
-    def _to_nearest(
-        self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: PlanarPose
-    ) -> Route | None:
+    def _to_nearest(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
         """The way to the nearest frontier that is not spent: a long one, else any; None: there is none left."""
         assert self._spent is not None
         unspent = frontiers & ~self._spent[whole.index]
@@ -126,9 +125,7 @@ class FrontierExplorer:
                 return route
         return None
 
-    def _to_nearest_part(
-        self, free: FreeSpace, places: NDArray[np.bool_], whole: Window, pose: PlanarPose
-    ) -> Route | None:
+    def _to_nearest_part(self, free: FreeSpace, places: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
         """The way to that connected part of some places which is nearest, and from now on pursue it."""
         plan = self.planner.plan(free, places, pose)
         if plan is None:
@@ -143,16 +140,16 @@ class FrontierExplorer:
         self._goal = rows + whole.rows.start, cols + whole.cols.start
         return Route(plan, free)
 
-    def _spend(self, whole: Window, pose: PlanarPose) -> None:
+    def _spend(self, whole: Window, pose: Pose) -> None:
         """The robot is where it could see what there is to see of a frontier."""
         assert self._spent is not None
-        index, disc = cells_near_segment(whole.frame, pose[:2], pose[:2], self.config.spent_m)
+        index, disc = cells_near_segment(whole.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
         self._spent[whole.index][index] |= disc
         if self._goal is not None:
             self._turns_left = self.config.look_around_turns
         self._goal = None
 
-    def _to_least_visited(self, free: FreeSpace, trail_m: NDArray[np.float32], pose: PlanarPose) -> Route | None:
+    def _to_least_visited(self, free: FreeSpace, trail_m: NDArray[np.float32], pose: Pose) -> Route | None:
         """Where nothing unknown is left it does not freeze: the way to the ground farthest from the trail."""
         far_m = np.where(free.reachable, trail_m, -np.inf)
         plan = self.planner.plan(free, far_m == far_m.max(), pose)

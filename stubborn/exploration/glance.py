@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
-from stubborn.grid import PlanarPose
 from stubborn.navmap import NavMap
 
 _RAYS = 72
@@ -54,10 +54,10 @@ class Glancer:
 
     def reset(self) -> None:
         """Forget the last episode."""
-        self._looks: list[PlanarPose] = []
+        self._looks: list[Pose] = []
         self._aim_rad: float | None = None
 
-    def next_action(self, navmap: NavMap, pose: PlanarPose) -> Action | None:
+    def next_action(self, navmap: NavMap, pose: Pose) -> Action | None:
         """A turn towards what is worth a look; None when nothing is."""
         self._looks.append(pose)
         if self._aim_rad is None and math.isfinite(self.config.gain_per_turn_m2):
@@ -70,14 +70,14 @@ class Glancer:
             return self.next_action_after_look(navmap, pose)
         return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT
 
-    def next_action_after_look(self, navmap: NavMap, pose: PlanarPose) -> Action | None:
+    def next_action_after_look(self, navmap: NavMap, pose: Pose) -> Action | None:
         """The same once more: one look may show that another is worth it."""
         self._aim_rad = self._worth_a_look(navmap, pose)
         if self._aim_rad is None:
             return None
         return Action.TURN_LEFT if wrap_angle(self._aim_rad - pose.yaw_rad) > 0 else Action.TURN_RIGHT
 
-    def _worth_a_look(self, navmap: NavMap, pose: PlanarPose) -> float | None:
+    def _worth_a_look(self, navmap: NavMap, pose: Pose) -> float | None:
         """The heading, of those the robot can turn to, that would show most new ground, if it is enough."""
         hidden_m2 = self.hidden_area_m2(navmap, pose)
         best_gain_m2, best_rad = 0.0, None
@@ -89,7 +89,7 @@ class Glancer:
                 best_gain_m2, best_rad = gain_m2, heading_rad
         return best_rad
 
-    def hidden_area_m2(self, navmap: NavMap, pose: PlanarPose) -> NDArray[np.float64]:
+    def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> NDArray[np.float64]:
         """Per bearing of the map, ground never in view that nothing known hides from the robot."""
         x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
         y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
@@ -100,9 +100,9 @@ class Glancer:
         near_seen = cv2.dilate(seen, np.ones((1, 2 * _GAP_STEPS + 1), np.uint8))  # far floor is seen with gaps
         return np.asarray((open_so_far & (near_seen == 0)) @ self._area_m2)
 
-    def _looked(self, pose: PlanarPose, heading_rad: float) -> bool:
+    def _looked(self, pose: Pose, heading_rad: float) -> bool:
         return any(
-            look.distance_to(pose.x_m, pose.y_m) <= self.config.not_again_within_m
+            look.distance_to(pose) <= self.config.not_again_within_m
             and abs(wrap_angle(look.yaw_rad - heading_rad)) <= _SAME_HEADING_RAD
             for look in self._looks
         )

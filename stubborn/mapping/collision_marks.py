@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame, cells_near_segment
+from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, Action, ConfigError
-from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
 from stubborn.navmap import NavMap
 
 
@@ -81,7 +82,7 @@ class Jitter:
 
 
 def square_ahead(
-    frame: GridFrame, pose: PlanarPose, edge_m: float, near_edge_m: float
+    frame: GridFrame, pose: Pose, edge_m: float, near_edge_m: float
 ) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
     """Cells whose centre lies in the square ahead of the robot, rotated with its heading.
 
@@ -98,16 +99,14 @@ def square_ahead(
     return patch.index, inside
 
 
-def mark_collision(navmap: NavMap, pose: PlanarPose, config: CollisionConfig) -> None:
+def mark_collision(navmap: NavMap, pose: Pose, config: CollisionConfig) -> None:
     """Enter both marks in front of where the failed move ended."""
     for layer, edge_m in ((navmap.bumped_wide, config.wide_m), (navmap.bumped_narrow, config.narrow_m)):
         index, inside = square_ahead(navmap.frame, pose, edge_m, config.near_edge_m)
         layer[index] |= inside
 
 
-def mark_visited(
-    navmap: NavMap, before: PlanarPose, now: PlanarPose, robot_radius_m: float, config: CollisionConfig
-) -> None:
+def mark_visited(navmap: NavMap, before: Pose, now: Pose, robot_radius_m: float, config: CollisionConfig) -> None:
     """Enter what the body swept over from one pose to the next."""
     start, end = (before.x_m, before.y_m), (now.x_m, now.y_m)
     for layer, radius_m in ((navmap.visited, robot_radius_m), (navmap.trail, config.trail_radius_m)):

@@ -14,8 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import Window
+from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
-from stubborn.grid import PlanarPose, Window
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 from stubborn.navmap import NavMap
@@ -87,7 +88,7 @@ class Rays:
         return np.ascontiguousarray(depth[self.pick])
 
     def project(
-        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: PlanarPose, window: Window
+        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: Pose, window: Window
     ) -> GroundPoints:
         """Cells of `window` and heights of the confirmed points of a sampled depth image.
 
@@ -150,7 +151,7 @@ class Mapper:
         self._score_rays: dict[int, Rays] = {}
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
 
-    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: PlanarPose) -> bool:
+    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: Pose) -> bool:
         """Enter one depth image, (height_px, width_px) metres, into the obstacle layers.
 
         Returns:
@@ -176,7 +177,7 @@ class Mapper:
         navmap: NavMap,
         depth: NDArray[np.float32],
         scores: Scores,
-        pose: PlanarPose,
+        pose: Pose,
         step: int,
         *,
         exact: bool = True,
@@ -245,7 +246,7 @@ class Mapper:
         return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
 
     def _drop_candidates(
-        self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: PlanarPose
+        self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: Pose
     ) -> None:
         """Forget candidates in free air with the target behind: from afar a noisy image shows it too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
@@ -257,11 +258,11 @@ class Mapper:
         view.score_max[rows[passed], cols[passed]] = 0.0
         view.score_sum[rows[passed], cols[passed]] = 0.0
 
-    def _camera_pose(self, pose: PlanarPose) -> PlanarPose:
+    def _camera_pose(self, pose: Pose) -> Pose:
         x_m, y_m = pose.ahead(self.camera_forward_m)
-        return PlanarPose(x_m, y_m, pose.yaw_rad)
+        return Pose(x_m, y_m, pose.yaw_rad)
 
-    def _sight_window(self, navmap: NavMap, camera_pose: PlanarPose) -> Window:
+    def _sight_window(self, navmap: NavMap, camera_pose: Pose) -> Window:
         cells = sight_window_cells(self.camera, navmap.frame.cell_m)
         return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
 

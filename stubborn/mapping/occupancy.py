@@ -15,8 +15,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 
 
@@ -122,7 +123,7 @@ class SightLines:
     """(rows,) rise per metre of depth, falling at even steps."""
     left: NDArray[np.float32]
     """(columns,) metres to the left per metre of depth, falling at even steps."""
-    pose: PlanarPose
+    pose: Pose
     """Of the camera."""
 
     @classmethod
@@ -131,7 +132,7 @@ class SightLines:
         depth: NDArray[np.float32],
         up: NDArray[np.float32],
         left: NDArray[np.float32],
-        pose: PlanarPose,
+        pose: Pose,
         rise_m: float,
     ) -> SightLines:
         """Of an image whose pixels look `up` and `left`; the band ends `rise_m` above the camera.

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import GridFrame, cells_near_segment
+from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
-from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
 from stubborn.navmap import NavMap
 from stubborn.planning.fast_marching import march
 from stubborn.raster import connected, distance_to
@@ -104,16 +105,14 @@ class Planner:
         seen = (view.frames_in_view > 0) | view.visited
         return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
 
-    def free_space(
-        self, view: NavMap, pose: PlanarPose, bumps: Bumps, unseen: NDArray[np.bool_] | None = None
-    ) -> FreeSpace:
+    def free_space(self, view: NavMap, pose: Pose, bumps: Bumps, unseen: NDArray[np.bool_] | None = None) -> FreeSpace:
         """Dilate the obstacles of a window; what lies outside the window is not free.
 
         Ways avoid `unseen` ground where they can without too long a detour; by default unknown is as good as known.
         """
         obstacles = self.obstacles(view, bumps)
         own_index, own = cells_near_segment(
-            view.frame, pose[:2], pose[:2], max(self.config.own_ground_m, view.frame.cell_m)
+            view.frame, pose.xy_m, pose.xy_m, max(self.config.own_ground_m, view.frame.cell_m)
         )
         # An obstacle cell under the robot is a cell that the obstacle only just enters.
         obstacles[own_index][own] = False
@@ -130,7 +129,7 @@ class Planner:
         return FreeSpace(view.frame, traversable, clearance_m, reachable, speed)
 
     def plan(
-        self, free: FreeSpace, goal: NDArray[np.bool_], pose: PlanarPose, *, farthest_m: float = math.inf
+        self, free: FreeSpace, goal: NDArray[np.bool_], pose: Pose, *, farthest_m: float = math.inf
     ) -> Plan | None:
         """March from the goal over the ground that is connected to the robot.
 
@@ -152,14 +151,14 @@ class Planner:
         length_m = float(distance_m[here])
         return Plan(free.frame, goal, distance_m, length_m) if math.isfinite(length_m) else None
 
-    def next_action(self, plan: Plan, free: FreeSpace, pose: PlanarPose) -> Action:
+    def next_action(self, plan: Plan, free: FreeSpace, pose: Pose) -> Action:
         """The action along the plan: turn towards the short-term goal when it is off the heading, else forward."""
         turn_rad = self.short_term_turn(plan, free, pose)
         if turn_rad > self.config.aligned_rad:
             return Action.TURN_LEFT
         return Action.TURN_RIGHT if turn_rad < -self.config.aligned_rad else Action.MOVE_FORWARD
 
-    def short_term_turn(self, plan: Plan, free: FreeSpace, pose: PlanarPose) -> float:
+    def short_term_turn(self, plan: Plan, free: FreeSpace, pose: Pose) -> float:
         """Angle from the heading to the short-term goal, radians, positive to the left.
 
         Short-term goals lie on a ring one forward away, in the directions the robot can turn to. Of those whose
@@ -184,7 +183,7 @@ class Planner:
         return wrap_angle(descent_direction(plan, pose, self.config.ring_m) - pose.yaw_rad)
 
     def _sweep(
-        self, free: FreeSpace, pose: PlanarPose, yaw_rad: NDArray[np.floating]
+        self, free: FreeSpace, pose: Pose, yaw_rad: NDArray[np.floating]
     ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
         """Whether a straight forward in each direction stays traversable, and its least clearance in metres.
 
@@ -207,7 +206,7 @@ class Planner:
         return np.clip(c.wary_speed + (1.0 - c.wary_speed) * share, c.wary_speed, 1.0)
 
 
-def trace(plan: Plan, pose: PlanarPose, max_cells: int) -> list[tuple[int, int]]:
+def trace(plan: Plan, pose: Pose, max_cells: int) -> list[tuple[int, int]]:
     """Steepest descent from the robot's cell, at most so many cells on, as rows and columns.
 
     Steps go to 8 neighbours, diagonally only past two passable cells.
@@ -221,7 +220,7 @@ def trace(plan: Plan, pose: PlanarPose, max_cells: int) -> list[tuple[int, int]]
     return cells
 
 
-def descent_direction(plan: Plan, pose: PlanarPose, length_m: float) -> float:
+def descent_direction(plan: Plan, pose: Pose, length_m: float) -> float:
     """World angle from the robot to where steepest descent, cell by cell, leads it within `length_m`.
 
     For ways too narrow for a straight forward.

@@ -15,9 +15,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.grid import Window
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
 from stubborn.exploration.corners import Route
-from stubborn.grid import PlanarPose, Window
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Bumps, FreeSpace, Planner
@@ -152,7 +153,7 @@ class TargetSeeker:
         nearest = int(np.argmin(np.where(counts, sighting.distance_m, np.inf)))
         return int(sighting.rows[nearest]), int(sighting.cols[nearest])
 
-    def approach(self, navmap: NavMap, window: Window, pose: PlanarPose, step: int) -> Approach | None:
+    def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """The way to the nearest stand of a likely candidate, else of any; None when none can be reached now."""
         whole = navmap.known_window(margin_cells=self.config.margin_cells)
         if step >= self._retry_step:
@@ -212,7 +213,7 @@ class TargetSeeker:
             yield part, self.candidates(navmap.view(part)), late or (part is whole and self.verifier.may_refuse), False
 
     def _approach_on(
-        self, view: NavMap, candidates: NDArray[np.bool_], pose: PlanarPose, *, late: bool, anywhere: bool
+        self, view: NavMap, candidates: NDArray[np.bool_], pose: Pose, *, late: bool, anywhere: bool
     ) -> Approach | None:
         """The way to the nearest stand of these candidates on one part of the map; the cell is counted in that part.
 
@@ -235,7 +236,7 @@ class TargetSeeker:
     def _stands(
         self,
         view: NavMap,
-        pose: PlanarPose,
+        pose: Pose,
         gap_m: NDArray[np.float32],
         ends: Cells,
         *,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stubborn.grid import GridFrame, PlanarPose
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from stubborn.navmap import NavMap
 
 LAYER_OF = {
@@ -24,7 +25,7 @@ def grid_of(text: str) -> NDArray[np.str_]:
     return np.array([list(line) for line in text.strip("\n").split("\n")][::-1])
 
 
-def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, PlanarPose]:
+def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, Pose]:
     """The map, and the robot in the middle of the cell marked R, looking along +x."""
     letters = grid_of(text)
     navmap = NavMap.empty(GridFrame(origin_xy_m=(0.0, 0.0), shape=letters.shape, cell_m=cell_m))
@@ -33,7 +34,7 @@ def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, PlanarPose]:
             getattr(navmap, layer)[letters == letter] = True
     rows, cols = np.nonzero(letters == "R")
     x_m, y_m = navmap.frame.centres(rows[0], cols[0]) if rows.size else (0.0, 0.0)
-    return navmap, PlanarPose(float(x_m), float(y_m), 0.0)
+    return navmap, Pose(float(x_m), float(y_m), 0.0)
 
 
 def mask_of(text: str, letter: str) -> NDArray[np.bool_]:

@@ -66,7 +66,7 @@ def test_a_camera_asked_for_no_colour_has_no_buffer_for_colour_or_shadows() -> N
 MAPS = """
 import numpy as np
 
-from stubborn.grid import GridFrame
+from sim.geometry.grid import GridFrame
 from stubborn.navmap import NavMap
 from tests.sim.env.test_memory import resident_mb
 

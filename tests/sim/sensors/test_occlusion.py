@@ -258,7 +258,7 @@ def test_in_shipped_houses_no_pixel_changes() -> None:
 def somewhere(world: World, seeds: list[int]) -> list[Pose]:
     """Poses anywhere in the robot's free space."""
     space = FreeSpace.from_world(world)
-    cells, (x, y) = np.argwhere(space.largest_part()), space.frame.centres()
+    cells, (x, y) = np.argwhere(space.largest_part()), space.frame.axes()
     poses = []
     for seed in seeds:
         rng = np.random.default_rng(seed)

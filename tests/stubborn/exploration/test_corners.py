@@ -1,17 +1,19 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame, Window
+from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
 from stubborn.exploration.corners import CornerExplorer, ExplorationConfig, Route, corner_xy_m, nearest_corner
-from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping.collision_marks import CollisionConfig, mark_visited
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Planner, PlanningConfig
 
-FRAME = GridFrame.around_start(240)
-START = PlanarPose(0.0, 0.0, 0.0)
+FRAME = GridFrame.around_start(240, 0.05)
+START = Pose(0.0, 0.0, 0.0)
 PLANNER = Planner(PlanningConfig(), trust_visited=True)
 
 
@@ -32,7 +34,7 @@ def whole(navmap: NavMap) -> Window:
     return navmap.frame.part(slice(None), slice(None))
 
 
-def route_of(explore: CornerExplorer, navmap: NavMap, pose: PlanarPose = START) -> Route:
+def route_of(explore: CornerExplorer, navmap: NavMap, pose: Pose = START) -> Route:
     route = explore.route(navmap, whole(navmap), pose)
     assert route is not None
     return route
@@ -73,7 +75,7 @@ def test_corners_lie_ten_percent_inside_and_follow_each_other_clockwise():
 def test_it_is_stubborn_while_there_is_a_way():
     explore, navmap = explorer(), empty()
     for x in np.linspace(0.0, 1.0, 5):
-        route_of(explore, navmap, PlanarPose(x, 0.2 * x, 0.0))
+        route_of(explore, navmap, Pose(x, 0.2 * x, 0.0))
         assert explore.corner == 0
 
 
@@ -128,7 +130,7 @@ def test_when_all_was_seen_it_goes_where_it_has_never_been_and_looks_around_ther
     rows, cols = np.nonzero(route.plan.goal)
     x_m, y_m = route.plan.frame.centres(rows, cols)
     assert x_m.min() > 1.6  # the far side from the trail
-    there = PlanarPose(float(x_m[0]), float(y_m[0]), 0.0)
+    there = Pose(float(x_m[0]), float(y_m[0]), 0.0)
     assert not explore.looks_around()
     explore.route(navmap, whole(navmap), there)
     assert explore.looks_around()
@@ -156,10 +158,10 @@ def test_boxed_in_it_never_freezes_and_visits_all_corners_of_its_box():
         route = route_of(explore, navmap, pose)
         action = PLANNER.next_action(route.plan, route.free, pose)
         if action is Action.MOVE_FORWARD:
-            pose = PlanarPose(*pose.ahead(0.25), pose.yaw_rad)
+            pose = Pose(*pose.ahead(0.25), pose.yaw_rad)
         else:
             turn = math.radians(30 if action is Action.TURN_LEFT else -30)
-            pose = pose._replace(yaw_rad=math.remainder(pose.yaw_rad + turn, math.tau))
+            pose = replace(pose, yaw_rad=math.remainder(pose.yaw_rad + turn, math.tau))
         assert max(abs(pose.x_m), abs(pose.y_m)) < 1.45
         if min(abs(pose.x_m), abs(pose.y_m)) > 0.7:
             quarters.add((pose.x_m > 0, pose.y_m > 0))

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame, Window
+from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer, frontier_cells
-from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Planner, PlanningConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -13,7 +14,7 @@ from tests.helpers.asciimap import grid_of
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
 PLANNER = Planner(PlanningConfig(), trust_visited=True)
-HERE = PlanarPose(0.0, 0.0, 0.0)
+HERE = Pose(0.0, 0.0, 0.0)
 
 
 def explorer(**options: float) -> FrontierExplorer:
@@ -22,7 +23,7 @@ def explorer(**options: float) -> FrontierExplorer:
 
 def square(half_m: float) -> NavMap:
     """Ground seen in a square around the start, the robot in its middle."""
-    navmap = NavMap.empty(GridFrame.around_start(400))
+    navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     see(navmap, (-half_m, half_m), (-half_m, half_m))
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
     return navmap
@@ -48,7 +49,7 @@ def window(navmap: NavMap) -> Window:
     return navmap.frame.window_at(0.0, 0.0, 240)
 
 
-def goal_xy(explore: FrontierExplorer, navmap: NavMap, pose: PlanarPose = HERE) -> tuple[float, float] | None:
+def goal_xy(explore: FrontierExplorer, navmap: NavMap, pose: Pose = HERE) -> tuple[float, float] | None:
     route = explore.route(navmap, window(navmap), pose)
     if route is None:
         return None
@@ -101,17 +102,17 @@ def test_it_keeps_to_a_frontier_until_that_has_become_known():
     navmap = square(3.0)
     closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
     explore = explorer()
-    first = goal_xy(explore, navmap, PlanarPose(0.3, 0.0, 0.0))
+    first = goal_xy(explore, navmap, Pose(0.3, 0.0, 0.0))
     assert first is not None
     assert first[0] > 2.5
-    kept = goal_xy(explore, navmap, PlanarPose(-0.3, 0.0, 0.0))  # the other one is nearer from here
+    kept = goal_xy(explore, navmap, Pose(-0.3, 0.0, 0.0))  # the other one is nearer from here
     assert kept is not None
     assert kept[0] > 2.5
     see(navmap, (3.0, 6.0), (-2.0, 2.0))
     closed = [((6.0, 6.1), (-2.0, 2.0)), ((3.0, 6.0), (-2.1, -2.0)), ((3.0, 6.0), (2.0, 2.1))]
     for x_m, y_m in closed:
         wall(navmap, x_m, y_m)
-    after = goal_xy(explore, navmap, PlanarPose(-0.3, 0.0, 0.0))
+    after = goal_xy(explore, navmap, Pose(-0.3, 0.0, 0.0))
     assert after is not None
     assert after[0] < -2.5
 
@@ -120,8 +121,8 @@ def test_a_frontier_reached_without_becoming_known_is_left_for_another():
     navmap = square(3.0)
     closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
     explore = explorer(own_known_m=0.0)
-    assert goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0)) == pytest.approx((3.1, 0.0), abs=0.3)
-    there = goal_xy(explore, navmap, PlanarPose(3.05, 0.0, 0.0))
+    assert goal_xy(explore, navmap, Pose(1.0, 0.0, 0.0)) == pytest.approx((3.1, 0.0), abs=0.3)
+    there = goal_xy(explore, navmap, Pose(3.05, 0.0, 0.0))
     assert there is not None
     assert there[0] < -2.5
 
@@ -134,7 +135,7 @@ def test_a_short_frontier_is_left_for_last():
             wall(navmap, (2.95, 3.05), y_m)
         return navmap
 
-    near_east = PlanarPose(1.0, 0.0, 0.0)
+    near_east = Pose(1.0, 0.0, 0.0)
     any_length = goal_xy(explorer(least_length_m=0.05, own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
     assert any_length == pytest.approx((3.1, 0.0), abs=0.3)
     goal = goal_xy(explorer(own_known_m=0.0), narrow_in_the_east(("w", 0.0)), near_east)
@@ -156,10 +157,10 @@ def test_reset_forgets_frontiers_reached():
     navmap = square(3.0)
     closed_but(navmap, 3.0, [("e", 0.0), ("w", 0.0)])
     explore = explorer(own_known_m=0.0)
-    first = goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0))
-    goal_xy(explore, navmap, PlanarPose(3.05, 0.0, 0.0))
+    first = goal_xy(explore, navmap, Pose(1.0, 0.0, 0.0))
+    goal_xy(explore, navmap, Pose(3.05, 0.0, 0.0))
     explore.reset()
-    assert goal_xy(explore, navmap, PlanarPose(1.0, 0.0, 0.0)) == first
+    assert goal_xy(explore, navmap, Pose(1.0, 0.0, 0.0)) == first
 
 
 APARTMENT = boxes_from_plan(

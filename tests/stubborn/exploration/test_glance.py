@@ -1,15 +1,17 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.glance import GlanceConfig, Glancer
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 
-FRAME = GridFrame.around_start(240)
-START = PlanarPose(0.0, 0.0, 0.0)
+FRAME = GridFrame.around_start(240, 0.05)
+START = Pose(0.0, 0.0, 0.0)
 
 
 def glancer(**options: float) -> Glancer:
@@ -26,12 +28,12 @@ def corridor() -> NavMap:
     return navmap
 
 
-def turned(pose: PlanarPose, action: Action) -> PlanarPose:
+def turned(pose: Pose, action: Action) -> Pose:
     turn_rad = TURN_RAD if action is Action.TURN_LEFT else -TURN_RAD
-    return pose._replace(yaw_rad=wrap_angle(pose.yaw_rad + turn_rad))
+    return replace(pose, yaw_rad=wrap_angle(pose.yaw_rad + turn_rad))
 
 
-def look_in(navmap: NavMap, pose: PlanarPose) -> None:
+def look_in(navmap: NavMap, pose: Pose) -> None:
     """Mark what a camera that sees through walls would show."""
     x_m, y_m = FRAME.mesh()
     bearing_rad = np.arctan2(y_m - pose.y_m, x_m - pose.x_m)

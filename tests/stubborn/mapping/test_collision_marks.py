@@ -4,10 +4,11 @@ import cv2
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, Action
 from sim.sensors.noise import get_noise
 from sim.sensors.pose_noise import NoisyPose
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.mapping.collision_marks import (
     CollisionConfig,
     Jitter,
@@ -20,11 +21,11 @@ from stubborn.navmap import NavMap
 from stubborn.planning.planner import Bumps, Planner, PlanningConfig
 
 HEADINGS = [math.radians(30 * i) for i in range(12)]
-FRAME = GridFrame.around_start(61)
+FRAME = GridFrame.around_start(61, 0.05)
 CONFIG = CollisionConfig()
 
 
-def square(pose: PlanarPose, edge_m: float) -> np.ndarray:
+def square(pose: Pose, edge_m: float) -> np.ndarray:
     layer = np.zeros(FRAME.shape, bool)
     index, inside = square_ahead(FRAME, pose, edge_m, 0.15)
     layer[index] = inside
@@ -34,7 +35,7 @@ def square(pose: PlanarPose, edge_m: float) -> np.ndarray:
 @pytest.mark.parametrize("edge_m", [0.25, 0.15])
 @pytest.mark.parametrize("yaw", HEADINGS)
 def test_a_mark_is_the_rotated_square_ahead_at_every_heading(yaw: float, edge_m: float):
-    pose = PlanarPose(0.013, -0.007, yaw)
+    pose = Pose(0.013, -0.007, yaw)
     layer = square(pose, edge_m)
     x, y = FRAME.mesh()
     ahead = math.cos(yaw) * (x - pose.x_m) + math.sin(yaw) * (y - pose.y_m)
@@ -47,14 +48,14 @@ def test_a_mark_is_the_rotated_square_ahead_at_every_heading(yaw: float, edge_m:
 @pytest.mark.parametrize("yaw", HEADINGS)
 def test_a_mark_has_no_holes_and_one_piece(yaw: float, edge_m: float):
     for offset in np.linspace(0.0, 0.05, 6):
-        layer = square(PlanarPose(offset, 0.7 * offset, yaw), edge_m)
+        layer = square(Pose(offset, 0.7 * offset, yaw), edge_m)
         assert cv2.connectedComponents(layer.astype(np.uint8), connectivity=4)[0] == 2
         assert cv2.connectedComponents((~layer).astype(np.uint8), connectivity=4)[0] == 2
 
 
 def test_the_pessimistic_mark_holds_the_optimistic_one():
     navmap = NavMap.empty(FRAME)
-    mark_collision(navmap, PlanarPose(0.0, 0.0, 0.4), CONFIG)
+    mark_collision(navmap, Pose(0.0, 0.0, 0.4), CONFIG)
     assert navmap.bumped_narrow.any()
     assert not (navmap.bumped_narrow & ~navmap.bumped_wide).any()
     assert navmap.bumped_wide.sum() > navmap.bumped_narrow.sum()
@@ -62,25 +63,25 @@ def test_the_pessimistic_mark_holds_the_optimistic_one():
 
 def test_the_visited_path_frees_marks_and_what_comes_later_does_not_close_it():
     navmap, planner = NavMap.empty(FRAME), Planner(PlanningConfig(), trust_visited=True)
-    mark_collision(navmap, PlanarPose(0.0, 0.0, 0.0), CONFIG)
+    mark_collision(navmap, Pose(0.0, 0.0, 0.0), CONFIG)
     assert planner.obstacles(navmap, Bumps.PESSIMISTIC)[30, 30 + 5]
-    mark_visited(navmap, PlanarPose(0.0, 0.0, 0.0), PlanarPose(0.25, 0.0, 0.0), 0.18, CONFIG)
+    mark_visited(navmap, Pose(0.0, 0.0, 0.0), Pose(0.25, 0.0, 0.0), 0.18, CONFIG)
     assert not planner.obstacles(navmap, Bumps.PESSIMISTIC)[30, 30 + 5]
-    mark_collision(navmap, PlanarPose(0.0, 0.0, 0.0), CONFIG)
+    mark_collision(navmap, Pose(0.0, 0.0, 0.0), CONFIG)
     assert not planner.obstacles(navmap, Bumps.PESSIMISTIC)[30, 30 + 5]
     assert not planner.obstacles(navmap, Bumps.OPTIMISTIC)[30, 30 + 5]
 
 
 def test_without_trust_the_visited_path_frees_nothing():
     navmap, planner = NavMap.empty(FRAME), Planner(PlanningConfig(), trust_visited=False)
-    mark_collision(navmap, PlanarPose(0.0, 0.0, 0.0), CONFIG)
-    mark_visited(navmap, PlanarPose(0.0, 0.0, 0.0), PlanarPose(0.25, 0.0, 0.0), 0.18, CONFIG)
+    mark_collision(navmap, Pose(0.0, 0.0, 0.0), CONFIG)
+    mark_visited(navmap, Pose(0.0, 0.0, 0.0), Pose(0.25, 0.0, 0.0), 0.18, CONFIG)
     assert planner.obstacles(navmap, Bumps.PESSIMISTIC)[30, 30 + 5]
 
 
 def test_visited_is_the_swept_disc():
     navmap = NavMap.empty(FRAME)
-    mark_visited(navmap, PlanarPose(0.0, 0.0, 0.0), PlanarPose(0.5, 0.0, 0.0), 0.18, CONFIG)
+    mark_visited(navmap, Pose(0.0, 0.0, 0.0), Pose(0.5, 0.0, 0.0), 0.18, CONFIG)
     x, y = FRAME.mesh()
     gap = np.hypot(np.maximum(np.maximum(x - 0.5, -x), 0.0), y)
     np.testing.assert_array_equal(navmap.visited, gap <= 0.18)

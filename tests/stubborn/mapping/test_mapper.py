@@ -3,14 +3,15 @@ import math
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.mapping.mapper import Mapper, MappingConfig
 from stubborn.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel()
-FRAME = GridFrame.around_start(400)
+FRAME = GridFrame.around_start(400, 0.05)
 EVERY_PIXEL = MappingConfig(obstacle_stride_px=1, score_stride_px=1)
 SKEW = math.radians(37.0)
 
@@ -21,13 +22,13 @@ def wall_ahead(distance_m: float, yaw_rad: float = 0.0) -> np.ndarray:
     return world.render()[0]
 
 
-def mapped(depth: np.ndarray, pose: PlanarPose, config: MappingConfig = EVERY_PIXEL) -> NavMap:
+def mapped(depth: np.ndarray, pose: Pose, config: MappingConfig = EVERY_PIXEL) -> NavMap:
     navmap = NavMap.empty(FRAME)
     Mapper(CAMERA, RobotModel(), config).add_depth(navmap, depth, pose)
     return navmap
 
 
-def brute_force(depth: np.ndarray, pose: PlanarPose, low_m: float, high_m: float) -> np.ndarray:
+def brute_force(depth: np.ndarray, pose: Pose, low_m: float, high_m: float) -> np.ndarray:
     """Cells hit by pixels of a height band, one pixel after the other."""
     layer = np.zeros(FRAME.shape, bool)
     for v in range(0, CAMERA.height_px, 3):
@@ -45,7 +46,7 @@ def brute_force(depth: np.ndarray, pose: PlanarPose, low_m: float, high_m: float
 @pytest.mark.parametrize("distance_m", [0.6, 1.0, 2.5, 4.8])
 @pytest.mark.parametrize("yaw_rad", [0.0, SKEW])
 def test_a_wall_lands_within_a_cell_of_where_it_is(distance_m: float, yaw_rad: float):
-    navmap = mapped(wall_ahead(distance_m, yaw_rad), PlanarPose(0.0, 0.0, yaw_rad))
+    navmap = mapped(wall_ahead(distance_m, yaw_rad), Pose(0.0, 0.0, yaw_rad))
     rows, cols = np.nonzero(navmap.seen_obstacle)
     x_m, _ = FRAME.centres(rows, cols)
     assert rows.size > 5
@@ -54,7 +55,7 @@ def test_a_wall_lands_within_a_cell_of_where_it_is(distance_m: float, yaw_rad: f
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 def test_the_obstacle_layer_is_what_brute_force_projection_of_pixels_gives(distance_m: float):
-    depth, pose = wall_ahead(distance_m, SKEW), PlanarPose(0.21, -0.4, SKEW)
+    depth, pose = wall_ahead(distance_m, SKEW), Pose(0.21, -0.4, SKEW)
     fast, slow = mapped(depth, pose).seen_obstacle, brute_force(depth, pose, 0.10, 0.88)
     grown = np.zeros_like(fast)
     for dr in (-1, 0, 1):
@@ -66,7 +67,7 @@ def test_the_obstacle_layer_is_what_brute_force_projection_of_pixels_gives(dista
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 def test_every_second_pixel_gives_the_same_wall_without_gaps(distance_m: float):
-    pose = PlanarPose(0.0, 0.0, SKEW)
+    pose = Pose(0.0, 0.0, SKEW)
     depth = wall_ahead(distance_m, SKEW)
     full = mapped(depth, pose).seen_obstacle
     default = mapped(depth, pose, MappingConfig()).seen_obstacle
@@ -76,7 +77,7 @@ def test_every_second_pixel_gives_the_same_wall_without_gaps(distance_m: float):
 @pytest.mark.parametrize("distance_m", [1.0, 4.8])
 def test_the_sides_of_a_post_land_where_they_are(distance_m: float):
     post = Box((distance_m, distance_m + 0.2), (0.10, 0.30))
-    navmap = mapped(GridWorld([post], (0.0, 0.0, 0.0), camera=CAMERA).render()[0], PlanarPose(0.0, 0.0, 0.0))
+    navmap = mapped(GridWorld([post], (0.0, 0.0, 0.0), camera=CAMERA).render()[0], Pose(0.0, 0.0, 0.0))
     _, y_m = FRAME.centres(*np.nonzero(navmap.seen_obstacle))
     assert y_m.min() == pytest.approx(0.10, abs=0.03)
     assert y_m.max() == pytest.approx(0.30, abs=0.03)
@@ -85,7 +86,7 @@ def test_the_sides_of_a_post_land_where_they_are(distance_m: float):
 def test_no_return_and_the_end_of_the_range_put_nothing_on_the_map():
     depth = np.zeros((480, 640), np.float32)
     depth[:, 320:] = CAMERA.max_depth_m
-    navmap = mapped(depth, PlanarPose(0.0, 0.0, 0.0))
+    navmap = mapped(depth, Pose(0.0, 0.0, 0.0))
     assert not navmap.seen_obstacle.any()
 
 
@@ -95,16 +96,16 @@ def test_no_return_and_the_end_of_the_range_put_nothing_on_the_map():
 )
 def test_what_stands_between_step_and_robot_height_is_an_obstacle(z: tuple, obstacle: bool, eye_level: bool):
     world = GridWorld([Box((2.0, 2.2), (-0.5, 0.5), z)], (0.0, 0.0, 0.0), camera=CAMERA)
-    navmap = mapped(world.render()[0], PlanarPose(0.0, 0.0, 0.0))
+    navmap = mapped(world.render()[0], Pose(0.0, 0.0, 0.0))
     assert navmap.seen_obstacle.any() == obstacle
     assert navmap.seen_at_eye_level.any() == eye_level
 
 
-def scored(world: GridWorld, category_id: int, navmap: NavMap, step: int = 0, pose: PlanarPose | None = None):
+def scored(world: GridWorld, category_id: int, navmap: NavMap, step: int = 0, pose: Pose | None = None):
     depth, semantic = world.render()
     target = (semantic == category_id).astype(np.float32)
     mapper = Mapper(world.camera, RobotModel(), MappingConfig(score_stride_px=2))
-    return mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), pose or PlanarPose(0.0, 0.0, 0.0), step)
+    return mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), pose or Pose(0.0, 0.0, 0.0), step)
 
 
 PICTURE_ID, WALL_ID = 6, 1
@@ -148,7 +149,7 @@ def test_a_cell_takes_the_highest_score_of_its_pixels():
     target[200:210] = 0.8
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
-    mapper.add_scores(navmap, depth, Scores(target, target), PlanarPose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(navmap, depth, Scores(target, target), Pose(0.0, 0.0, 0.0), 0)
     assert navmap.score_max[FRAME.cell(3.0, 0.0)] == pytest.approx(0.8)
 
 
@@ -160,8 +161,8 @@ def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction
     small = target[fraction // 2 :: fraction, fraction // 2 :: fraction]
     full, part = NavMap.empty(FRAME), NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(score_stride_px=2))
-    mapper.add_scores(full, depth, Scores(target, target), PlanarPose(0.0, 0.0, 0.0), 0)
-    mapper.add_scores(part, depth, Scores(small, small), PlanarPose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(full, depth, Scores(target, target), Pose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(part, depth, Scores(small, small), Pose(0.0, 0.0, 0.0), 0)
     assert (part.score_max > 0.5).sum() >= 0.8 * (full.score_max > 0.5).sum() > 0
     assert not ((part.score_max > 0.5) & (full.score_max <= 0.5)).any()
 
@@ -175,7 +176,7 @@ def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: 
     target = (semantic == PICTURE_ID).astype(np.float32)[middle, middle]
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(score_stride_px=stride_px))
-    mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), PlanarPose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), Pose(0.0, 0.0, 0.0), 0)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.size > 0
     assert x_m.max() < 1.7
@@ -188,7 +189,7 @@ def test_scores_of_another_shape_are_refused_with_both_shapes():
             NavMap.empty(FRAME),
             np.ones((480, 640), np.float32),
             Scores(wrong, wrong),
-            PlanarPose(0.0, 0.0, 0.0),
+            Pose(0.0, 0.0, 0.0),
             0,
         )
 
@@ -204,7 +205,7 @@ def test_with_noisy_depth_the_rim_of_the_target_does_not_count_and_its_inside_do
     for exact in (True, False):
         navmap = NavMap.empty(FRAME)
         mapper = Mapper(full, RobotModel(), MappingConfig(score_stride_px=1))
-        mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), PlanarPose(0.0, 0.0, 0.0), 0, exact=exact)
+        mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), Pose(0.0, 0.0, 0.0), 0, exact=exact)
         layers[exact] = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))[0]
     assert layers[True].min() < 1.1
     assert layers[False].min() > 3.9
@@ -216,5 +217,5 @@ def test_a_depth_image_is_exact_as_long_as_it_shows_no_noise(noise_m: float):
     depth, _ = GridWorld([Box((2.0, 2.1), (-3.0, 3.0))], (0.0, 0.0, 0.0), camera=CAMERA).render()
     noise = np.random.default_rng(0).normal(0.0, noise_m, depth.shape).astype(np.float32)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
-    exact = mapper.add_depth(NavMap.empty(FRAME), np.where(depth > 0, depth + noise, 0), PlanarPose(0.0, 0.0, 0.0))
+    exact = mapper.add_depth(NavMap.empty(FRAME), np.where(depth > 0, depth + noise, 0), Pose(0.0, 0.0, 0.0))
     assert exact == (noise_m == 0.0)

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import CameraModel, RobotModel, Scores
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.mapping.mapper import Mapper, MappingConfig
 from stubborn.mapping.object_layers import LatestFrame
 from stubborn.mapping.occupancy import OccupancyConfig
@@ -15,12 +16,12 @@ from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel(width_px=160, height_px=120)
 FULL = CameraModel()
-FRAME = GridFrame.around_start(300)
+FRAME = GridFrame.around_start(300, 0.05)
 TOP_M = 2.2
-POSES = (PlanarPose(0.0, 0.0, 0.0), PlanarPose(0.13, -0.27, math.radians(37.0)))
+POSES = (Pose(0.0, 0.0, 0.0), Pose(0.13, -0.27, math.radians(37.0)))
 
 
-def frame_at(pose: PlanarPose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
+def frame_at(pose: Pose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
     """Depth of a wall across the view at x = `distance_m`, which stands higher than the layers look."""
     world = GridWorld(
         [Box((distance_m, distance_m + 0.1), (-9.0, 9.0), (0.0, 3.0))],
@@ -36,7 +37,7 @@ def random_scores(seed: int) -> Scores:
     return Scores(target * (target > 0.3), rng.random(target.shape, np.float32))
 
 
-def brute_force(depth: np.ndarray, scores: Scores, pose: PlanarPose) -> dict[tuple[int, int], tuple[float, float]]:
+def brute_force(depth: np.ndarray, scores: Scores, pose: Pose) -> dict[tuple[int, int], tuple[float, float]]:
     """Highest target score of each cell in view, and the highest other score where it is that."""
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for v in range(CAMERA.height_px):
@@ -82,7 +83,7 @@ def test_the_four_layers_are_what_projecting_every_pixel_gives(distance_m: float
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
 @pytest.mark.parametrize("pose", POSES)
-def test_a_target_on_a_wall_lands_within_a_cell_of_it(distance_m: float, pose: PlanarPose):
+def test_a_target_on_a_wall_lands_within_a_cell_of_it(distance_m: float, pose: Pose):
     depth = frame_at(pose, distance_m, FULL)
     up = (0.5 * FULL.height_px - np.arange(FULL.height_px) - 0.5) / FULL.focal_px
     height_m = FULL.height_m + depth * up[:, None]

@@ -1,10 +1,12 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action
-from stubborn.grid import GridFrame, PlanarPose
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Bumps, Plan, Planner, PlanningConfig, march
 from tests.helpers.asciimap import enlarged, map_of, mask_of
@@ -14,13 +16,13 @@ STRAIGHT = PlanningConfig(wary_speed=1.0, comfort_cost=0.0)
 
 def planned(text: str, config: PlanningConfig = STRAIGHT, bumps: Bumps = Bumps.PESSIMISTIC, yaw_rad: float = 0.0):
     navmap, pose = map_of(text)
-    pose = pose._replace(yaw_rad=yaw_rad)
+    pose = replace(pose, yaw_rad=yaw_rad)
     planner = Planner(config, trust_visited=True)
     free = planner.free_space(navmap, pose, bumps)
     return planner, free, planner.plan(free, mask_of(text, "G"), pose), pose
 
 
-def drive(planner: Planner, navmap: NavMap, goal: np.ndarray, pose: PlanarPose, steps: int) -> list[PlanarPose]:
+def drive(planner: Planner, navmap: NavMap, goal: np.ndarray, pose: Pose, steps: int) -> list[Pose]:
     """Follow the planner's actions without a world: every move succeeds."""
     poses = [pose]
     for _ in range(steps):
@@ -31,10 +33,10 @@ def drive(planner: Planner, navmap: NavMap, goal: np.ndarray, pose: PlanarPose, 
         assert plan is not None
         action = planner.next_action(plan, free, pose)
         if action is Action.MOVE_FORWARD:
-            pose = PlanarPose(*pose.ahead(0.25), pose.yaw_rad)
+            pose = Pose(*pose.ahead(0.25), pose.yaw_rad)
         else:
             turn = TURN_RAD if action is Action.TURN_LEFT else -TURN_RAD
-            pose = pose._replace(yaw_rad=math.remainder(pose.yaw_rad + turn, math.tau))
+            pose = replace(pose, yaw_rad=math.remainder(pose.yaw_rad + turn, math.tau))
         poses.append(pose)
     return poses
 
@@ -62,7 +64,7 @@ ENCLOSED = enlarged(
 
 def test_an_unreachable_cell_is_infinite_and_a_goal_there_has_no_plan():
     navmap, _ = map_of(ENCLOSED)
-    pose = PlanarPose(0.3, 0.2, 0.0)
+    pose = Pose(0.3, 0.2, 0.0)
     planner = Planner(STRAIGHT, trust_visited=True)
     free = planner.free_space(navmap, pose, Bumps.NONE)
     inside = np.zeros(free.frame.shape, bool)
@@ -146,13 +148,13 @@ def test_no_short_term_goal_lies_across_a_one_cell_wall(yaw_deg: int, dilation_m
     assert plan is not None
     assert plan.length_m > 2.5
     for col in range(10, 17):  # up to where the body touches the wall
-        near = pose._replace(x_m=float(free.frame.centres(0, col)[0]))
+        near = replace(pose, x_m=float(free.frame.centres(0, col)[0]))
         navmap, _ = map_of(wall_between(gap_cells=14))
         free = planner.free_space(navmap, near, Bumps.NONE)
         plan = planner.plan(free, plan.goal, near)
         assert plan is not None
         heading = near.yaw_rad + planner.short_term_turn(plan, free, near)
-        x_m, _ = near._replace(yaw_rad=heading).ahead(0.25)
+        x_m, _ = replace(near, yaw_rad=heading).ahead(0.25)
         assert x_m < 20 * 0.05
 
 
@@ -169,11 +171,11 @@ def test_following_the_plan_goes_round_the_wall_and_arrives():
 
 
 def test_turn_left_right_or_forward_by_fifteen_degrees():
-    frame = GridFrame.around_start(81)
+    frame = GridFrame.around_start(81, 0.05)
     navmap = NavMap.empty(frame)
     planner = Planner(STRAIGHT, trust_visited=True)
     for bearing_deg, action in ((0, Action.MOVE_FORWARD), (60, Action.TURN_LEFT), (-60, Action.TURN_RIGHT)):
-        pose = PlanarPose(0.0, 0.0, 0.0)
+        pose = Pose(0.0, 0.0, 0.0)
         goal = np.zeros(frame.shape, bool)
         bearing = math.radians(bearing_deg)
         goal[frame.cell(1.5 * math.cos(bearing), 1.5 * math.sin(bearing))] = True

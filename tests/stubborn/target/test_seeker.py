@@ -3,8 +3,9 @@ import math
 import numpy as np
 import pytest
 
+from sim.geometry.grid import GridFrame, Window
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from stubborn.grid import GridFrame, PlanarPose, Window
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.planning.planner import Planner, PlanningConfig
@@ -54,7 +55,7 @@ def whole(navmap: NavMap) -> Window:
     return navmap.frame.part(slice(None), slice(None))
 
 
-def known(text: str) -> tuple[NavMap, PlanarPose]:
+def known(text: str) -> tuple[NavMap, Pose]:
     """A drawn map on which everything has been in view once."""
     navmap, pose = map_of(text)
     navmap.frames_in_view[:] = 1
@@ -133,7 +134,7 @@ def test_a_margin_as_large_as_the_distance_is_refused():
         TargetConfig(outline_margin_m=0.9)
 
 
-def doubtful_one_first() -> tuple[NavMap, PlanarPose]:
+def doubtful_one_first() -> tuple[NavMap, Pose]:
     """A candidate nearby that was mostly scored low, and a plain one farther away."""
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     navmap.score_max[30, 35] = 0.6
@@ -249,7 +250,7 @@ def test_low_furniture_hides_nothing():
     assert approach.route.plan.length_m < 1.0
 
 
-def enclosed_target() -> tuple[NavMap, PlanarPose]:
+def enclosed_target() -> tuple[NavMap, Pose]:
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(5, 55):
         for col in range(35, 79):
@@ -294,7 +295,7 @@ def test_late_in_the_episode_the_nearest_reachable_place_will_do():
     assert late.route is not None
 
 
-def far_target() -> tuple[NavMap, PlanarPose]:
+def far_target() -> tuple[NavMap, Pose]:
     """A candidate in the middle of a large piece of furniture, 1.35 m from where a robot fits."""
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(6, 54):
@@ -318,7 +319,7 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
     assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
     x_m, y_m = navmap.frame.centres(rows[0], cols[0])
-    there = PlanarPose(float(x_m), float(y_m), 0.0)
+    there = Pose(float(x_m), float(y_m), 0.0)
     approach = seek.approach(navmap, whole(navmap), there, 1)
     assert approach is not None
     assert approach.route is None
@@ -457,7 +458,7 @@ def test_nearest_cell_and_distance_agree_with_brute_force():
 
 
 def test_the_known_window_holds_all_that_was_seen_and_a_margin():
-    navmap = NavMap.empty(GridFrame.around_start(101))
+    navmap = NavMap.empty(GridFrame.around_start(101, 0.05))
     assert navmap.known_window(5).frame.shape == (11, 11)
     navmap.grow_known(slice(20, 25), slice(30, 31))
     navmap.grow_known(slice(60, 61), slice(28, 91))

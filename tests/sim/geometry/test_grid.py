@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.geometry.grid import GridFrame, cells_near_segment
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from stubborn.grid import GridFrame, PlanarPose, cells_near_segment
 
 FRAME = GridFrame(origin_xy_m=(-1.5, 2.0), shape=(40, 70), cell_m=0.05)
 
@@ -31,7 +32,7 @@ def test_rows_are_y_and_columns_are_x():
 
 
 def test_the_start_is_the_centre_of_the_middle_cell():
-    frame = GridFrame.around_start(1440)
+    frame = GridFrame.around_start(1440, 0.05)
     assert frame.cell(0.0, 0.0) == (720, 720)
     np.testing.assert_allclose(frame.centres(720, 720), (0.0, 0.0), atol=1e-9)
 
@@ -52,7 +53,7 @@ def test_a_window_has_its_point_in_the_middle_where_there_is_room():
 
 
 def test_the_disc_swept_along_a_segment_is_every_cell_near_it():
-    frame = GridFrame.around_start(80)
+    frame = GridFrame.around_start(80, 0.05)
     start, end, radius_m = (-0.3, 0.1), (0.4, -0.5), 0.18
     index, inside = cells_near_segment(frame, start, end, radius_m)
     swept = np.zeros(frame.shape, bool)
@@ -66,7 +67,7 @@ def test_the_disc_swept_along_a_segment_is_every_cell_near_it():
 
 
 def test_ahead_goes_along_the_heading():
-    np.testing.assert_allclose(PlanarPose(1.0, 2.0, math.pi / 2).ahead(0.5), (1.0, 2.5))
+    np.testing.assert_allclose(Pose(1.0, 2.0, math.pi / 2).ahead(0.5), (1.0, 2.5))
 
 
 def test_a_grid_without_size_is_refused_with_what_was_given():
