@@ -25,10 +25,10 @@ from sim.env.oracle import Oracle
 from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
 from sim.evaluation.executors import make_executor
-from sim.evaluation.parallel import Share
+from sim.evaluation.parallel import Shard
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.evaluation.workers import PlayerSpec
+from sim.evaluation.workers import RunnerSpec
 from sim.geometry.pose import Pose
 from sim.houses.load import load_house
 from sim.interface import Agent, ConfigError
@@ -39,7 +39,7 @@ from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
 from sim.viewers import selection
-from sim.viewers.viewer import WATCHED_IMAGES
+from sim.viewers.viewer import VIEWER_IMAGES
 from stubborn import agents, draw
 from stubborn.target.verification import verifier_for
 
@@ -118,8 +118,8 @@ def main(args: Args) -> int:
     tell_house(args, console)
     args = replace(args, out=args.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
     if args.shard is not None and args.out is not None:
-        share = Share.parse(args.shard)
-        episodes, args = share.of(episodes), replace(args, out=args.out / share.folder)
+        share = Shard.parse(args.shard)
+        episodes, args = share.select(episodes), replace(args, out=args.out / share.folder)
     lines, summary = play_missing(args, episodes, split, console)
     display.print_results(console, lines, summary)
     if args.video:
@@ -154,14 +154,14 @@ def play_missing(
         )
         if len(todo) < len(episodes):
             console.print(f"{len(episodes) - len(todo)} of them were there already, {len(todo)} to go.")
-        others = run.played_by(code_hash()) if todo else []
+        others = run.record_code(code_hash()) if todo else []
         if others:
             console.print(
                 f"Episodes that were there were played by other code ({', '.join(others)}) than these ({code_hash()}).",
                 highlight=False,
                 soft_wrap=True,
             )
-        spec = PlayerSpec("sim.run:EpisodePlayer", args)
+        spec = RunnerSpec("sim.run:EpisodePlayer", args)
         lines = executor.run(spec, todo, on_death=lambda episode: _death_line(args, episode))
         for line in () if not todo else display.with_progress(console, lines, total=len(todo)):
             run.append(line)
@@ -252,7 +252,7 @@ class EpisodePlayer:
             **_body(args),
         )
         self._agent = make_agent(args, self._env)
-        self._watchers = selection.make(args, draw.painter_of(self._agent))
+        self._viewers = selection.make(args, draw.painter_of(self._agent))
         self._about = {
             "profile": args.profile,
             "noise": args.noise,
@@ -260,11 +260,11 @@ class EpisodePlayer:
             "versions": _versions(),
         }
 
-    def play(self, episode: Episode) -> dict[str, Any]:
+    def run(self, episode: Episode) -> dict[str, Any]:
         """One episode, to one result line."""
         seed = episode_seed(self._args.seed, episode.episode_id)
         try:
-            metrics = play_episode(self._env, self._agent, episode, seed=seed, watchers=self._watchers)
+            metrics = play_episode(self._env, self._agent, episode, seed=seed, viewers=self._viewers)
         except EpisodeError as error:
             return _error_line(self._args, episode, str(error))
         line = _identity(self._args, episode) | metrics
@@ -273,15 +273,15 @@ class EpisodePlayer:
         return line
 
     def close(self) -> None:
-        """Free the renderers; drop what watchers have not ended."""
-        for watcher in self._watchers:
-            watcher.close()
+        """Free the renderers; discard unfinished recordings."""
+        for viewer in self._viewers:
+            viewer.close()
         self._env.close()
 
 
 def _truth(args: Args) -> tuple[str, ...]:
     """Images that are rendered beside what the agent reads: for a noisy detector, and for who looks on."""
-    return truth_needed(args.semantics) + WATCHED_IMAGES * selection.any_asked(args)
+    return truth_needed(args.semantics) + VIEWER_IMAGES * selection.any_selected(args)
 
 
 def _body(args: Args) -> dict[str, Any]:
@@ -353,7 +353,7 @@ def check(args: Args) -> None:
         raise ConfigError("--labels and --start-deg go with --house.")
     selection.check(args)
     if args.shard is not None:
-        Share.parse(args.shard)
+        Shard.parse(args.shard)
         if args.out is None:
             raise ConfigError(f"--shard {args.shard} needs --out: one folder for all shards.")
     get_profile(args.profile)

@@ -33,7 +33,7 @@ from sim.robot.foreign import load_robot
 from sim.viewers.overlay import ACTION_WORDS, colour_depth, in_words
 from sim.viewers.palette import colour_segmentation
 from sim.viewers.terminal import Colours, Terminal, beside, fitted, half_blocks
-from sim.viewers.video import VideoWatcher
+from sim.viewers.video import VideoRecorder
 from stubborn.agent import StubbornAgent
 from stubborn.draw import BeliefPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -312,18 +312,18 @@ def play(args: Args, out: Path, episode: Episode, cockpit: Cockpit, config: dict
         camera=camera,
     )
     human = Human(env, cockpit)
-    watchers = [VideoWatcher(out, BeliefPainter(human.mapper, show_plan=False))] if args.video else []
+    viewers = [VideoRecorder(out, BeliefPainter(human.mapper, show_plan=False))] if args.video else []
     try:
         seed = episode_seed(args.seed, episode.episode_id)
-        metrics = play_episode(env, human, episode, seed=seed, watchers=watchers)
+        metrics = play_episode(env, human, episode, seed=seed, viewers=viewers)
         identity = {"episode_id": episode.episode_id, "house": episode.house, "goal": episode.goal}
         line = identity | {"agent": "human", "semantics": "gt", "seed": args.seed} | metrics
         about = {"profile": args.profile, "noise": args.noise, "split": config["split_identity"]}
         record_episode(env, out, line, about | {"versions": config["versions"]})
         return line
     finally:
-        for watcher in watchers:
-            watcher.close()
+        for viewer in viewers:
+            viewer.close()
         env.close()
 
 

@@ -31,7 +31,7 @@ from sim.errors import EpisodeError, PhysicsError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import episode_seed
-from sim.evaluation.workers import PlayerSpec
+from sim.evaluation.workers import RunnerSpec
 from sim.interface import Action, ConfigError
 from sim.paths import code_hash
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
@@ -166,7 +166,7 @@ def play(args: Args, split: Split, run: RunDirectory) -> None:
     print(f"{len(done)} episodes are there, {len(todo)} to go; log in {run.path}", flush=True)
     until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
     executor = make_executor("local", workers=args.workers)
-    spec = PlayerSpec(f"{__name__}:{Outing.__name__}", args)  # a script is `__main__` to its workers too
+    spec = RunnerSpec(f"{__name__}:{Outing.__name__}", args)  # a script is `__main__` to its workers too
     # In batches: a house is loaded once in a batch, and a run cut short is still balanced.
     for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
         for line in executor.run(spec, batch, on_death=lambda episode: line_of(episode, 0, [])):
@@ -204,7 +204,7 @@ class Outing:
         assert isinstance(agent, StubbornAgent)
         self._agent = self.witness.agent = agent
 
-    def play(self, episode: Episode) -> dict[str, Any]:
+    def run(self, episode: Episode) -> dict[str, Any]:
         """One episode to its last step; one that breaks ends there."""
         self.witness.candidates = []
         seed = episode_seed(self._seed, episode.episode_id)

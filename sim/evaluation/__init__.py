@@ -1,3 +1,3 @@
-"""Running many episodes: rollout of one, workers, executors, result files.
+"""Running many episodes: one episode, workers, executors, result files, and intervals over houses.
 
 Imports viewers, env and the rooms below them."""

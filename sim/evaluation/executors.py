@@ -1,6 +1,7 @@
-"""Where work is done: in this process, in processes of this machine, or on the machines of a Ray cluster.
+"""Executors: run work items in this process, in processes of this machine, or on the machines of a Ray cluster.
 
-An `Executor` takes items and gives lines; what a dying worker costs is the same everywhere (`sim.evaluation.workers`).
+An `Executor` takes items and yields result lines; a worker that dies is handled the same way by all of them
+(`sim.evaluation.workers`).
 """
 
 from __future__ import annotations
@@ -13,40 +14,40 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
 from sim.errors import ConfigError
-from sim.evaluation.workers import Bench, ItemT, PlayerSpec, WorkerLost, play_here, play_with
+from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_here, run_in_pool
 
 EXECUTORS = ("local", "ray")
 """Names of `--executor`."""
 
 
 class Executor(Protocol):
-    """Somewhere to work."""
+    """A place where work items are run."""
 
-    def run(self, spec: PlayerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
-        """Yield a result line for each item, in the order in which they end.
+    def run(self, spec: RunnerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
+        """Yields a result line for each item, in the order in which the items end.
 
         Args:
-            spec: how each worker builds its player.
+            spec: how each worker builds its runner.
             items: the work.
-            on_death: the line of an item whose worker died twice.
+            on_death: returns the line of an item whose worker died twice.
 
         Raises:
             WorkersError: no worker can be started.
-            Exception: whatever a player raised.
+            Exception: any exception that a runner raised.
         """
         ...
 
 
 def make_executor(name: str, *, workers: int, address: str | None = None) -> Executor:
-    """The executor of that name, one of `EXECUTORS`.
+    """Returns the executor with this name, one of `EXECUTORS`.
 
     Args:
         name: `local` or `ray`.
-        workers: how many processes, on this machine or over the cluster.
-        address: of the Ray cluster; None: the one that this machine belongs to.
+        workers: number of processes, on this machine or over the cluster.
+        address: of the Ray cluster; None: the cluster that this machine belongs to.
 
     Raises:
-        ConfigError: an unknown name, options that do not go together, no `ray` installed or no cluster there.
+        ConfigError: an unknown name, options that contradict each other, no `ray` installed, or no cluster there.
     """
     if name not in EXECUTORS:
         raise ConfigError(f"Unknown --executor '{name}'. There is: {', '.join(EXECUTORS)}.")
@@ -54,7 +55,7 @@ def make_executor(name: str, *, workers: int, address: str | None = None) -> Exe
         raise ConfigError(f"--workers must be at least 1, got {workers}.")
     if name == "local":
         if address is not None:
-            raise ConfigError(f"--address '{address}' goes with --executor ray.")
+            raise ConfigError(f"--address '{address}' needs --executor ray.")
         return Processes(workers)
     from sim.evaluation.executors_ray import RayCluster  # an extra
 
@@ -63,28 +64,28 @@ def make_executor(name: str, *, workers: int, address: str | None = None) -> Exe
 
 @dataclass(frozen=True)
 class Processes:
-    """Processes of this machine, spawned, never forked: OpenGL does not survive a fork. One is this process."""
+    """Processes of this machine; they are spawned, because OpenGL does not survive a fork. 1: this process."""
 
     workers: int = 1
 
-    def run(self, spec: PlayerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
+    def run(self, spec: RunnerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
         """See `Executor`."""
         if self.workers == 1 or len(items) <= 1:
-            yield from play_here(spec, items)
+            yield from run_here(spec, items)
         else:
-            yield from play_with(ProcessCrew(spec), items, size=self.workers, on_death=on_death)
+            yield from run_in_pool(ProcessPool(spec), items, max_workers=self.workers, on_death=on_death)
 
 
 class _Process:
     """A spawned process at the other end of a pipe; see `sim.evaluation.workers.Worker`."""
 
-    def __init__(self, spec: PlayerSpec) -> None:
+    def __init__(self, spec: RunnerSpec) -> None:
         context = mp.get_context("spawn")
-        self.connection, theirs = context.Pipe()
-        self.process = context.Process(target=_work, args=(spec, theirs), daemon=True)
+        self.connection, child_connection = context.Pipe()
+        self.process = context.Process(target=_worker_main, args=(spec, child_connection), daemon=True)
         self.process.start()
         self.busy = True
-        theirs.close()
+        child_connection.close()
 
     def send(self, item: Any) -> None:
         self.busy = True
@@ -93,32 +94,32 @@ class _Process:
 
     def receive(self) -> Any:
         try:
-            said = self.connection.recv()
+            message = self.connection.recv()
         except (EOFError, OSError):
             self.process.join()
             self.connection.close()
             raise WorkerLost(f"its process ended with status {self.process.exitcode}") from None
         self.busy = False
-        return said
+        return message
 
 
-class ProcessCrew:
-    """Processes of this machine as a `sim.evaluation.workers.Crew`."""
+class ProcessPool:
+    """Starts and stops processes of this machine; see `sim.evaluation.workers.WorkerPool`."""
 
-    def __init__(self, spec: PlayerSpec) -> None:
+    def __init__(self, spec: RunnerSpec) -> None:
         self._spec = spec
 
-    def hire(self) -> _Process:
-        """Spawn one."""
+    def start(self) -> _Process:
+        """Spawns one process."""
         return _Process(self._spec)
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
-        """Those with something in their pipe, or whose pipe is closed."""
+        """Returns the workers with a message in their pipe, or whose pipe is closed."""
         ready = wait([worker.connection for worker in workers])
         return [worker for worker in workers if worker.connection in ready]
 
-    def dismiss(self, workers: Sequence[_Process]) -> None:
-        """End the idle ones gently, for they may hold a renderer."""
+    def stop(self, workers: Sequence[_Process]) -> None:
+        """Terminates busy workers and lets idle ones exit, since they may hold a renderer."""
         for worker in workers:
             worker.process.terminate() if worker.busy else worker.send(None)
         for worker in workers:
@@ -126,14 +127,14 @@ class ProcessCrew:
             worker.connection.close()
 
 
-def _work(spec: PlayerSpec, connection: Connection) -> None:
-    """A worker's life: be ready, play what comes, end at None or when the parent is gone."""
-    bench = Bench(spec)
+def _worker_main(spec: RunnerSpec, connection: Connection) -> None:
+    """Reports that the worker is ready and runs items until None arrives or the parent process is gone."""
+    runner = ItemRunner(spec)
     try:
         connection.send(None)
         while (item := connection.recv()) is not None:
-            connection.send(bench.play(item))
+            connection.send(runner.run(item))
     except (EOFError, OSError, KeyboardInterrupt):
         return
     finally:
-        bench.close()
+        runner.close()

@@ -1,4 +1,4 @@
-"""The same work on many things, over workers, results in order; or a share of the things, for a batch scheduler."""
+"""Applies one function to many items on several workers, with results in order; and shards of a list of items."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from typing import Any, TypeVar
 
 from sim.errors import ConfigError, WorkersError
 from sim.evaluation.executors import Executor, Processes
-from sim.evaluation.workers import PlayerSpec
+from sim.evaluation.workers import RunnerSpec
 
-ThingT = TypeVar("ThingT")
+T = TypeVar("T")
 ResultT = TypeVar("ResultT")
 
 
 @dataclass(frozen=True)
-class Share:
-    """Every `parts`-th thing from the `part`-th on: what one of several machines does of the work."""
+class Shard:
+    """Every `count`-th item from item `index` on: the part of the work that one of several machines does."""
 
-    part: int = 0
-    parts: int = 1
+    index: int = 0
+    count: int = 1
 
     @classmethod
-    def parse(cls, text: str) -> Share:
-        """What `--shard i/n` means.
+    def parse(cls, text: str) -> Shard:
+        """Returns the shard that `--shard i/n` names.
 
         Raises:
-            ConfigError: it is not of that form, or there is no such part.
+            ConfigError: the text does not have this form, or there is no such shard.
         """
         match = re.fullmatch(r"(\d+)/(\d+)", text)
         if match is None or not int(match[1]) < int(match[2]):
@@ -36,44 +36,45 @@ class Share:
 
     @property
     def folder(self) -> str:
-        """Name of the folder that this share's results go to, below that of the whole."""
-        return f"shard_{self.part}_of_{self.parts}"
+        """Name of the folder for the results of this shard, inside the folder of the whole."""
+        return f"shard_{self.index}_of_{self.count}"
 
-    def takes(self, number: int) -> bool:
-        """Whether the thing with this number is in the share."""
-        return number % self.parts == self.part
+    def contains(self, number: int) -> bool:
+        """Returns True if the item with this number is in the shard."""
+        return number % self.count == self.index
 
-    def of(self, things: Sequence[ThingT]) -> Sequence[ThingT]:
-        """The share of some things."""
-        return things[self.part :: self.parts]
+    def select(self, items: Sequence[T]) -> Sequence[T]:
+        """Returns the items that are in the shard."""
+        return items[self.index :: self.count]
 
 
 def ordered_map(
-    work: Callable[[ThingT], ResultT],
-    things: Sequence[ThingT],
+    function: Callable[[T], ResultT],
+    items: Sequence[T],
     *,
     workers: int = 1,
     executor: Executor | None = None,
 ) -> Iterator[ResultT]:
-    """Yield `work(thing)` for each thing, in their order.
+    """Yields `function(item)` for each item, in the order of the items.
 
-    A worker that dies costs its thing one more try.
+    When a worker dies, its item is tried once more.
 
     Args:
-        work: picklable, when there are workers.
-        things: each one piece of work.
-        workers: 1 works in this process; more are spawned.
-        executor: where to work, in place of so many processes.
+        function: picklable, if there are workers.
+        items: each is one unit of work.
+        workers: 1 runs in this process; more are spawned.
+        executor: replaces the processes of this machine.
 
     Raises:
-        WorkersError: a thing whose worker died twice.
-        Exception: whatever `work` raised.
+        WorkersError: a worker died twice on the same item.
+        Exception: any exception that `function` raised.
     """
     executor = executor or Processes(workers)
-    pieces = [_Piece(number, thing) for number, thing in enumerate(things)]
+    numbered = [_NumberedItem(number, item) for number, item in enumerate(items)]
     early: dict[int, ResultT] = {}
     following = 0
-    for number, result in executor.run(PlayerSpec("sim.evaluation.parallel:Workman", work), pieces, on_death=_give_up):
+    spec = RunnerSpec("sim.evaluation.parallel:FunctionRunner", function)
+    for number, result in executor.run(spec, numbered, on_death=_give_up):
         early[number] = result
         while following in early:
             yield early.pop(following)
@@ -81,11 +82,11 @@ def ordered_map(
 
 
 @dataclass(frozen=True)
-class _Piece:
-    """A thing as an item of work; see `sim.evaluation.workers.Item`."""
+class _NumberedItem:
+    """An item with its position; see `sim.evaluation.workers.WorkItem`."""
 
     number: int
-    thing: Any
+    item: Any
 
     @property
     def episode_id(self) -> str:
@@ -93,23 +94,23 @@ class _Piece:
 
     @property
     def house(self) -> str:
-        """The same for all: there is nothing that a worker keeps from one to the next."""
+        """The same for all items: a worker keeps nothing from one to the next."""
         return ""
 
 
-class Workman:
-    """A `Player` that applies one function."""
+class FunctionRunner:
+    """A `Runner` that applies one function."""
 
-    def __init__(self, work: Callable[[Any], Any]) -> None:
-        self._work = work
+    def __init__(self, function: Callable[[Any], Any]) -> None:
+        self._function = function
 
-    def play(self, piece: _Piece) -> tuple[int, Any]:
-        """The number of the piece, and what the function makes of its thing."""
-        return piece.number, self._work(piece.thing)
+    def run(self, numbered: _NumberedItem) -> tuple[int, Any]:
+        """Returns the number of the item and the function's result."""
+        return numbered.number, self._function(numbered.item)
 
     def close(self) -> None:
-        """Nothing is kept."""
+        """Does nothing: no state is kept."""
 
 
-def _give_up(piece: _Piece) -> Any:
-    raise WorkersError(f"The worker died twice over {piece.thing}.")
+def _give_up(numbered: _NumberedItem) -> Any:
+    raise WorkersError(f"The worker died twice on {numbered.item}.")

@@ -1,8 +1,8 @@
-"""Many items of work over workers that may die: who gets what, what is tried again, when it is over.
+"""Runs many work items on workers that may die: it assigns items, retries lost ones and ends when all are done.
 
-Each item gives one result line. A worker builds its player when its first item comes, and keeps the house it has
-loaded as long as there is an item left in it. A worker that dies costs its item one more try and nothing else. Where
-the workers are (`sim.evaluation.executors`) is not known here.
+Each item gives one result line. A worker builds its runner when its first item arrives, and keeps a loaded house while
+items in that house remain. When a worker dies, its item is tried once more; no other item is affected. The kind of
+worker (process, Ray actor) is not known here; see `sim.evaluation.executors`.
 """
 
 from __future__ import annotations
@@ -16,16 +16,15 @@ from typing import Any, Generic, Protocol, TypeVar
 from sim.errors import WorkersError
 
 _log = logging.getLogger(__name__)
-Line = dict[str, Any]
-ItemT = TypeVar("ItemT", bound="Item")
+ItemT = TypeVar("ItemT", bound="WorkItem")
 MAX_TRIES = 2
-"""How often an item is started before a dying worker makes it an error."""
+"""Number of times an item is started; then a dying worker makes it an error."""
 MAX_FAILED_STARTS = 3
-"""How many workers may die one after the other before any of them was ready for work."""
+"""Number of workers that may die in succession before any of them was ready."""
 
 
-class Item(Protocol):
-    """One unit of work; items of the same house should meet the same worker."""
+class WorkItem(Protocol):
+    """One unit of work; items of the same house should go to the same worker."""
 
     @property
     def episode_id(self) -> str: ...  # noqa: D102
@@ -33,43 +32,43 @@ class Item(Protocol):
     def house(self) -> str: ...  # noqa: D102
 
 
-class Player(Protocol):
-    """What a worker builds once: plays one item after the other."""
+class Runner(Protocol):
+    """An object that a worker builds once and that runs one item after the other."""
 
-    def play(self, item: Any) -> Any: ...  # noqa: D102
+    def run(self, item: Any) -> Any: ...  # noqa: D102
     def close(self) -> None: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
-class PlayerSpec:
-    """How to build a `Player` in any process: `module:function` and its one argument (picklable)."""
+class RunnerSpec:
+    """How to build a `Runner` in any process: `module:function` and its one argument (picklable)."""
 
     entry: str
     config: Any
 
-    def build(self) -> Player:
-        """Import the function and call it."""
+    def build(self) -> Runner:
+        """Imports the function and returns its result."""
         module, function = self.entry.split(":")
         return getattr(importlib.import_module(module), function)(self.config)
 
 
 class WorkerLost(Exception):
-    """A worker died; why, where that is known."""
+    """A worker died; the message gives the reason where it is known."""
 
 
 class Worker(Protocol):
-    """One worker somewhere. It says once that it is ready, then answers each item with a line or an exception."""
+    """A worker process or actor. It reports once that it is ready, then answers each item with a line or an error."""
 
     def send(self, item: Any) -> None:
-        """Hand it an item. One that has died meanwhile says so in `receive`."""
+        """Sends it an item. If it has died since, `receive` reports it."""
         ...
 
     def receive(self) -> Any:
-        """What it said, after `Crew.wait` has named it.
+        """Returns its message, after `WorkerPool.wait` has returned it.
 
         Raises:
             WorkerLost: it died.
-            WorkersError: it cannot work here, and no other could.
+            WorkersError: it cannot work here, and no other worker could.
         """
         ...
 
@@ -77,98 +76,100 @@ class Worker(Protocol):
 WorkerT = TypeVar("WorkerT", bound=Worker)
 
 
-class Crew(Protocol[WorkerT]):
-    """Workers of one kind, all for the same player."""
+class WorkerPool(Protocol[WorkerT]):
+    """Starts and stops workers of one kind, all with the same runner."""
 
-    def hire(self) -> WorkerT:
-        """Start one more; it may take its time, even for ever where there is no room."""
+    def start(self) -> WorkerT:
+        """Starts one more worker; it may never get ready where there is no free processor."""
         ...
 
     def wait(self, workers: Sequence[WorkerT]) -> Sequence[WorkerT]:
-        """Those of some workers that have said something or died; blocks until there is one."""
+        """Returns those of the given workers that have a message or died; blocks until there is one."""
         ...
 
-    def dismiss(self, workers: Sequence[WorkerT]) -> None:
-        """End them, whatever they are doing."""
+    def stop(self, workers: Sequence[WorkerT]) -> None:
+        """Ends workers, busy or idle."""
         ...
 
 
-class Bench:
-    """What runs where a worker is: builds the player for the first item, plays, and never raises."""
+class ItemRunner:
+    """The part of a worker that builds the runner for the first item and runs items; it never raises."""
 
-    def __init__(self, spec: PlayerSpec) -> None:
+    def __init__(self, spec: RunnerSpec) -> None:
         self._spec = spec
-        self._player: Player | None = None
+        self._runner: Runner | None = None
 
-    def play(self, item: Any) -> Any:
-        """The item's line, or the exception that building or playing raised."""
+    def run(self, item: Any) -> Any:
+        """Returns the item's line, or the exception that building or running raised."""
         try:
-            if self._player is None:
-                self._player = self._spec.build()
-            return self._player.play(item)
+            if self._runner is None:
+                self._runner = self._spec.build()
+            return self._runner.run(item)
         except Exception as error:
             return error
 
     def close(self) -> None:
-        """Close the player, if there is one."""
-        if self._player is not None:
-            self._player.close()
+        """Closes the runner, if it was built."""
+        if self._runner is not None:
+            self._runner.close()
 
 
-def play_here(spec: PlayerSpec, items: Sequence[ItemT]) -> Iterator[Any]:
-    """Yield the result line of each item, played in this process, house by house."""
-    player = spec.build()
+def run_here(spec: RunnerSpec, items: Sequence[ItemT]) -> Iterator[Any]:
+    """Yields the result line of each item, run in this process, house by house."""
+    runner = spec.build()
     try:
         for item in sorted(items, key=lambda item: item.house):  # stable: keeps the order within a house
-            yield player.play(item)
+            yield runner.run(item)
     finally:
-        player.close()
+        runner.close()
 
 
-def play_with(crew: Crew[Any], items: Sequence[ItemT], *, size: int, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
-    """Yield a result line for each item, in the order in which they end.
+def run_in_pool(
+    pool: WorkerPool[Any], items: Sequence[ItemT], *, max_workers: int, on_death: Callable[[ItemT], Any]
+) -> Iterator[Any]:
+    """Yields a result line for each item, in the order in which the items end.
 
     Args:
-        crew: whom to hire.
+        pool: starts the workers.
         items: the work.
-        size: how many workers at most.
-        on_death: the line of an item whose worker died `MAX_TRIES` times.
+        max_workers: largest number of workers at a time.
+        on_death: returns the line of an item whose worker died `MAX_TRIES` times.
 
     Raises:
-        WorkersError: workers die before they are ready for work.
-        Exception: whatever a player raised.
+        WorkersError: workers die before they are ready.
+        Exception: any exception that a runner raised.
     """
-    shift = _Shift(crew, _Queue(list(items)), min(size, len(items)), on_death)
+    scheduler = _Scheduler(pool, _Queue(list(items)), min(max_workers, len(items)), on_death)
     try:
-        yield from shift.lines()
+        yield from scheduler.lines()
     finally:
-        crew.dismiss([post.worker for post in shift.posts])
+        pool.stop([slot.worker for slot in scheduler.slots])
 
 
 @dataclass
 class _Queue(Generic[ItemT]):
-    """Items that wait, handed out house by house."""
+    """Waiting items, given out house by house."""
 
     items: list[ItemT]
 
     def take(self, house: str | None, busy_houses: set[str]) -> ItemT | None:
-        """The next item for a worker: of its own house, else of one nobody plays, else of any."""
+        """Removes and returns the next item for a worker: of its house, else of an idle house, else any."""
         if not self.items:
             return None
-        for wanted in (
+        for is_wanted in (
             lambda item: item.house == house,
             lambda item: item.house not in busy_houses,
             lambda item: True,
         ):
             for i, item in enumerate(self.items):
-                if wanted(item):
+                if is_wanted(item):
                     return self.items.pop(i)
-        raise AssertionError("unreachable: the last filter accepts all")
+        raise AssertionError("unreachable: the last filter accepts every item")
 
 
 @dataclass
-class _Post(Generic[ItemT]):
-    """What is known of one worker."""
+class _WorkerSlot(Generic[ItemT]):
+    """The state of one worker."""
 
     worker: Any
     ready: bool = False
@@ -181,66 +182,68 @@ class _Post(Generic[ItemT]):
 
 
 @dataclass
-class _Shift(Generic[ItemT]):
-    crew: Crew[Any]
+class _Scheduler(Generic[ItemT]):
+    """Assigns the items of a queue to the workers of a pool."""
+
+    pool: WorkerPool[Any]
     queue: _Queue[ItemT]
-    size: int
+    max_workers: int
     on_death: Callable[[ItemT], Any]
-    posts: list[_Post[ItemT]] = field(default_factory=list)
+    slots: list[_WorkerSlot[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
     failed_starts: int = 0
 
     def lines(self) -> Iterator[Any]:
         while True:
-            self._staff()
-            waited_for = {id(post.worker): post for post in self.posts if not post.idle}
-            if not self.queue.items and all(post.item is None for post in waited_for.values()):
+            self._assign_all()
+            pending = {id(slot.worker): slot for slot in self.slots if not slot.idle}
+            if not self.queue.items and all(slot.item is None for slot in pending.values()):
                 return
-            for worker in self.crew.wait([post.worker for post in waited_for.values()]):
-                yield from self._hear(waited_for[id(worker)])
+            for worker in self.pool.wait([slot.worker for slot in pending.values()]):
+                yield from self._receive(pending[id(worker)])
 
-    def _staff(self) -> None:
-        """Give every idle worker something to do, and hire where there is more to do."""
-        for post in self.posts:
-            if post.idle:
-                self._hand_out(post)
-        starting = sum(not post.ready for post in self.posts)
-        for _ in range(min(self.size - len(self.posts), len(self.queue.items) - starting)):
-            self.posts.append(_Post(self.crew.hire()))
+    def _assign_all(self) -> None:
+        """Assigns an item to every idle worker, and starts workers for the remaining items."""
+        for slot in self.slots:
+            if slot.idle:
+                self._assign(slot)
+        starting = sum(not slot.ready for slot in self.slots)
+        for _ in range(min(self.max_workers - len(self.slots), len(self.queue.items) - starting)):
+            self.slots.append(_WorkerSlot(self.pool.start()))
 
-    def _hand_out(self, post: _Post[ItemT]) -> None:
-        busy = {other.house for other in self.posts if other.item is not None and other.house is not None}
-        post.item = self.queue.take(post.house, busy)
-        if post.item is not None:
-            post.house = post.item.house
-            post.worker.send(post.item)
+    def _assign(self, slot: _WorkerSlot[ItemT]) -> None:
+        busy = {other.house for other in self.slots if other.item is not None and other.house is not None}
+        slot.item = self.queue.take(slot.house, busy)
+        if slot.item is not None:
+            slot.house = slot.item.house
+            slot.worker.send(slot.item)
 
-    def _hear(self, post: _Post[ItemT]) -> Iterator[Any]:
-        """What a worker has said: that it is ready, a line, or nothing any more."""
+    def _receive(self, slot: _WorkerSlot[ItemT]) -> Iterator[Any]:
+        """Handles one message of a worker: that it is ready, a line, or its death."""
         try:
-            said = post.worker.receive()
+            message = slot.worker.receive()
         except WorkerLost as loss:
-            self.posts.remove(post)
-            yield from self._bury(post, loss)
+            self.slots.remove(slot)
+            yield from self._retry_or_fail(slot, loss)
             return
-        was_ready, post.ready, post.item = post.ready, True, None
+        was_ready, slot.ready, slot.item = slot.ready, True, None
         self.failed_starts = 0
-        self._hand_out(post)  # before the caller does something with the line
-        if isinstance(said, BaseException):
-            raise said
+        self._assign(slot)  # before the caller uses the line, so that the worker does not wait
+        if isinstance(message, BaseException):
+            raise message
         if was_ready:
-            yield said
+            yield message
 
-    def _bury(self, post: _Post[ItemT], loss: WorkerLost) -> Iterator[Any]:
-        """The item of a dead worker is tried again, or becomes an error."""
-        item = post.item
+    def _retry_or_fail(self, slot: _WorkerSlot[ItemT], loss: WorkerLost) -> Iterator[Any]:
+        """Puts the item of a dead worker back into the queue, or yields its error line."""
+        item = slot.item
         if item is None:
             self.failed_starts += 1
             if self.failed_starts >= MAX_FAILED_STARTS:
                 raise WorkersError(f"{self.failed_starts} workers died as they started ({loss}).")
             return
         self.tries[item.episode_id] = self.tries.get(item.episode_id, 0) + 1
-        _log.warning("A worker was lost over '%s' (%s).", item.episode_id, loss)
+        _log.warning("A worker was lost in '%s' (%s).", item.episode_id, loss)
         if self.tries[item.episode_id] < MAX_TRIES:
             self.queue.items.insert(0, item)
         else:

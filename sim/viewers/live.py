@@ -1,8 +1,8 @@
-"""`--view`: MuJoCo's own viewer shows the house from above while an episode is played.
+"""`--view`: shows the house from above in MuJoCo's viewer while an episode runs.
 
-The viewer gets copies of model and data, so that a mouse that pulls at a chair there changes no result. Between two
-actions the robot glides from where it was to where it is. Ceilings are put into geom group 4, which the viewer does not
-draw unless asked to (key 4). Closing the window ends the looking on, not the run.
+The viewer gets copies of model and data, so that moving an object with the mouse changes no result. The robot's motion
+is interpolated between two actions. Ceilings are put into geom group 4, which the viewer does not draw by default (key
+4 shows it). Closing the window does not end the run.
 """
 
 from __future__ import annotations
@@ -27,31 +27,31 @@ from sim.viewers.overlay import ACTION_WORDS, in_words
 from sim.viewers.viewer import Moment
 
 ACTION_S = 0.3
-"""How long an action is shown; in physics it takes up to two seconds."""
+"""Display time of an action; in the simulation it takes up to two seconds."""
 FRAMES_PER_S = 30
 CEILING_GROUP = 4
 _OPENING_S = 30.0
-"""A window that is not there after this time will not come."""
+"""A window that is not open after this time is an error."""
 _CLOSING_S = 5.0
 
 
 def require_display() -> None:
-    """Raise ConfigError where no window can be opened."""
+    """Raises ConfigError where no window can be opened."""
     if sys.platform == "darwin":
         raise ConfigError("--view: on macOS MuJoCo's viewer needs mjpython, which this command does not use.")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # glfw warns of what is raised here
-        import glfw  # brought by mujoco; looks for a window system while it is imported
+        warnings.simplefilter("ignore")  # glfw warns of the error that is raised below
+        import glfw  # a dependency of mujoco; searches for a window system on import
 
         if not glfw.init():
             raise ConfigError(
-                "--view needs a display, and there is none here: DISPLAY and WAYLAND_DISPLAY lead nowhere. "
-                "--video leaves a film instead."
+                "--view needs a display, and there is none: DISPLAY and WAYLAND_DISPLAY name no running server. "
+                "--video writes a video instead."
             )
 
 
 class LiveView:
-    """A window on each episode (a `sim.viewers.viewer.Watcher`)."""
+    """A viewer that shows each episode in a window (`sim.viewers.viewer.Viewer`)."""
 
     def __init__(self) -> None:
         self._handle: Any = None
@@ -59,7 +59,7 @@ class LiveView:
         self._closed_by_user = False
 
     def begin(self, env: ObjectNavEnv) -> None:
-        """Open a window on the house, unless it is open already or was closed."""
+        """Opens a window for the house, unless one is open or the user has closed it."""
         self._env = env
         if self._handle is not None and not self._handle.is_running():
             self._closed_by_user = True
@@ -72,8 +72,8 @@ class LiveView:
         self._show(self._before)
 
     def decided(self, moment: Moment) -> None:
-        """Say what comes."""
-        if self._looked_at:
+        """Shows the chosen action as text."""
+        if self._is_open:
             left = "Looking for\nStep\nAction\nHouse"
             goal = in_words(self._env.episode.goal)
             right = f"{goal}\n{moment.step}\n{ACTION_WORDS[moment.action]}\n{self._env.episode.house}"
@@ -81,8 +81,8 @@ class LiveView:
             self._handle.set_texts((mujoco.mjtFontScale.mjFONTSCALE_100.value, place, left, right))
 
     def moved(self, info: Mapping[str, Any]) -> None:
-        """Glide to where the action led."""
-        if not self._looked_at:
+        """Shows the motion of the action."""
+        if not self._is_open:
             return
         after = self._env.scene.world.data.qpos.copy()
         velocity = np.empty(self._model.nv)
@@ -96,8 +96,8 @@ class LiveView:
         self._before = after
 
     def end(self, line: Mapping[str, Any]) -> None:
-        """Let the outcome stand for a second."""
-        if self._looked_at:
+        """Shows the outcome for a second."""
+        if self._is_open:
             outcome = "found" if line["success"] else f"not found ({line.get('failure') or line.get('end_reason')})"
             place = mujoco.mjtGridPos.mjGRID_TOPLEFT.value
             words = (mujoco.mjtFontScale.mjFONTSCALE_100.value, place, in_words(self._env.episode.goal), outcome)
@@ -106,15 +106,15 @@ class LiveView:
             time.sleep(1.0)
 
     def close(self) -> None:
-        """Close the window."""
+        """Closes the window."""
         if self._handle is not None:
             self._handle.close()
-            for thread in self._threads:  # else it would still draw while the window system is shut down at exit
+            for thread in self._threads:  # it must not draw while the window system is shut down at exit
                 thread.join(_CLOSING_S)
         self._handle = self._scene = None
 
     @property
-    def _looked_at(self) -> bool:
+    def _is_open(self) -> bool:
         return self._handle is not None and self._handle.is_running()
 
     def _open(self, scene: Scene) -> None:
@@ -122,11 +122,11 @@ class LiveView:
         self._model, self._data = copy.copy(world.model), mujoco.MjData(world.model)
         ceiling = world.labels.geom_category == MPCAT40_ID["ceiling"]
         self._model.geom_group[ceiling] = CEILING_GROUP
-        self._model.geom_group[self._model.geom_group == ROBOT_GROUP] = 0  # our cameras never see it, people should
+        self._model.geom_group[self._model.geom_group == ROBOT_GROUP] = 0  # hidden from our cameras, but not here
         self._data.qpos[:] = world.data.qpos
-        others = set(threading.enumerate())
+        threads_before = set(threading.enumerate())
         self._handle, self._scene = _launch(self._model, self._data), scene
-        self._threads = [thread for thread in threading.enumerate() if thread not in others]
+        self._threads = [thread for thread in threading.enumerate() if thread not in threads_before]
         with self._handle.lock():
             camera = self._handle.cam
             camera.type = mujoco.mjtCamera.mjCAMERA_TRACKING.value
@@ -137,27 +137,27 @@ class LiveView:
         with self._handle.lock():
             self._data.qpos[:] = qpos
             mujoco.mj_kinematics(self._model, self._data)
-            mujoco.mj_comPos(self._model, self._data)  # what the camera follows
+            mujoco.mj_comPos(self._model, self._data)  # the point that the camera follows
             mujoco.mj_camlight(self._model, self._data)
         self._handle.sync()
 
 
 def _robot_body(model: mujoco.MjModel) -> int:
-    """Number of the robot's outermost body."""
+    """Returns the id of the robot's root body."""
     return next(i for i in range(model.nbody) if model.body(i).name.startswith(PREFIX))
 
 
 def _launch(model: mujoco.MjModel, data: mujoco.MjData) -> Any:
-    """The viewer's handle. `launch_passive` waits for ever for a window that does not open; this does not.
+    """Returns the viewer's handle; unlike `launch_passive` it does not wait forever for a window that cannot open.
 
     Raises:
-        ConfigError: it did not open.
+        ConfigError: the window did not open.
     """
     viewer = importlib.import_module("mujoco.viewer")
     handles: list[Any] = []
     opener = threading.Thread(
         target=lambda: handles.append(
-            viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)  # its own thread draws
+            viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)  # draws in its own thread
         ),
         daemon=True,
     )

@@ -1,14 +1,14 @@
-"""One frame of a video: what the robot sees, what is where, and what the agent makes of it, 1280 x 720.
+"""Composes a video frame of 1280 x 720 pixels: camera, depth, segmentation, the agent's map and its state.
 
     +--------------------------------------------------------------+
     | Looking for a chair     step 48 / 500   turn left   [blocked] |
     +----------------+----------------+----------------------------+
     | camera         | segmentation   | map                        |
-    | depth          | in sight       | what its colours mean      |
-    |                |                | what the agent is about    |
+    | depth          | in sight       | legend of the map          |
+    |                |                | state of the agent         |
     +----------------+----------------+----------------------------+
 
-Every text is made to fit: one that is too wide is written smaller.
+A text that is too wide for its place is written smaller.
 """
 
 from __future__ import annotations
@@ -33,7 +33,6 @@ PALE: Colour = (110, 110, 114)
 HEADER: Colour = (36, 40, 48)
 GOAL: Colour = (228, 28, 130)
 ALARM: Colour = (204, 42, 32)
-FOUND: Colour = (46, 140, 70)
 ACTION_WORDS: Mapping[Action, str] = {
     Action.STOP: "stop",
     Action.MOVE_FORWARD: "forward",
@@ -41,7 +40,7 @@ ACTION_WORDS: Mapping[Action, str] = {
     Action.TURN_RIGHT: "turn right",
 }
 MIN_SHARE = 0.0005
-"""Categories that cover less of the frame are not named, but for the goal."""
+"""Categories that cover less of the frame are not named, except the goal."""
 
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _HEADER_PX, _TITLE_PX, _GAP_PX = 52, 22, 8
@@ -63,7 +62,7 @@ class MapPanel:
     legend: tuple[tuple[str, Colour], ...]
     title: str
     words: str
-    """What the agent is about."""
+    """What the agent is doing."""
 
 
 MAP_PX = _MAP_PX
@@ -71,7 +70,7 @@ MAP_PX = _MAP_PX
 
 
 def compose(moment: Moment, goal: str, camera: CameraModel, map_panel: MapPanel) -> Picture:
-    """The frame without what only the outcome of the action tells, uint8 RGB (720, 1280, 3)."""
+    """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3)."""
     frame = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
     semantic = moment.seen("semantic")
     _put(frame, moment.seen("rgb"), (_LEFT, _TOP), "camera")
@@ -91,7 +90,7 @@ def compose(moment: Moment, goal: str, camera: CameraModel, map_panel: MapPanel)
 
 
 def add_outcome(frame: Picture, moment: Moment, info: Mapping[str, Any]) -> None:
-    """Write what the action did into a frame of `compose`: step, action, collision and the counts so far."""
+    """Writes the outcome of the action into a frame of `compose`: step, action, collision and the counts so far."""
     white = (255, 255, 255)
     _write(frame, f"step {moment.step}", (600, 34), 120, 0.7, white)
     _write(frame, ACTION_WORDS[moment.action], (730, 34), 140, 0.7, white)
@@ -102,7 +101,7 @@ def add_outcome(frame: Picture, moment: Moment, info: Mapping[str, Any]) -> None
 
 
 def add_end(frame: Picture, line: Mapping[str, Any]) -> None:
-    """Write how the episode ended over a frame's header."""
+    """Writes the outcome of the episode over the header of a frame."""
     frame[:_HEADER_PX, 600:] = HEADER
     success = bool(line["success"])
     why = str(line.get("error") or line.get("failure") or line.get("end_reason") or "").replace("_", " ")
@@ -112,12 +111,12 @@ def add_end(frame: Picture, line: Mapping[str, Any]) -> None:
 
 
 def in_words(category: str) -> str:
-    """`chest_of_drawers` as people write it."""
+    """Returns the name of a category with spaces: "chest of drawers"."""
     return category.replace("_", " ")
 
 
 def colour_depth(depth: NDArray[np.float32], camera: CameraModel) -> Picture:
-    """Near is bright, far is dark, and black is no return; (h, w, 3)."""
+    """Returns a picture (h, w, 3): near is bright, far is dark, and no return is black."""
     span_m = camera.max_depth_m - camera.min_depth_m
     level = np.clip((camera.max_depth_m - depth) * np.float32(235.0 / span_m) + 20.0, 0.0, 255.0).astype(np.uint8)
     coloured = cv2.applyColorMap(level, cv2.COLORMAP_VIRIDIS)[..., ::-1]
@@ -125,7 +124,7 @@ def colour_depth(depth: NDArray[np.float32], camera: CameraModel) -> Picture:
 
 
 def _put(frame: Picture, image: Picture, corner: tuple[int, int], title: str) -> None:
-    """An image of the camera with its title above."""
+    """Draws an image of the camera with its title above."""
     left, top = corner
     scale = min(_IMAGE[0] / image.shape[1], _IMAGE[1] / image.shape[0])
     width, height = round(image.shape[1] * scale), round(image.shape[0] * scale)
@@ -135,14 +134,14 @@ def _put(frame: Picture, image: Picture, corner: tuple[int, int], title: str) ->
 
 
 def _shrunk(image: NDArray) -> NDArray:
-    """An image of numbers at a size that fits its panel; nothing is mixed."""
+    """Returns an image of numbers, resized to its panel without interpolation."""
     scale = min(_IMAGE[0] / image.shape[1], _IMAGE[1] / image.shape[0])
     size = (round(image.shape[1] * scale), round(image.shape[0] * scale))
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_NEAREST))
 
 
 def _segmentation(semantic: NDArray[np.uint8], goal: str) -> Picture:
-    """Each category in its colour, the goal outlined."""
+    """Returns the segmentation in colours, with the goal outlined."""
     small = np.asarray(_shrunk(semantic), np.uint8)
     picture = np.ascontiguousarray(colour_segmentation(small))
     mask = (small == MPCAT40_ID[goal]).astype(np.uint8)
@@ -152,7 +151,7 @@ def _segmentation(semantic: NDArray[np.uint8], goal: str) -> Picture:
 
 
 def _depth_scale(frame: Picture, camera: CameraModel) -> None:
-    """What the colours of depth mean, above the panel's right end."""
+    """Draws the scale of the depth colours above the right end of the panel."""
     base, right = _BELOW - 6, _LEFT + _IMAGE[0] - 42
     left = right - 140
     metres = np.linspace(camera.min_depth_m, camera.max_depth_m, right - left, dtype=np.float32)
@@ -162,7 +161,7 @@ def _depth_scale(frame: Picture, camera: CameraModel) -> None:
 
 
 def _categories(frame: Picture, semantic: NDArray[np.uint8], goal: str) -> None:
-    """Names and colours of what is in sight, in two columns that keep their order."""
+    """Writes names and colours of the visible categories, in two columns in a fixed order."""
     counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
     goal_id = MPCAT40_ID[goal]
     shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i != goal_id]
@@ -178,7 +177,7 @@ def _categories(frame: Picture, semantic: NDArray[np.uint8], goal: str) -> None:
 
 
 def _map_legend(frame: Picture, panel: MapPanel) -> None:
-    """What the colours of the map mean, in three columns, and what the agent is about."""
+    """Draws the legend of the map in three columns, and what the agent is doing."""
     column = _MAP_PX // 3
     rows = -(-len(panel.legend) // 3)
     for place, (name, colour) in enumerate(panel.legend):
@@ -190,7 +189,7 @@ def _map_legend(frame: Picture, panel: MapPanel) -> None:
 
 
 def _facts(frame: Picture, info: Mapping[str, Any]) -> None:
-    """How the episode stands after the action."""
+    """Writes path length, collisions and distance to the goal after the action."""
     distance_m = info["distance_to_goal"]
     to_go = "no way to the goal" if distance_m is None else f"goal {distance_m:.1f} m away (true)"
     count = info["collisions"]
@@ -200,7 +199,7 @@ def _facts(frame: Picture, info: Mapping[str, Any]) -> None:
 
 
 def _badge(frame: Picture, words: str, colour: Colour) -> None:
-    """A coloured plate at the right end of the header."""
+    """Draws text on a coloured rectangle at the right end of the header."""
     (width, _), _ = cv2.getTextSize(words, _FONT, 0.7, 2)
     cv2.rectangle(frame, (WIDTH_PX - 36 - width, 9), (WIDTH_PX - 12, _HEADER_PX - 9), colour, cv2.FILLED)
     _write(frame, words, (WIDTH_PX - 24 - width, 34), width + 12, 0.7, (255, 255, 255), 2)
@@ -215,13 +214,13 @@ def _write(
     frame: Picture,
     words: str,
     left_base: tuple[int, int],
-    room_px: int,
+    width_px: int,
     scale: float,
     colour: Colour,
     thickness: int = 1,
 ) -> None:
-    """Text with its lower left corner there, made smaller where it would be wider than its room."""
-    (width, _), _ = cv2.getTextSize(words, _FONT, scale, thickness)
-    if width > room_px:
-        scale *= room_px / width
+    """Writes text from its lower left corner, smaller where it would be wider than `width_px`."""
+    (text_px, _), _ = cv2.getTextSize(words, _FONT, scale, thickness)
+    if text_px > width_px:
+        scale *= width_px / text_px
     cv2.putText(frame, words, left_base, _FONT, scale, colour, thickness, cv2.LINE_AA)

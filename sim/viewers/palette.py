@@ -1,4 +1,4 @@
-"""One fixed colour a category, and pictures of segmentation with a legend in words."""
+"""A fixed colour for each category, and pictures of segmentation with a legend."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from sim.interface import MPCAT40, MPCAT40_ID
 
 _GREYS = {"void": 0, "wall": 200, "floor": 110, "ceiling": 235, "door": 150, "window": 175}
-"""Structure stays quiet, so that furniture stands out."""
+"""Structure is grey, so that furniture stands out."""
 _GOLDEN_RATIO = 0.618034
 
 
 def _make_palette() -> NDArray[np.uint8]:
     palette = np.zeros((len(MPCAT40), 3), np.uint8)
     for i in range(len(MPCAT40)):
-        hue = (i * _GOLDEN_RATIO) % 1.0  # neighbours in the list land far apart on the colour circle
+        hue = (i * _GOLDEN_RATIO) % 1.0  # neighbours in the list get distant hues
         rgb = colorsys.hsv_to_rgb(hue, 0.55 + 0.35 * (i % 2), 0.95 - 0.25 * (i % 3 == 0))
         palette[i] = [round(255 * value) for value in rgb]
     for name, grey in _GREYS.items():
@@ -32,17 +32,17 @@ PALETTE.setflags(write=False)
 
 
 def colour_segmentation(semantic: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """uint8 (h, w, 3): each mpcat40 id of a (h, w) image in its colour."""
+    """Returns uint8 (h, w, 3): the colour of each mpcat40 id of a (h, w) image."""
     return PALETTE[semantic]
 
 
 def with_legend(semantic: NDArray[np.uint8], *, most: int = 12, min_share: float = 0.002) -> NDArray[np.uint8]:
-    """The coloured segmentation with the names of its largest categories in its upper left corner.
+    """Returns the coloured segmentation with the names of its largest categories in the upper left corner.
 
     Args:
         semantic: mpcat40 ids (h, w).
-        most: how many names at most.
-        min_share: smaller parts of the image are not named.
+        most: largest number of names.
+        min_share: categories that cover less of the image are not named.
     """
     picture = np.ascontiguousarray(colour_segmentation(semantic))
     counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))

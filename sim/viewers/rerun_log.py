@@ -1,21 +1,21 @@
-"""`--rerun` and `--rerun-save`: an episode as a Rerun recording (https://rerun.io), the extra `rerun`.
+"""`--rerun` and `--rerun-save`: writes each episode as a Rerun recording (https://rerun.io), the extra `rerun`.
 
 =========================  ====================================================================================
-entity                     what it is, on the timeline `step`
+entity                     content, on the timeline `step`
 =========================  ====================================================================================
 /world/robot               true pose in the house's frame
 /world/robot/camera/rgb    the colour image on its pinhole
-/seen/depth, /semantic     the other images as the agent saw them, at half size
-/world/points/NNN          coloured points of the depth image of step NNN, from where the robot truly stood
-/world/way                 the robot's way so far
-/world/believed            the way by `gps` and `compass`, which noise bends
-/world/contacts            what stopped a motion
+/seen/depth, /semantic     depth and segmentation of the agent's observation, at half size
+/world/points/NNN          coloured points of the depth image of step NNN, from the robot's true pose
+/world/path                the robot's true path so far
+/world/believed            the path according to `gps` and `compass`, with their noise
+/world/contacts            contacts that stopped a motion
 /map                       the agent's map, or the true floor plan where it has none
 /distance_to_goal          metres, geodesic
 /log                       actions, collisions, the outcome
 =========================  ====================================================================================
 
-A file an episode, `<out>/rerun/<episode_id>.rrd`, like videos and trajectories: a run can go on, and have workers.
+Each episode has its file `<out>/rerun/<episode_id>.rrd`, so that a run can be resumed and use several workers.
 """
 
 from __future__ import annotations
@@ -44,48 +44,48 @@ from sim.viewers.viewer import MapPainter, Moment
 
 FOLDER = "rerun"
 PORT = 9876
-"""Where Rerun's viewer listens."""
+"""The port of Rerun's viewer."""
 POINT_STRIDE_PX = 8
 IMAGE_STRIDE_PX = 2
-"""Depth and segmentation are kept at half size: they are 6 times as large as the compressed colour image."""
+"""Depth and segmentation are stored at half size; they are 6 times as large as the compressed colour image."""
 MAP_PX = 480
 _JPEG_QUALITY = 85
 _IMAGES = {"rgb": "world/robot/camera/rgb", "depth": "seen/depth", "semantic": "seen/semantic"}
-"""The entity of each image; those at half size do not belong to the pinhole."""
+"""The entity of each image; images at half size cannot be children of the pinhole."""
 
 
 def require_rerun(*, window: bool) -> None:
-    """Raise ConfigError where Rerun is not installed, or has no screen to show anything on when it should."""
+    """Raises ConfigError where Rerun is not installed, or where a window is needed and there is no display."""
     if importlib.util.find_spec("rerun") is None:
         raise ConfigError("--rerun needs the package rerun-sdk, an extra: pip install 'stubborn-objectnav[rerun]'.")
-    screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    if window and not screen and not _viewer_listens():
+    display = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    if window and not display and not _viewer_listens():
         raise ConfigError(
-            f"--rerun needs a display, or a viewer of Rerun that listens on port {PORT}; --rerun-save leaves files."
+            f"--rerun needs a display, or a viewer of Rerun that listens on port {PORT}; --rerun-save writes files."
         )
 
 
 def rerun_file(run: Path, episode_id: str) -> Path:
-    """Where a run keeps the recording of an episode; what no file name may hold is written as %xx."""
+    """Returns the recording of an episode; characters that a file name may not hold are written as %xx."""
     return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.rrd"
 
 
 def points_in_world(
     depth: NDArray[np.float32], camera: CameraModel, pose: Pose, *, stride_px: int, forward_m: float = 0.0
 ) -> tuple[NDArray[np.float32], NDArray[np.intp], NDArray[np.intp]]:
-    """Points (n, 3) in the world of every so many pixels that have a distance, and their rows and columns.
+    """Returns points (n, 3) in the world of the pixels that have a distance, and their rows and columns.
 
     Args:
-        depth: (h, w) metres; 0 and the farthest value are no points.
-        camera: that took it.
-        pose: of the robot.
-        stride_px: every so many pixels, each way.
-        forward_m: how far the camera stands before the robot's axis.
+        depth: (h, w) metres; 0 and the farthest value give no point.
+        camera: the camera of the depth image.
+        pose: pose of the robot.
+        stride_px: only every n-th row and column is used.
+        forward_m: distance of the camera in front of the robot's axis.
     """
     rows, cols = np.mgrid[stride_px // 2 : depth.shape[0] : stride_px, stride_px // 2 : depth.shape[1] : stride_px]
     d = depth[rows, cols]
-    there = (d > 0.0) & (d < camera.max_depth_m)
-    rows, cols, d = rows[there], cols[there], d[there]
+    valid = (d > 0.0) & (d < camera.max_depth_m)
+    rows, cols, d = rows[valid], cols[valid], d[valid]
     left = d * (0.5 * camera.width_px - 0.5 - cols) / camera.focal_px
     up = d * (0.5 * camera.height_px - 0.5 - rows) / camera.focal_px
     cos, sin, ahead = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), d + forward_m
@@ -95,17 +95,17 @@ def points_in_world(
 
 
 class RerunLog:
-    """Logs each episode as a recording of its own (a `sim.viewers.viewer.Watcher`)."""
+    """A viewer that logs each episode as a recording of its own (`sim.viewers.viewer.Viewer`)."""
 
     def __init__(self, run: Path | None, painter: MapPainter | None = None) -> None:
-        """Log to files under `run`, or to a viewer where it is None; `painter` draws the agent's map."""
+        """Logs to files under `run`, or to Rerun's viewer if it is None; `painter` draws the agent's map."""
         self._rr: Any = importlib.import_module("rerun")
         self._run, self._painter = run, painter
         self._stream: Any = None
         self._part: Path | None = None
 
     def begin(self, env: ObjectNavEnv) -> None:
-        """Start the episode's recording."""
+        """Starts the episode's recording."""
         self.close()
         rr, episode = self._rr, env.episode
         self._env, self._map = env, self._painter or TopView(env)
@@ -118,25 +118,25 @@ class RerunLog:
             self._stream.save(self._part)
         self._stream.send_recording_name(f"{episode.episode_id}: {in_words(episode.goal)}")
         self._stream.send_blueprint(self._blueprint())
-        self._log_what_stays()
+        self._log_static()
 
     def decided(self, moment: Moment) -> None:
-        """Everything that was there to see."""
+        """Logs images, poses, map and the chosen action."""
         self._stream.set_time("step", sequence=moment.step)
         self._log_images(moment)
-        self._log_places(moment)
+        self._log_poses(moment)
         self._stream.log("map", self._rr.Image(self._map.paint(MAP_PX)).compress(jpeg_quality=95))
         self._text("; ".join(filter(None, [ACTION_WORDS[moment.action], self._map.words()])))
 
     def moved(self, info: Mapping[str, Any]) -> None:
-        """What came of it."""
+        """Logs the outcome of the action."""
         if info["distance_to_goal"] is not None:
             self._stream.log("distance_to_goal", self._rr.Scalars(info["distance_to_goal"]))
         if info["collided"]:
             self._text("collision", level="WARN")
 
     def end(self, line: Mapping[str, Any]) -> None:
-        """The outcome; the file is whole now."""
+        """Logs the outcome of the episode and completes the file."""
         outcome = "found" if line["success"] else f"not found: {line.get('failure') or line.get('end_reason')}"
         self._text(f"{outcome} after {line['num_steps']} steps", level="INFO" if line["success"] else "ERROR")
         self._disconnect()
@@ -145,7 +145,7 @@ class RerunLog:
             self._part = None
 
     def close(self) -> None:
-        """Drop what was not ended."""
+        """Discards the recording of an unfinished episode."""
         self._disconnect()
         if self._part is not None:
             self._part.unlink(missing_ok=True)
@@ -158,7 +158,7 @@ class RerunLog:
             self._stream = None
 
     def _blueprint(self) -> Any:
-        """The house with all points so far, the images and the map beside it."""
+        """Returns a layout with the house and all points so far, the images, and the map."""
         rrb = importlib.import_module("rerun.blueprint")
         return rrb.Blueprint(
             rrb.Horizontal(
@@ -176,7 +176,7 @@ class RerunLog:
             collapse_panels=True,
         )
 
-    def _log_what_stays(self) -> None:
+    def _log_static(self) -> None:
         rr, camera = self._rr, self._env.camera_model
         self._stream.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         names = [(i, in_words(name), tuple(PALETTE[i].tolist())) for i, name in enumerate(MPCAT40)]
@@ -199,8 +199,8 @@ class RerunLog:
         self._stream.log(_IMAGES["depth"], rr.DepthImage(depth_mm, meter=1000.0))
         self._stream.log(_IMAGES["semantic"], rr.SegmentationImage(moment.seen("semantic")[every, every]))
 
-    def _log_places(self, moment: Moment) -> None:
-        """Poses, points and contacts in the frame of the house."""
+    def _log_poses(self, moment: Moment) -> None:
+        """Logs poses, points and contacts in the frame of the house."""
         rr, env = self._rr, self._env
         pose, task = env.scene.world.pose, env.scene.task
         half = 0.5 * pose.yaw_rad
@@ -218,8 +218,8 @@ class RerunLog:
             f"world/points/{moment.step:03d}", rr.Points3D(points, colors=moment.seen("rgb")[rows, cols], radii=0.01)
         )
         trajectory = task.trajectory()
-        way = np.column_stack([trajectory.positions_m, trajectory.poses[:, 3] + 0.02])
-        self._stream.log("world/way", rr.LineStrips3D([way], colors=[(32, 84, 190)], radii=0.015))
+        path = np.column_stack([trajectory.positions_m, trajectory.poses[:, 3] + 0.02])
+        self._stream.log("world/path", rr.LineStrips3D([path], colors=[(32, 84, 190)], radii=0.015))
         start = env.episode.start
         gps = np.asarray(moment.observation["gps"], np.float64)
         cos, sin = math.cos(start.yaw_rad), math.sin(start.yaw_rad)

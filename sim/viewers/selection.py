@@ -1,4 +1,4 @@
-"""From options to watchers: what `--video`, `--view`, `--rerun` and `--rerun-save` ask for."""
+"""Builds the viewers that the options `--video`, `--view`, `--rerun` and `--rerun-save` select."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Protocol
 
 from sim.errors import ConfigError
-from sim.viewers.video import VideoWatcher
-from sim.viewers.viewer import MapPainter, Watcher
+from sim.viewers.video import VideoRecorder
+from sim.viewers.viewer import MapPainter, Viewer
 
 
-class WatchOptions(Protocol):
-    """The options of a run that watchers go by."""
+class ViewerOptions(Protocol):
+    """The options of a run that concern viewers."""
 
     @property
     def out(self) -> Path | None: ...  # noqa: D102
@@ -27,18 +27,18 @@ class WatchOptions(Protocol):
     def rerun_save(self) -> bool: ...  # noqa: D102
 
 
-def any_asked(options: WatchOptions) -> bool:
-    """Whether somebody looks on, so that all images must be rendered."""
+def any_selected(options: ViewerOptions) -> bool:
+    """Returns True if there is a viewer, so that all images must be rendered."""
     return options.video or options.view or options.rerun or options.rerun_save
 
 
-def check(options: WatchOptions) -> None:
-    """Raise ConfigError where what was asked for cannot be had here."""
-    for name, asked in (("--view", options.view), ("--rerun", options.rerun)):
-        if asked and options.workers > 1:
+def check(options: ViewerOptions) -> None:
+    """Raises ConfigError where a selected viewer cannot run here."""
+    for name, selected in (("--view", options.view), ("--rerun", options.rerun)):
+        if selected and options.workers > 1:
             raise ConfigError(f"{name} shows one episode at a time: it needs --workers 1, got {options.workers}.")
     if options.rerun and options.rerun_save:
-        raise ConfigError("--rerun shows and --rerun-save writes files: give one of them.")
+        raise ConfigError("--rerun opens a viewer and --rerun-save writes files: give only one of them.")
     if options.view:
         from sim.viewers import live
 
@@ -49,22 +49,22 @@ def check(options: WatchOptions) -> None:
         rerun_log.require_rerun(window=options.rerun)
 
 
-def make(options: WatchOptions, painter: MapPainter | None) -> list[Watcher]:
-    """The watchers that were asked for; `painter` draws the agent's map, None where it has none.
+def make(options: ViewerOptions, painter: MapPainter | None) -> list[Viewer]:
+    """Returns the selected viewers; `painter` draws the agent's map, None where it has none.
 
     Raises:
-        ConfigError: as `check`.
+        ConfigError: see `check`.
     """
     check(options)
-    watchers: list[Watcher] = []
+    viewers: list[Viewer] = []
     if options.video and options.out is not None:
-        watchers.append(VideoWatcher(options.out, painter))
+        viewers.append(VideoRecorder(options.out, painter))
     if options.view:
         from sim.viewers.live import LiveView
 
-        watchers.append(LiveView())
+        viewers.append(LiveView())
     if options.rerun or options.rerun_save:
         from sim.viewers.rerun_log import RerunLog
 
-        watchers.append(RerunLog(options.out if options.rerun_save else None, painter))
-    return watchers
+        viewers.append(RerunLog(options.out if options.rerun_save else None, painter))
+    return viewers

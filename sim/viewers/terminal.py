@@ -1,4 +1,4 @@
-"""A terminal as a window: pictures in coloured half blocks, keys one at a time. Standard library and ANSI only.
+"""Shows pictures in a terminal as coloured half blocks and reads single keys, with the standard library and ANSI only.
 
 A character cell holds two pixels, the upper one as the foreground of U+2580 and the lower one as its background.
 """
@@ -25,20 +25,20 @@ HALF_BLOCK = "\u2580"
 RESET = "\x1b[0m"
 ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 _ESCAPE_S = 0.05
-"""The rest of an arrow key's sequence comes within this time; a lone Escape has none."""
+"""The rest of an arrow key's sequence arrives within this time; a single Escape key has none."""
 _ENTER_SCREEN, _LEAVE_SCREEN = "\x1b[?1049h\x1b[?25l\x1b[2J", "\x1b[0m\x1b[?25h\x1b[?1049l"
 
 
 def colours_of(environment: dict[str, str] | os._Environ[str]) -> Colours:
-    """What the terminal says that it can show: `COLORTERM` is how they tell of 24 bits."""
+    """Returns the colours that the terminal supports; terminals with 24 bits set `COLORTERM`."""
     return "true" if environment.get("COLORTERM", "").lower() in ("truecolor", "24bit") else "256"
 
 
 def half_blocks(image: NDArray[np.uint8], colours: Colours = "true") -> list[str]:
-    """Lines of text that show an image.
+    """Returns lines of text that show an image.
 
     Args:
-        image: RGB (2 n, m, 3); n lines of m characters come out.
+        image: RGB (2 n, m, 3), which gives n lines of m characters.
         colours: `true` for 24 bits, `256` for the fixed palette of older terminals.
     """
     lines = []
@@ -55,14 +55,14 @@ def half_blocks(image: NDArray[np.uint8], colours: Colours = "true") -> list[str
 
 
 def fitted(image: NDArray[np.uint8], columns: int, lines: int) -> NDArray[np.uint8]:
-    """An image at the largest size that fits so many characters, its proportions kept; an even number of rows."""
+    """Returns an image at the largest size that fits into columns and lines, with its proportions; rows are even."""
     scale = min(columns / image.shape[1], 2 * lines / image.shape[0])
     width, height = max(1, int(image.shape[1] * scale)), max(1, round(image.shape[0] * scale / 2)) * 2
     return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def beside(blocks: Sequence[Sequence[str]], widths: Sequence[int], gap: int = 2) -> list[str]:
-    """Blocks of lines next to each other, the shorter ones filled up below."""
+    """Returns blocks of lines next to each other; shorter blocks are filled with spaces below."""
     height = max(len(block) for block in blocks)
     return [
         (" " * gap).join(
@@ -73,13 +73,13 @@ def beside(blocks: Sequence[Sequence[str]], widths: Sequence[int], gap: int = 2)
 
 
 class Terminal:
-    """The terminal of this process, taken over between `with` and its end."""
+    """A context manager that takes over the terminal of this process."""
 
     def __init__(self, keys: TextIO | None = None, screen: TextIO | None = None) -> None:
-        """Take keys from one stream and draw on another (standard input and output).
+        """Reads keys from one stream and draws on another (standard input and output).
 
         Raises:
-            ConfigError: they are no terminal.
+            ConfigError: one of them is not a terminal.
         """
         self._keys, self._screen = keys or sys.stdin, screen or sys.stdout
         if not (self._keys.isatty() and self._screen.isatty()):
@@ -88,7 +88,7 @@ class Terminal:
 
     def __enter__(self) -> Terminal:
         self._before = termios.tcgetattr(self._keys.fileno())
-        tty.setcbreak(self._keys.fileno())  # keys come at once and unseen; Ctrl-C still interrupts
+        tty.setcbreak(self._keys.fileno())  # keys arrive at once and without echo; Ctrl-C still interrupts
         self._write(_ENTER_SCREEN)
         return self
 
@@ -100,16 +100,16 @@ class Terminal:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Columns and lines now."""
+        """Current number of columns and lines."""
         columns, lines = os.get_terminal_size(self._screen.fileno())
         return columns, lines
 
     def show(self, lines: Sequence[str]) -> None:
-        """Draw lines from the top; what is below or right of them is cleared."""
+        """Draws lines from the top and clears the rest of the screen."""
         self._write("\x1b[H" + "\r\n".join(f"{line}\x1b[K" for line in lines) + "\x1b[J")
 
     def key(self) -> str:
-        """Wait for a key: a character, or `up`, `down`, `left`, `right`; "" when the terminal is gone."""
+        """Waits for a key and returns a character, or `up`, `down`, `left`, `right`; "" when the terminal is gone."""
         character = self._read()
         if character != "\x1b" or not self._waiting():
             return character
@@ -133,11 +133,11 @@ class Terminal:
 def _paint(upper: Sequence[int], lower: Sequence[int], colours: Colours) -> str:
     if colours == "true":
         return "\x1b[38;2;{};{};{};48;2;{};{};{}m".format(*upper, *lower)
-    return f"\x1b[38;5;{_of_256(upper)};48;5;{_of_256(lower)}m"
+    return f"\x1b[38;5;{_index_of_256(upper)};48;5;{_index_of_256(lower)}m"
 
 
-def _of_256(rgb: Sequence[int]) -> int:
-    """The nearest colour of xterm's 6 x 6 x 6 cube, or of its greys for what is nearly grey."""
+def _index_of_256(rgb: Sequence[int]) -> int:
+    """Returns the nearest colour of xterm's 6 x 6 x 6 cube, or of its greys for a colour that is nearly grey."""
     if max(rgb) - min(rgb) < 12:
         level = (sum(rgb) // 3 - 8) // 10
         return 16 if level < 0 else 231 if level > 23 else 232 + level

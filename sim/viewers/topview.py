@@ -1,4 +1,4 @@
-"""The true floor plan with the robot's way on it: the map of agents that have none."""
+"""Draws the true floor plan with the robot's path: the map for agents that have none."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ BLOCKED: Colour = (150, 150, 150)
 FREE: Colour = (252, 252, 250)
 SUCCEEDS: Colour = (205, 236, 196)
 INSTANCE: Colour = (56, 158, 80)
-WAY: Colour = (32, 84, 190)
+PATH: Colour = (32, 84, 190)
 STOPPED: Colour = (204, 65, 37)
 ROBOT: Colour = (20, 20, 20)
 _MARGIN_CELLS = 8
 
 
 class TopView:
-    """The storey that the robot stands on, from above, with x to the right and y up (a `sim.viewers.viewer.MapPainter`)."""
+    """A `MapPainter` of the storey that the robot stands on, from above, with x to the right and y up."""
 
     legend = (
         ("free for the robot", FREE),
         ("blocked", BLOCKED),
         ("goal", INSTANCE),
         ("a stop counts here", SUCCEEDS),
-        ("way so far", WAY),
+        ("way so far", PATH),
         ("stopped by contact", STOPPED),
     )
 
@@ -39,11 +39,11 @@ class TopView:
         self._ground = np.zeros((1, 1, 3), np.uint8)
 
     def words(self) -> str:
-        """Nothing is known of what the agent thinks."""
+        """Returns "": the agent's intention is not known."""
         return ""
 
     def paint(self, size_px: int) -> NDArray[np.uint8]:
-        """RGB (size_px, size_px, 3); the house in the middle, as large as fits."""
+        """Returns an RGB image (size_px, size_px, 3) with the house in the middle, as large as fits."""
         scene = self._env.scene
         world, task = scene.world, scene.task
         pose = world.pose
@@ -52,18 +52,13 @@ class TopView:
             self._key, self._ground = key, self._paint_ground(task.goal, pose.floor_z_m, size_px)
         image = self._ground.copy()
         trajectory = task.trajectory()
-        way = self._pixels(trajectory.positions_m)
-        cv2.polylines(image, [way.reshape(-1, 1, 2)], False, WAY, 2, cv2.LINE_AA)
+        path = self._pixels(trajectory.positions_m)
+        cv2.polylines(image, [path.reshape(-1, 1, 2)], False, PATH, 2, cv2.LINE_AA)
         for u, v in self._pixels(trajectory.contacts[:, 1:]).tolist():
             cv2.circle(image, (u, v), 3, STOPPED, -1, cv2.LINE_AA)
-        here, ahead = self._pixels(
-            np.array(
-                [
-                    [pose.x_m, pose.y_m],
-                    [pose.x_m + 0.36 * math.cos(pose.yaw_rad), pose.y_m + 0.36 * math.sin(pose.yaw_rad)],
-                ]
-            )
-        ).tolist()
+        here_m = np.array([pose.x_m, pose.y_m])
+        ahead_m = here_m + 0.36 * np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)])
+        here, ahead = self._pixels(np.array([here_m, ahead_m])).tolist()
         radius_px = max(4, round(world.robot.radius_m * self._scale))
         cv2.circle(image, here, radius_px, (255, 255, 255), -1, cv2.LINE_AA)
         cv2.circle(image, here, radius_px, ROBOT, 2, cv2.LINE_AA)
@@ -71,7 +66,7 @@ class TopView:
         return image
 
     def _paint_ground(self, goal: str, floor_z_m: float, size_px: int) -> NDArray[np.uint8]:
-        """What does not move, and where it lies in the picture."""
+        """Returns the picture without the robot, and stores its scale and offset."""
         truth = self._env.scene.task.truth
         space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
         cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
@@ -93,7 +88,7 @@ class TopView:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
         return image
 
-    def _pixels(self, places_m: NDArray[np.floating]) -> NDArray[np.int32]:
-        """(n, 2) column and row of places (n, 2) in the world."""
-        off = (np.asarray(places_m, np.float64) - self._corner_m) * self._scale * (1.0, -1.0)
+    def _pixels(self, points_m: NDArray[np.floating]) -> NDArray[np.int32]:
+        """Returns (n, 2) column and row of points (n, 2) in the world."""
+        off = (np.asarray(points_m, np.float64) - self._corner_m) * self._scale * (1.0, -1.0)
         return (off + self._offset_px).round().astype(np.int32)

@@ -1,7 +1,7 @@
-"""Who looks on while an episode is played: a video, a window, a log. Looking on changes nothing.
+"""The interface of viewers: objects such as a video, a window or a log that are informed of each step of an episode.
 
-`sim.evaluation.rollout.play_episode` tells each `Watcher` what happens. What the agent believes is drawn by whoever knows the
-agent and handed in as a `MapPainter`; `sim.viewers.topview` is one that draws the truth.
+`sim.evaluation.rollout.play_episode` calls the methods of each `Viewer`; a viewer changes nothing. The agent's map is
+drawn by a `MapPainter` that comes with the agent; `sim.viewers.topview` is one that draws the true floor plan.
 """
 
 from __future__ import annotations
@@ -15,68 +15,68 @@ from numpy.typing import NDArray
 
 from sim.interface import Action, Observation
 
-if TYPE_CHECKING:  # only for its name: the environment needs no watcher
+if TYPE_CHECKING:  # only for the annotation
     from sim.env.objectnav import ObjectNavEnv
 
 Colour = tuple[int, int, int]
-WATCHED_IMAGES: tuple[str, ...] = ("rgb", "depth", "semantic")
-"""What the environment must render (`truth=`) for watchers, whatever the agent asks for."""
+VIEWER_IMAGES: tuple[str, ...] = ("rgb", "depth", "semantic")
+"""Images that the environment must render (`truth=`) for viewers, in addition to the sensors of the agent."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Moment:
-    """One decision: what was there to see, and what the agent chose to do."""
+    """One decision of the agent: the images before it, and the chosen action."""
 
     step: int
     """Number of the action, from 1."""
     observation: Observation
-    """What the agent saw."""
+    """The observation that the agent got."""
     images: Mapping[str, NDArray]
-    """The same moment without noise; holds all of `WATCHED_IMAGES`."""
+    """The images of the same moment without noise; holds all of `VIEWER_IMAGES`."""
     action: Action
-    """What it does next."""
+    """The action that the agent chose."""
 
     def seen(self, name: str) -> NDArray:
-        """An image as the agent saw it, the true one where it did not ask for it."""
+        """Returns an image of the observation, or the true image where the agent has no such sensor."""
         return self.observation[name] if name in self.observation else self.images[name]
 
 
-class Watcher(Protocol):
-    """Is told of each step; must not change what it is shown."""
+class Viewer(Protocol):
+    """An object that is informed of each step; it must not change what it receives."""
 
     def begin(self, env: ObjectNavEnv) -> None:
-        """An episode has been reset."""
+        """Called after an episode has been reset."""
         ...
 
     def decided(self, moment: Moment) -> None:
-        """The agent has seen something and chosen an action; its map is as it was when it chose."""
+        """Called after the agent has chosen an action and before the environment executes it."""
         ...
 
     def moved(self, info: Mapping[str, Any]) -> None:
-        """That action was carried out; `info` is the environment's."""
+        """Called after the environment has executed the action; `info` is that of `env.step`."""
         ...
 
     def end(self, line: Mapping[str, Any]) -> None:
-        """The episode is over; `line` holds its metrics, `error` among them if it broke."""
+        """Called at the end of the episode; `line` holds its metrics, and `error` if it failed."""
         ...
 
     def close(self) -> None:
-        """Nothing more will be played; an episode that runs is dropped."""
+        """Called after the last episode, or when a run is interrupted; an unfinished episode is discarded."""
         ...
 
 
 class MapPainter(Protocol):
-    """Draws a map of what is known at this moment."""
+    """An object that draws a map of the current state."""
 
     @property
     def legend(self) -> tuple[tuple[str, Colour], ...]:
-        """Name and colour of what it draws."""
+        """Name and colour of each item in the map."""
         ...
 
     def paint(self, size_px: int) -> NDArray[np.uint8]:
-        """RGB (size_px, size_px, 3)."""
+        """Returns an RGB image (size_px, size_px, 3)."""
         ...
 
     def words(self) -> str:
-        """What the agent is about; "" where nobody knows."""
+        """Returns what the agent is doing, such as "explores"; "" where that is not known."""
         ...

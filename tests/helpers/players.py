@@ -1,4 +1,4 @@
-"""Players for tests of the runner: real processes, no physics."""
+"""Runners and agents for tests: they need no physics."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from sim.interface import Action, Observation
 
 
 @dataclass(frozen=True)
-class Errand:
-    """An item of work; `kill` is a file that gets a letter from each player that dies over it, the first one."""
+class Job:
+    """A work item; `kill` is a file that gets a letter from each worker that the item kills (only the first)."""
 
     episode_id: str
     house: str
@@ -23,20 +23,20 @@ class Errand:
     fail: bool = False
 
 
-class ErrandPlayer:
-    """Answers with its process and how often it had to change houses."""
+class JobRunner:
+    """A runner whose line says its process and how often it had to change houses."""
 
     def __init__(self) -> None:
         self.house: str | None = None
         self.changes = 0
 
-    def play(self, item: Errand) -> dict[str, Any]:
+    def run(self, item: Job) -> dict[str, Any]:
         if item.kill is not None and (item.always or not item.kill.exists()):
             with item.kill.open("a") as marker:
                 marker.write("x")
             os.kill(os.getpid(), signal.SIGKILL)
         if item.fail:
-            raise ValueError(f"errand {item.episode_id} cannot be done")
+            raise ValueError(f"{item.episode_id} cannot be done")
         self.changes += item.house != self.house
         self.house = item.house
         return {"episode_id": item.episode_id, "pid": os.getpid(), "changes": self.changes}
@@ -45,26 +45,26 @@ class ErrandPlayer:
         self.house = None
 
 
-def make_player(config: None) -> ErrandPlayer:
-    """Entry point `tests.helpers.players:make_player`."""
-    return ErrandPlayer()
+def make_runner(config: None) -> JobRunner:
+    """Entry point `tests.helpers.players:make_runner`."""
+    return JobRunner()
 
 
 def slow_double(milliseconds: int) -> int:
-    """Twice as much, after so long."""
+    """Returns twice the number, after this time."""
     time.sleep(milliseconds / 1000)
     return 2 * milliseconds
 
 
 def die_the_first_time(marker: Path) -> str:
-    """Die, but leave the file `marker`, over which nobody dies again."""
+    """Kills the process and leaves the file `marker`; where the file exists, returns its name."""
     if not marker.exists():
         die(marker.touch())
     return marker.name
 
 
-def die(thing: object) -> None:
-    """The process ends at once, as if killed."""
+def die(item: object) -> None:
+    """Kills the process."""
     os.kill(os.getpid(), signal.SIGKILL)
 
 
@@ -72,12 +72,12 @@ class Quitter:
     """An `Agent` that stops at once."""
 
     def reset(self, goal: str, seed: int) -> None:
-        """Nothing to forget."""
+        """Does nothing: the agent has no state."""
 
     def act(self, observation: Observation) -> Action:
         return Action.STOP
 
 
-def make_quitter(**known: object) -> Quitter:
+def make_quitter(**options: object) -> Quitter:
     """Entry point `tests.helpers.players:make_quitter`."""
     return Quitter()

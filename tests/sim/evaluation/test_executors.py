@@ -1,4 +1,4 @@
-"""Where work is done changes no line: here, in processes, on a Ray cluster of which a machine dies."""
+"""The executor changes no line: this process, several processes, a Ray cluster of which a machine dies."""
 
 from __future__ import annotations
 
@@ -15,113 +15,113 @@ import pytest
 from sim.errors import WorkersError
 from sim.evaluation import executors
 from sim.evaluation.executors import Processes, make_executor
-from sim.evaluation.parallel import Share, ordered_map
+from sim.evaluation.parallel import Shard, ordered_map
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import TIMES
-from sim.evaluation.workers import MAX_FAILED_STARTS, PlayerSpec, WorkerLost, play_with
+from sim.evaluation.workers import MAX_FAILED_STARTS, RunnerSpec, WorkerLost, run_in_pool
 from sim.interface import ConfigError
-from tests.helpers.players import Errand, die, die_the_first_time, slow_double
+from tests.helpers.players import Job, die, die_the_first_time, slow_double
 from tests.helpers.worlds import room, with_box
 
-SPEC = PlayerSpec("tests.helpers.players:make_player", None)
+SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
 
 
-def errands(count: int) -> list[Errand]:
-    return [Errand(f"errand_{i}", f"house_{i % 3}") for i in range(count)]
+def jobs(count: int) -> list[Job]:
+    return [Job(f"job_{i}", f"house_{i % 3}") for i in range(count)]
 
 
 def never(item: object) -> Any:
     raise AssertionError(f"{item} was given up")
 
 
-def test_results_come_in_the_order_of_the_things_whoever_is_quicker() -> None:
-    things = [30, 1, 20, 2, 10, 3]
-    assert list(ordered_map(slow_double, things, workers=2)) == [60, 2, 40, 4, 20, 6]
+def test_results_have_the_order_of_the_items_whichever_ends_first() -> None:
+    items = [30, 1, 20, 2, 10, 3]
+    assert list(ordered_map(slow_double, items, workers=2)) == [60, 2, 40, 4, 20, 6]
 
 
-def test_a_killed_worker_costs_a_thing_of_an_ordered_map_one_more_try(tmp_path: Path) -> None:
-    things = [tmp_path / str(i) for i in range(4)]
-    assert list(ordered_map(die_the_first_time, things, workers=2)) == [thing.name for thing in things]
+def test_an_item_of_an_ordered_map_whose_worker_died_is_tried_once_more(tmp_path: Path) -> None:
+    items = [tmp_path / str(i) for i in range(4)]
+    assert list(ordered_map(die_the_first_time, items, workers=2)) == [item.name for item in items]
 
 
-def test_a_thing_that_kills_every_worker_ends_an_ordered_map_with_its_name(tmp_path: Path) -> None:
-    with pytest.raises(WorkersError, match="died twice over deadly"):
+def test_an_item_that_kills_every_worker_ends_an_ordered_map_with_its_name(tmp_path: Path) -> None:
+    with pytest.raises(WorkersError, match="died twice on deadly"):
         list(ordered_map(die, ["deadly", "deadly"], workers=2))
 
 
-class Stillborn:
-    """A crew of which nobody is ever ready."""
+class NeverReady:
+    """A pool whose workers die before they are ready."""
 
-    hired = 0
+    started = 0
 
-    def hire(self) -> Stillborn:
-        self.hired += 1
+    def start(self) -> NeverReady:
+        self.started += 1
         return self
 
-    def wait(self, workers: Sequence[Stillborn]) -> Sequence[Stillborn]:
+    def wait(self, workers: Sequence[NeverReady]) -> Sequence[NeverReady]:
         return workers[:1]
 
     def receive(self) -> None:
         raise WorkerLost("No such library")
 
     def send(self, item: object) -> None:
-        raise AssertionError("nobody was ready")
+        raise AssertionError("no worker was ready")
 
-    def dismiss(self, workers: Sequence[Stillborn]) -> None:
+    def stop(self, workers: Sequence[NeverReady]) -> None:
         pass
 
 
 def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
-    crew = Stillborn()
+    pool = NeverReady()
     with pytest.raises(WorkersError, match=r"3 workers died as they started \(No such library\)"):
-        list(play_with(crew, errands(10), size=1, on_death=never))
-    assert crew.hired == MAX_FAILED_STARTS
+        list(run_in_pool(pool, jobs(10), max_workers=1, on_death=never))
+    assert pool.started == MAX_FAILED_STARTS
 
 
-class NoRoom(executors.ProcessCrew):
-    """A crew like a cluster that has room for one: the others never say anything."""
+class OneProcessor(executors.ProcessPool):
+    """A pool like a cluster with one free processor: its other workers never get ready."""
 
     first: Any = None
 
-    def hire(self) -> Any:
-        hired = super().hire()
-        self.first = self.first or hired
-        return hired
+    def start(self) -> Any:
+        started = super().start()
+        self.first = self.first or started
+        return started
 
     def wait(self, workers: Sequence[Any]) -> Any:
-        assert self.first in workers, "it would wait for ever"
+        assert self.first in workers, "it would wait forever"
         return super().wait([self.first])
 
 
 def test_work_does_not_wait_for_workers_that_never_start() -> None:
-    lines = list(play_with(NoRoom(SPEC), errands(6), size=3, on_death=never))
+    lines = list(run_in_pool(OneProcessor(SPEC), jobs(6), max_workers=3, on_death=never))
     assert len({line["pid"] for line in lines}) == 1
     assert len(lines) == 6
 
 
-def test_shares_are_everything_once() -> None:
-    things = list(range(11))
-    shares = [Share.parse(f"{i}/4") for i in range(4)]
-    assert sorted(thing for share in shares for thing in share.of(things)) == things
-    for share in shares:
-        assert list(share.of(things)) == [thing for thing in things if share.takes(thing)]
+def test_shards_hold_every_item_once() -> None:
+    items = list(range(11))
+    shards = [Shard.parse(f"{i}/4") for i in range(4)]
+    assert sorted(item for shard in shards for item in shard.select(items)) == items
+    for shard in shards:
+        assert list(shard.select(items)) == [item for item in items if shard.contains(item)]
 
 
 @pytest.mark.parametrize("text", ["2/2", "1", "a/b", "-1/2", "0/0", "1/2/3"])
-def test_a_share_that_is_none_is_refused(text: str) -> None:
+def test_a_shard_that_does_not_exist_is_refused(text: str) -> None:
     with pytest.raises(ConfigError, match='--shard must be "i/n"'):
-        Share.parse(text)
+        Shard.parse(text)
 
 
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
         ({"name": "cloud"}, "Unknown --executor 'cloud'. There is: local, ray."),
-        ({"name": "local", "address": "head:6379"}, "--address 'head:6379' goes with --executor ray."),
+        ({"name": "local", "address": "head:6379"}, "--address 'head:6379' needs --executor ray."),
         ({"name": "local", "workers": 0}, "--workers must be at least 1, got 0."),
     ],
 )
-def test_options_that_do_not_go_together_are_refused(options: dict[str, Any], sentence: str) -> None:
+def test_options_that_contradict_each_other_are_refused(options: dict[str, Any], sentence: str) -> None:
     with pytest.raises(ConfigError) as told:
         make_executor(**{"workers": 1, **options})
     assert str(told.value) == sentence
@@ -134,7 +134,7 @@ def test_without_ray_one_sentence_says_what_to_install(monkeypatch: pytest.Monke
         make_executor("ray", workers=1)
 
 
-def test_where_no_cluster_is_one_sentence_says_how_to_start_one() -> None:
+def test_without_a_cluster_one_sentence_says_how_to_start_one() -> None:
     pytest.importorskip("ray")
     with pytest.raises(ConfigError, match="`ray start --head`"):
         make_executor("ray", workers=1, address="127.0.0.1:1")
@@ -191,11 +191,11 @@ def lines_of(out: Path) -> list[dict[str, Any]]:
 
 @pytest.mark.slow
 def test_a_worker_of_a_cluster_dies_as_a_process_does(cluster: Any, tmp_path: Path) -> None:
-    deadly = Errand("deadly", "house_0", kill=tmp_path / "died")
-    fatal = Errand("fatal", "house_0", kill=tmp_path / "fatal", always=True)
+    deadly = Job("deadly", "house_0", kill=tmp_path / "died")
+    fatal = Job("fatal", "house_0", kill=tmp_path / "fatal", always=True)
     executor = make_executor("ray", workers=2, address=cluster.address)
     given_up = lambda item: {"episode_id": item.episode_id, "dead": True}  # noqa: E731
-    lines = list(executor.run(SPEC, [*errands(4), deadly, fatal], on_death=given_up))
+    lines = list(executor.run(SPEC, [*jobs(4), deadly, fatal], on_death=given_up))
     assert (tmp_path / "died").exists()
     assert len(lines) == 6
     assert [line["episode_id"] for line in lines if line.get("dead")] == ["fatal"]
@@ -208,7 +208,7 @@ def test_machines_with_other_code_are_refused(cluster: Any, monkeypatch: pytest.
     executor = make_executor("ray", workers=2, address=cluster.address)
     monkeypatch.setattr(executors_ray, "code_hash", lambda: "0ther")
     with pytest.raises(WorkersError, match=r"A machine of the Ray cluster has code .*, this one 0ther"):
-        list(executor.run(SPEC, errands(2), on_death=never))
+        list(executor.run(SPEC, jobs(2), on_death=never))
 
 
 def test_processes_are_an_executor_of_their_own_number() -> None:

@@ -5,17 +5,23 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from sim.evaluation.results import RunDirectory, bootstrap_interval, summarise
+from sim.evaluation.results import RunDirectory, summarise
 from sim.interface import ConfigError
 
 CONFIG = {"agent": "stubborn", "episodes": 5, "workers": 1}
 
 
 def line(number: int, **metrics: object) -> dict:
-    base = {"episode_id": f"e{number}", "success": 1.0, "spl": 0.5, "soft_spl": 0.5, "distance_to_goal": 0.1}
+    base = {
+        "episode_id": f"e{number}",
+        "house": f"h{number % 2}",
+        "success": 1.0,
+        "spl": 0.5,
+        "soft_spl": 0.5,
+        "distance_to_goal": 0.1,
+    }
     return base | {"gt_explored": 1.0, "trapped": 0.0, "collisions": 3, "end_reason": "stop"} | metrics
 
 
@@ -35,7 +41,7 @@ def test_a_run_that_was_killed_while_writing_a_line_goes_on_without_that_line(tm
 
 def test_other_options_in_the_same_folder_are_refused_and_named(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG).close()
-    with pytest.raises(ConfigError, match=r'agent = "stubborn", this one has "oracle"'):
+    with pytest.raises(ConfigError, match=r'agent = "stubborn", this run has "oracle"'):
         RunDirectory(tmp_path, CONFIG | {"agent": "oracle"})
 
 
@@ -55,10 +61,10 @@ def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> N
     RunDirectory(tmp_path, CONFIG | {"record": True}).close()
 
 
-def test_every_code_that_played_in_a_folder_is_written_down(tmp_path: Path) -> None:
+def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
     for code, others in (("a1", []), ("a1", []), ("b2", ["a1"]), ("b2", ["a1"]), ("c3", ["a1", "b2"])):
         run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": code}})
-        assert run.played_by(code) == others
+        assert run.record_code(code) == others
         run.append(line(1))
         run.close()
     written = json.loads((tmp_path / "config.json").read_text())
@@ -66,17 +72,17 @@ def test_every_code_that_played_in_a_folder_is_written_down(tmp_path: Path) -> N
     assert written["versions"] == {"code": "a1"}
 
 
-def test_code_that_played_before_codes_were_listed_is_known_and_code_that_played_nothing_is_not(tmp_path: Path) -> None:
+def test_code_from_before_codes_were_listed_is_known_and_code_that_ran_nothing_is_not(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
-    assert run.played_by("b2") == []
+    assert run.record_code("b2") == []
     run.append(line(1))
     run.close()
     config = json.loads((tmp_path / "config.json").read_text())
     assert config.pop("codes") == ["b2"]
     (tmp_path / "config.json").write_text(json.dumps(config))
     again = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
-    assert again.played_by("b2") == ["a1"]  # what the folder was begun with, where nothing better is known
+    assert again.record_code("b2") == ["a1"]  # the code that began the folder, where no list is known
     again.close()
 
 
@@ -108,12 +114,25 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
 
-def test_the_interval_does_not_depend_on_the_order_of_episodes() -> None:
-    values = np.random.default_rng(0).random(40)
-    assert bootstrap_interval(values) == bootstrap_interval(values[::-1])
+def test_a_summary_says_over_what_its_intervals_resample() -> None:
+    two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
+    assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then episodes of each")
+    assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "episodes of the one house")
 
 
-def test_the_interval_of_a_fair_coin_is_near_the_normal_one() -> None:
-    low, high = bootstrap_interval(np.repeat([0.0, 1.0], 200))
-    assert low == pytest.approx(0.5 - 1.96 * 0.025, abs=0.006)
-    assert high == pytest.approx(0.5 + 1.96 * 0.025, abs=0.006)
+def test_the_intervals_of_a_summary_are_over_houses() -> None:
+    alike = [line(n, house=f"h{n // 10}", success=float(n // 10 % 2)) for n in range(80)]
+    low, high = summarise(alike)["success"]["ci95"]
+    assert (low, high) == (pytest.approx(0.125, abs=0.01), pytest.approx(0.875, abs=0.01))  # 8 fair coins, not 80
+
+
+def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) -> None:
+    nested = {"config": {"robot": {"radius_m": 0.18}, "camera": {}}}
+    RunDirectory(tmp_path, CONFIG | nested).close()
+    with pytest.raises(ConfigError, match=r"config\.robot\.radius_m = 0.18, this run has 0.2;"):
+        RunDirectory(tmp_path, CONFIG | {"config": {"robot": {"radius_m": 0.2}, "camera": {}}})
+
+
+def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG).close()
+    RunDirectory(tmp_path, CONFIG | {"explorer": None}).close()

@@ -1,4 +1,4 @@
-"""One episode, one line, whatever happens in it."""
+"""Each episode gives one line, even where the physics fail."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_the_episode_after_a_broken_one_is_as_if_nothing_had_been(env: ObjectNav
     assert {k: v for k, v in before.items() if k not in times} == {k: v for k, v in after.items() if k not in times}
 
 
-def test_an_agents_seed_hangs_on_run_and_episode_only() -> None:
+def test_an_agents_seed_depends_on_run_and_episode_only() -> None:
     seeds = {episode_seed(run, name) for run in (0, 1) for name in ("a", "b")}
     assert len(seeds) == 4
     assert episode_seed(1, "a") == episode_seed(1, "a")

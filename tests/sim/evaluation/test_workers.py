@@ -1,4 +1,4 @@
-"""Many items over processes: each gives one line, whatever dies."""
+"""Many items on several processes: each gives one line, even where workers die."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from sim.evaluation.executors import Processes
-from sim.evaluation.workers import MAX_TRIES, PlayerSpec
-from tests.helpers.players import Errand
+from sim.evaluation.workers import MAX_TRIES, RunnerSpec
+from tests.helpers.players import Job
 
-SPEC = PlayerSpec("tests.helpers.players:make_player", None)
+SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
 
 
-def errands(count: int, houses: int = 3) -> list[Errand]:
-    return [Errand(f"errand_{i}", f"house_{i % houses}") for i in range(count)]
+def jobs(count: int, houses: int = 3) -> list[Job]:
+    return [Job(f"job_{i}", f"house_{i % houses}") for i in range(count)]
 
 
 def never(item: object) -> dict:
@@ -24,30 +24,30 @@ def never(item: object) -> dict:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_each_item_gives_one_line(workers: int) -> None:
-    lines = list(Processes(workers).run(SPEC, errands(12), on_death=never))
-    assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in errands(12))
+    lines = list(Processes(workers).run(SPEC, jobs(12), on_death=never))
+    assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in jobs(12))
 
 
 def test_one_worker_is_this_process() -> None:
-    assert {line["pid"] for line in Processes(1).run(SPEC, errands(3), on_death=never)} == {os.getpid()}
+    assert {line["pid"] for line in Processes(1).run(SPEC, jobs(3), on_death=never)} == {os.getpid()}
 
 
 def test_houses_are_not_changed_more_often_than_needed() -> None:
     for workers in (1, 2):
-        lines = list(Processes(workers).run(SPEC, errands(12, houses=2), on_death=never))
+        lines = list(Processes(workers).run(SPEC, jobs(12, houses=2), on_death=never))
         changes = {line["pid"]: line["changes"] for line in sorted(lines, key=lambda line: line["changes"])}
         assert sum(changes.values()) <= 2 + (workers - 1)
 
 
 def test_a_killed_worker_costs_its_item_one_more_try(tmp_path: Path) -> None:
-    items = [*errands(6), Errand("deadly", "house_0", kill=tmp_path / "died")]
+    items = [*jobs(6), Job("deadly", "house_0", kill=tmp_path / "died")]
     lines = list(Processes(2).run(SPEC, items, on_death=never))
     assert (tmp_path / "died").exists()
     assert sorted(line["episode_id"] for line in lines) == sorted(item.episode_id for item in items)
 
 
 def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -> None:
-    items = [*errands(4), Errand("deadly", "house_0", kill=tmp_path / "died", always=True)]
+    items = [*jobs(4), Job("deadly", "house_0", kill=tmp_path / "died", always=True)]
     lines = list(Processes(2).run(SPEC, items, on_death=lambda item: {"episode_id": item.episode_id, "dead": True}))
     assert len(lines) == 5
     assert [line["episode_id"] for line in lines if line.get("dead")] == ["deadly"]
@@ -55,7 +55,7 @@ def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_an_exception_of_the_player_reaches_the_caller(workers: int) -> None:
-    items = [*errands(3), Errand("bad", "house_0", fail=True)]
-    with pytest.raises(ValueError, match="errand bad cannot be done"):
+def test_an_exception_of_the_runner_reaches_the_caller(workers: int) -> None:
+    items = [*jobs(3), Job("bad", "house_0", fail=True)]
+    with pytest.raises(ValueError, match="bad cannot be done"):
         list(Processes(workers).run(SPEC, items, on_death=never))

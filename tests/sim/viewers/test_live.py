@@ -1,4 +1,4 @@
-"""Looking on while an episode is played: MuJoCo's viewer, Rerun."""
+"""Viewers of a running episode: MuJoCo's viewer and Rerun."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sim.evaluation.rollout import TIMES, play_episode
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.viewers import live, rerun_log, selection
-from sim.viewers.viewer import WATCHED_IMAGES, Watcher
+from sim.viewers.viewer import VIEWER_IMAGES, Viewer
 from tests.helpers.worlds import room, with_box, with_movable
 
 SMALL = CameraModel(width_px=160, height_px=120)
@@ -43,13 +43,13 @@ def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
     furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     furnished = with_box(furnished, "ceiling_00", centre_m=(0, 0, 2.55), half_m=(3, 3, 0.05))
     file.write_text(with_movable(furnished, "stool_00", xy_m=(0.0, -2.0)).spec.to_xml())
-    env = ObjectNavEnv(house=file, sensors=("depth",), truth=WATCHED_IMAGES, camera=SMALL)
+    env = ObjectNavEnv(house=file, sensors=("depth",), truth=VIEWER_IMAGES, camera=SMALL)
     yield env
     env.close()
 
 
-def played(env: ObjectNavEnv, *watching: Watcher) -> dict[str, Any]:
-    line = play_episode(env, Script(), EPISODE, seed=0, watchers=watching)
+def played(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
+    line = play_episode(env, Script(), EPISODE, seed=0, viewers=viewers)
     return {key: value for key, value in line.items() if key not in TIMES}
 
 
@@ -122,7 +122,7 @@ def test_the_viewer_has_a_world_of_its_own_without_ceiling_and_with_the_robot(
     assert (window.model.geom_group[groups == live.ROBOT_GROUP] == 0).all()
     assert np.array_equal(env.scene.world.model.geom_group, groups)
     before = env.scene.world.data.qpos.copy()
-    window.data.qpos[:] = 7.0  # somebody pulls at things in the window
+    window.data.qpos[:] = 7.0  # the user moves an object in the window
     assert np.array_equal(env.scene.world.data.qpos, before)
 
 
@@ -164,7 +164,7 @@ def options(**given: Any) -> Any:
     [
         ({"view": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "workers": 2}, "--workers 1"),
-        ({"rerun": True, "rerun_save": True}, "one of them"),
+        ({"rerun": True, "rerun_save": True}, "only one of them"),
     ],
 )
 def test_what_does_not_go_together_is_told(given: dict[str, Any], told: str) -> None:

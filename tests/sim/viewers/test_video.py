@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
-from sim.evaluation.results import WATCHED
+from sim.evaluation.results import VIEWER_OPTIONS
 from sim.evaluation.rollout import play_episode
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError
 from sim.run import entry
 from sim.viewers import overlay
 from sim.viewers.topview import TopView
-from sim.viewers.video import END_FRAMES, FRAMES_PER_S, VideoWatcher, VideoWriter, video_file
-from sim.viewers.viewer import WATCHED_IMAGES, Moment
+from sim.viewers.video import END_FRAMES, FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
+from sim.viewers.viewer import VIEWER_IMAGES, Moment
 from stubborn.draw import BeliefPainter
 from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
@@ -54,7 +54,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def env(house: Path) -> Iterator[ObjectNavEnv]:
-    env = ObjectNavEnv(house=house, sensors=(), truth=WATCHED_IMAGES, camera=CameraModel(width_px=64, height_px=48))
+    env = ObjectNavEnv(house=house, sensors=(), truth=VIEWER_IMAGES, camera=CameraModel(width_px=64, height_px=48))
     yield env
     env.close()
 
@@ -92,13 +92,13 @@ def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp
     assert set((tmp_path / "videos").iterdir()) == filmed
     assert all(len(frames_of(file)) == 1 + END_FRAMES for file in filmed)
     assert first["episode_id"] not in {line["episode_id"] for line in left}
-    assert set(WATCHED) <= set(json.loads((tmp_path / "config.json").read_text()))
+    assert set(VIEWER_OPTIONS) <= set(json.loads((tmp_path / "config.json").read_text()))
 
 
 def test_a_video_is_vp9_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(
     env: ObjectNavEnv, tmp_path: Path
 ) -> None:
-    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, viewers=[VideoRecorder(tmp_path)])
     (file,) = (tmp_path / "videos").iterdir()
     assert file == video_file(tmp_path, EPISODE.episode_id)
     assert file.name == "sofa room%2F0.mp4"
@@ -114,7 +114,7 @@ def test_a_video_is_vp9_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(
 def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
     if browser.missing():
         pytest.skip(str(browser.missing()))
-    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    play_episode(env, Script([*AHEAD, Action.STOP]), EPISODE, seed=0, viewers=[VideoRecorder(tmp_path)])
     page = tmp_path / "page.html"
     page.write_text("<video muted src='videos/sofa room%252F0.mp4'></video>")
     window = browser.Browser(tmp_path / "profile")
@@ -147,16 +147,16 @@ def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path
         if step == 2:
             env.scene.world.data.qvel[:] = np.nan
 
-    line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, watchers=[VideoWatcher(tmp_path)])
+    line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, viewers=[VideoRecorder(tmp_path)])
     assert line["end_reason"] == "error"
     assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + END_FRAMES
 
 
 def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path: Path) -> None:
-    watcher = VideoWatcher(tmp_path)
+    recorder = VideoRecorder(tmp_path)
     with pytest.raises(IndexError):  # the script is over before the episode
-        play_episode(env, Script(AHEAD), EPISODE, seed=0, watchers=[watcher])
-    watcher.close()
+        play_episode(env, Script(AHEAD), EPISODE, seed=0, viewers=[recorder])
+    recorder.close()
     assert list((tmp_path / "videos").iterdir()) == []
 
 
@@ -166,7 +166,7 @@ def test_what_a_killed_process_left_behind_goes_when_its_episode_is_filmed_again
     (tmp_path / "videos").mkdir()
     left_over = tmp_path / "videos" / f".{video_file(tmp_path, EPISODE.episode_id).stem}.part-99999.mp4"
     left_over.touch()
-    play_episode(env, Script([Action.STOP]), EPISODE, seed=0, watchers=[VideoWatcher(tmp_path)])
+    play_episode(env, Script([Action.STOP]), EPISODE, seed=0, viewers=[VideoRecorder(tmp_path)])
     assert list((tmp_path / "videos").iterdir()) == [video_file(tmp_path, EPISODE.episode_id)]
 
 
