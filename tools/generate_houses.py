@@ -7,7 +7,7 @@ Any other ones:
     python tools/generate_houses.py --first-seed 0 --houses 5 --pool train --out /tmp/houses
 
 The houses of a split find their textures in the folder `textures` beside theirs; it is made if it is missing. The train
-houses themselves are kept in the cache of `sim.housegen.recipes`, from where episodes are made.
+houses themselves are kept in the cache of `sim.housegen.house_list`, from where episodes are made.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from sim.evaluation.parallel import ordered_map
 from sim.files import write_atomically
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.recipes import cache_dir, copy_textures, write_house_list
+from sim.housegen.house_list import cache_dir, copy_textures, write_house_list
 from sim.housegen.rooms import PlanKind
-from sim.housegen.shipped import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
+from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
 from sim.paths import assets_dir

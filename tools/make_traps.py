@@ -19,7 +19,7 @@ from sim.episodes.reachable_goals import survey
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
 from sim.housegen.mjcf import ASSETS_DIR, TEXTURE_DIR
-from sim.housegen.shipped import SPLIT_VERSION
+from sim.housegen.split_recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
 from sim.housegen.traps.trap import START_TURNS_RAD, Trap
 from sim.houses.load import load_house

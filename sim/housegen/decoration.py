@@ -10,7 +10,7 @@ from sim.housegen import materials
 from sim.housegen.floor_plan import FloorPlan
 from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.mjcf import Lamp
-from sim.housegen.structure import Finish
+from sim.housegen.structure import StructureLooks
 
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
@@ -19,7 +19,7 @@ PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper, one of them in a home."""
 
 
-def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish:
+def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
     """Paint and floors by room; rooms that flow into each other share theirs."""
     walls, floors = {}, {}
     paint = "heldout" if pool == "heldout" else "train"
@@ -37,9 +37,9 @@ def draw_finish(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> Finish
     trim = Look(TRIM[paint], specular=0.2)
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
     frame = trim if rng.random() < 0.6 else door
-    return Finish(
-        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door, frame,
-        materials.look("metal", rng, pool), Look(SKY[paint], specular=0.0, emission=0.75),
+    return StructureLooks(
+        walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door,
+        frame, materials.look("metal", rng, pool), Look(SKY[paint], specular=0.0, emission=0.75),
     )  # fmt: skip
 
 

@@ -116,7 +116,7 @@ class _Row:
         return low, min(max(usual, low), max(high, low)), max(high, low)
 
 
-def draw_floorplan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> FloorPlan:
+def draw_floor_plan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> FloorPlan:
     """A plan of this shape with about this area, with the private rooms `wanted` if they fit.
 
     Raises:

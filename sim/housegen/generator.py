@@ -13,15 +13,18 @@ import numpy as np
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
-from sim.housegen.decoration import draw_finish, draw_lamps
-from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floorplan
+from sim.housegen.decoration import draw_lamps, draw_structure_looks
+from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
 from sim.housegen.furnishing import furnish
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Pool
-from sim.housegen.mjcf import HouseBuilder, Lamp, Placed, RoomBox
+from sim.housegen.furniture_source import FurnitureSource
+from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
 from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
-from sim.housegen.placement import RoomSpace
+from sim.housegen.placement import RoomLayout
+from sim.housegen.placement.surfaces import supports_items
 from sim.housegen.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
-from sim.housegen.selection import Kit
 from sim.housegen.structure import build_structure
 from sim.houses.writing import house_text
 from sim.world.check import check_house
@@ -91,6 +94,7 @@ def generate(
     area_m2: float | None = None,
     clutter: float | None = None,
     movable: bool = False,
+    catalogue: Catalogue = CATALOGUE,
 ) -> mujoco.MjSpec:
     """The specification of a new home; the same seed and version, the same bytes of `to_xml()`.
 
@@ -102,22 +106,23 @@ def generate(
         area_m2: floor area, 50-400; drawn when None.
         clutter: 0 bare to 1 full of small things; drawn when None.
         movable: light furniture can be pushed.
+        catalogue: the styles of furniture that may be drawn.
 
     Raises:
         ConfigError: a value is outside what is allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
-    return generate_house(
-        seed, HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter, movable=movable)
-    ).spec
+    config = HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter, movable=movable)
+    return generate_house(seed, config, catalogue).spec
 
 
-def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHouse:
+def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Catalogue = CATALOGUE) -> GeneratedHouse:
     """A new home with its plan and the story of its tries.
 
     Args:
         seed: any whole number from 0 on.
         config: what is asked of it.
+        catalogue: the styles of furniture that may be drawn.
 
     Raises:
         ConfigError: the seed is negative.
@@ -130,7 +135,7 @@ def generate_house(seed: int, config: HouseConfig | None = None) -> GeneratedHou
     for attempt in range(MAX_TRIES):
         rng = np.random.default_rng([seed, _POOL_STREAM[config.pool], attempt])
         try:
-            draft = _draw_house(rng, config)
+            draft = _draw_house(rng, config, catalogue)
         except PlanError as error:
             rejects.append(str(error))
             continue
@@ -148,12 +153,12 @@ class _Draft:
 
     plan: FloorPlan
     ceiling_m: float
-    structure: list[Placed]
-    spaces: list[RoomSpace]
+    structure: list[PlacedItem]
+    layouts: list[RoomLayout]
     lamps: list[Lamp]
 
 
-def _draw_house(rng: np.random.Generator, config: HouseConfig) -> _Draft:
+def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
     """One draw of everything.
 
     Raises:
@@ -163,13 +168,13 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig) -> _Draft:
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
     ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
     plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
-    finish = draw_finish(rng, plan, config.pool)
+    finish = draw_structure_looks(rng, plan, config.pool)
     structure = build_structure(plan, openings, ceiling_m, finish)
-    kit = Kit(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms))
-    spaces = [RoomSpace(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
-    for space in spaces:
-        furnish(space, kit)
-    return _Draft(plan, ceiling_m, structure, spaces, draw_lamps(rng, plan, ceiling_m))
+    source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
+    layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
+    for layout in layouts:
+        furnish(layout, source)
+    return _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m))
 
 
 def _draw_plan(
@@ -182,11 +187,11 @@ def _draw_plan(
     """
     for _ in range(MAX_PLAN_TRIES - 1):
         try:
-            plan = draw_floorplan(rng, kind, area_m2, rooms)
+            plan = draw_floor_plan(rng, kind, area_m2, rooms)
             return plan, cut_openings(rng, plan)
         except PlanError:
             continue
-    plan = draw_floorplan(rng, kind, area_m2, rooms)
+    plan = draw_floor_plan(rng, kind, area_m2, rooms)
     return plan, cut_openings(rng, plan)
 
 
@@ -214,15 +219,17 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.Mj
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
-    builder.expect([*draft.structure, *(standing.placed for space in draft.spaces for standing in space.standing)])
+    builder.expect(
+        [*draft.structure, *(placement.placed for layout in draft.layouts for placement in layout.placements)]
+    )
     for placed in draft.structure:
         builder.add(placed)
-    for space in draft.spaces:
-        for standing in space.standing:
-            if config.movable and not space.carries(standing):
-                builder.add_loose(standing.placed)
+    for layout in draft.layouts:
+        for placement in layout.placements:
+            if config.movable and not supports_items(layout, placement):
+                builder.add_movable(placement.placed)
             else:
-                builder.add(standing.placed)
+                builder.add(placement.placed)
     for lamp in draft.lamps:
         builder.add_lamp(lamp)
     return builder.spec

@@ -75,14 +75,16 @@ def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
         return light
     rest = [geom for geom in item.geoms if not any(geom is other for other in small)]
     shown = _join([replace(geom, solid=False) for geom in small], item, bytes_per_geom)
-    whole = Assembly((*shown, *rest), tuple(touch_boxes([geom for geom in small if geom.solid], item)))
+    whole = Assembly((*shown, *rest), tuple(collision_boxes([geom for geom in small if geom.solid], item)))
     return min(light, whole, key=lambda a: len(a.drawn) + len(a.touched))
 
 
-def touched_at_most(item: Item) -> list[Geom]:
+def possible_collision_geoms(item: Item) -> list[Geom]:
     """Every shape that may be touched of an item, however it is assembled; children left out."""
     solid = [geom for geom in item.geoms if geom.solid]
-    return solid + touch_boxes(solid, item) + touch_boxes([geom for geom in _joinable(item) if geom.solid], item)
+    return (
+        solid + collision_boxes(solid, item) + collision_boxes([geom for geom in _joinable(item) if geom.solid], item)
+    )
 
 
 def _joinable(item: Item) -> list[Geom]:
@@ -210,7 +212,7 @@ def _mesh_of(parts: Sequence[tuple[Geom, Facets]], look: Look) -> Geom:
 # ---- touched -------------------------------------------------------------------------------------------------------
 
 
-def touch_boxes(solid: Sequence[Geom], item: Item) -> list[Geom]:
+def collision_boxes(solid: Sequence[Geom], item: Item) -> list[Geom]:
     """What is touched in place of some solid parts of an item: fewer shapes that the robot cannot tell from them."""
     if not solid:
         return []

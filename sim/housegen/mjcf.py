@@ -13,7 +13,7 @@ from sim.gl import mujoco
 from sim.housegen.furniture.item import Geom, Item, Look, MeshShape
 from sim.housegen.materials import texture_file, texture_mapping
 from sim.housegen.merging import BYTES_PER_GEOM, Assembly, assemble
-from sim.housegen.movables import ROLLING_M, Movable, loosen
+from sim.housegen.movables import ROLLING_M, Movable, split_movable
 from sim.housegen.rectangles import Rect
 from sim.paths import assets_dir
 
@@ -37,7 +37,7 @@ _SHAPES = {
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedItem:
     """An item at its place in the world: its origin, and the heading of its front."""
 
     item: Item
@@ -102,12 +102,12 @@ class HouseBuilder:
         """The specification built so far."""
         return self._spec
 
-    def expect(self, things: Sequence[Placed]) -> None:
+    def expect(self, things: Sequence[PlacedItem]) -> None:
         """Be told what will be added: what occurs often may have meshes of its own."""
         for placed in things:
             self._count(placed.item)
 
-    def add(self, placed: Placed) -> str:
+    def add(self, placed: PlacedItem) -> str:
         """Add an item and its children; returns the name that its body got."""
         at = (placed.x_m, placed.y_m, placed.z_m)
         return self._add_body(self._spec.worldbody, placed.item, at, placed.yaw_rad)
@@ -117,7 +117,7 @@ class HouseBuilder:
         for child in item.children:
             self._count(child.item)
 
-    def add_loose(self, placed: Placed) -> None:
+    def add_movable(self, placed: PlacedItem) -> None:
         """Add an item so that the robot can push it, or what of it is light and free."""
         rest, movables = self._loosen(placed.item)
         if rest is not None:
@@ -128,7 +128,7 @@ class HouseBuilder:
     def _loosen(self, item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         """What of it stays and what moves; worked out once for each design."""
         if id(item) not in self._loosened:
-            self._loosened[id(item)] = (item, loosen(item))
+            self._loosened[id(item)] = (item, split_movable(item))
             rest, movables = self._loosened[id(item)][1]
             for part in (rest, *(thing.item for thing in movables)):
                 if part is not None:
@@ -169,7 +169,7 @@ class HouseBuilder:
             light.exponent = 1.0
             light.attenuation = [1.0, 0.0, 0.06]
 
-    def _add_movable(self, thing: Movable, placed: Placed) -> None:
+    def _add_movable(self, thing: Movable, placed: PlacedItem) -> None:
         name = self._label(thing.item.category)
         c, s = math.cos(placed.yaw_rad), math.sin(placed.yaw_rad)
         x, y = placed.x_m + c * thing.at_m[0] - s * thing.at_m[1], placed.y_m + s * thing.at_m[0] + c * thing.at_m[1]

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from sim.housegen.furniture.item import Geom, Item, MeshShape
 from sim.housegen.furniture.workbench import bounds, euler_from_matrix, geom_bounds, matrix_from_euler
-from sim.housegen.merging import touch_boxes
+from sim.housegen.merging import collision_boxes
 from sim.housegen.triangles import facets
 
 MAX_PUSH_N = 20.0
@@ -66,7 +66,7 @@ class Movable:
     """Where its frame lies in that of the item it was part of; it is not turned against it."""
 
 
-def loosen(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
+def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
     """Take apart what of an item stays in place and what can be pushed.
 
     Returns:
@@ -91,7 +91,7 @@ def loosen(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
 
 def _movable(item: Item, mass_kg: float, friction: float, *, rolls: bool = False) -> Movable:
     solid = [geom for geom in item.geoms if geom.solid and not _is_foliage(item, geom)]
-    touched = [shape for geom in touch_boxes(solid, item) for shape in collision_shapes(geom)]
+    touched = [shape for geom in collision_boxes(solid, item) for shape in collision_shapes(geom)]
     centre, inertia = _mass_properties(item, mass_kg)
     look = replace(item, geoms=tuple(replace(geom, solid=False) for geom in item.geoms))
     return Movable(look, tuple(touched), round(mass_kg, 2), centre, inertia, friction, rolls)

@@ -15,7 +15,7 @@ import numpy as np
 
 from sim.housegen.floor_plan import FloorPlan
 from sim.housegen.furniture.item import Geom, Item, Look
-from sim.housegen.mjcf import Placed
+from sim.housegen.mjcf import PlacedItem
 from sim.housegen.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening, outer_spans
 from sim.housegen.rectangles import EPS_M, OPPOSITE, SIDES, Interval, Rect, Side, subtract
 from sim.housegen.triangles import mesh_shape
@@ -31,7 +31,7 @@ Box3 = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True)
-class Finish:
+class StructureLooks:
     """The looks of one home's structure."""
 
     walls: Mapping[str, Look]
@@ -48,7 +48,9 @@ class Finish:
     sky: Look
 
 
-def build_structure(plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: Finish) -> list[Placed]:
+def build_structure(
+    plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, finish: StructureLooks
+) -> list[PlacedItem]:
     """Everything that is part of the building; doors and windows of one size are one design."""
     placed = []
     rects = [room.rect for room in plan.rooms]
@@ -56,7 +58,7 @@ def build_structure(plan: FloorPlan, openings: Sequence[Opening], ceiling_m: flo
         here = [opening for opening in openings if i in (opening.a, opening.b)]
         items = [_floor(room.rect, finish.floors[room.name]), _ceiling(room.rect, ceiling_m, finish.ceiling)]
         items += _room_walls(rects, i, here, ceiling_m, finish.walls[room.name], finish.trim)
-        placed += [Placed(item) for item in items]
+        placed += [PlacedItem(item) for item in items]
     designs = _Designs(finish)
     for opening in openings:
         if opening.kind == "window":
@@ -201,17 +203,17 @@ def _boards_mesh(boards: Sequence[tuple[Side, Rect]], centre: tuple[float, float
     return Geom("mesh", (), (*centre, 0.0), look, solid=False, mesh=mesh)
 
 
-def _in_wall(item: Item, hole: Opening) -> Placed:
+def _in_wall(item: Item, hole: Opening) -> PlacedItem:
     """A design for a hole in a north wall, turned to the hole's own wall."""
     yaw = {"north": 0.0, "west": math.pi / 2, "south": math.pi, "east": -math.pi / 2}[hole.side]
     x, y = (hole.centre_m, hole.line_m) if hole.side in ("north", "south") else (hole.line_m, hole.centre_m)
-    return Placed(item, x, y, 0.0, yaw)
+    return PlacedItem(item, x, y, 0.0, yaw)
 
 
 class _Designs:
     """The home's windows and doors by size, each made once."""
 
-    def __init__(self, finish: Finish) -> None:
+    def __init__(self, finish: StructureLooks) -> None:
         self._finish = finish
         self._made: dict[tuple[object, ...], Item] = {}
 
@@ -240,7 +242,7 @@ def _width(hole: Opening) -> float:
     return round(hole.span[1] - hole.span[0], 3)
 
 
-def _window(width_m: float, z0: float, z1: float, finish: Finish) -> Item:
+def _window(width_m: float, z0: float, z1: float, finish: StructureLooks) -> Item:
     """Frame with a cross, a sill, and daylight behind it."""
     lo, hi = -0.5 * width_m, 0.5 * width_m
     bar, out = 0.05, OUTER_WALL_M - 0.02
@@ -255,7 +257,7 @@ def _window(width_m: float, z0: float, z1: float, finish: Finish) -> Item:
     return _item("window", "pane", [oriented_box(pane, finish.sky, "north"), *_seen_boxes(frame, finish.trim)])
 
 
-def _door(hole: Opening, designs: _Designs) -> list[Placed]:
+def _door(hole: Opening, designs: _Designs) -> list[PlacedItem]:
     """Frame and, where it has one, leaf: two items, both labelled door."""
     placed = [_in_wall(designs.frame(hole), hole)]
     lo, hi = hole.clear_span()
@@ -263,14 +265,14 @@ def _door(hole: Opening, designs: _Designs) -> list[Placed]:
         leaf = designs.leaf(round(hi - lo, 4), hole.top_m - JAMB_M, 0.0)
         level = hole.side in ("north", "south")
         x, y = (lo, hole.line_m) if level else (hole.line_m, lo)  # where the floor ends: nothing is seen below it
-        placed.append(Placed(leaf, x, y, 0.0, 0.0 if level else math.pi / 2))
+        placed.append(PlacedItem(leaf, x, y, 0.0, 0.0 if level else math.pi / 2))
     elif hole.leaf is not None:
         leaf = designs.leaf(round(hi - lo - 0.004, 4), hole.top_m - JAMB_M - 0.006, 0.01)
         placed.append(_ajar(leaf, hole))
     return placed
 
 
-def _frame(width_m: float, top: float, outside: bool, finish: Finish) -> Item:
+def _frame(width_m: float, top: float, outside: bool, finish: StructureLooks) -> Item:
     """Jambs that are touched, and the boards around them on each face of an inner wall."""
     lo, hi = -0.5 * width_m, 0.5 * width_m
     inner, outer = -HALF_WALL_M - 0.004, OUTER_WALL_M if outside else HALF_WALL_M + 0.004
@@ -287,7 +289,7 @@ def _frame(width_m: float, top: float, outside: bool, finish: Finish) -> Item:
     return _item("door", "frame", [*geoms, *_seen_boxes(boards, finish.door_frame)])
 
 
-def _leaf_geoms(width_m: float, high_m: float, finish: Finish, gap_m: float = 0.01) -> list[Geom]:
+def _leaf_geoms(width_m: float, high_m: float, finish: StructureLooks, gap_m: float = 0.01) -> list[Geom]:
     """A leaf in a frame of its own: hinge at the origin, leaf along +x, 4 cm thick, `gap_m` over the floor."""
     half = 0.02
     geoms = [oriented_box((0.0, width_m, -half, half, gap_m, high_m), finish.door, "north")]
@@ -300,7 +302,7 @@ def _leaf_geoms(width_m: float, high_m: float, finish: Finish, gap_m: float = 0.
     return [*geoms, *_seen_boxes(handle, finish.handle)]
 
 
-def _ajar(leaf: Item, hole: Opening) -> Placed:
+def _ajar(leaf: Item, hole: Opening) -> PlacedItem:
     """The leaf of an inner door, turned about its hinge into the room it opens to."""
     assert hole.leaf is not None
     lo, hi = hole.clear_span()
@@ -313,4 +315,4 @@ def _ajar(leaf: Item, hole: Opening) -> Placed:
     sign = 1.0 if side in ("east", "north") else -1.0
     at = hole.line_m - sign * (HALF_WALL_M + 0.004 + 0.02)
     x, y = (hinge, at) if side in ("north", "south") else (at, hinge)
-    return Placed(leaf, x, y, 0.0, closed + swing * hole.leaf.angle_rad)
+    return PlacedItem(leaf, x, y, 0.0, closed + swing * hole.leaf.angle_rad)

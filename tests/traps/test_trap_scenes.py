@@ -15,7 +15,7 @@ from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
 from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.houses.load import load_house
-from sim.houses.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, write_sidecar
+from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, write_sidecar
 from sim.interface import MPCAT40_ID
 from sim.paths import assets_dir
 from tests.helpers.sampling import sample
@@ -77,7 +77,7 @@ def test_a_sidecar_comes_back_as_it_was_written(tmp_path):
     )
     write_sidecar(tmp_path / "a.xml", sidecar)
     assert read_sidecar(tmp_path / "a.xml") == sidecar
-    assert read_sidecar(tmp_path / "b.xml") == NOTHING_FIXED
+    assert read_sidecar(tmp_path / "b.xml") == EMPTY_SIDECAR
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_label_rules_named_like_the_house_are_no_sidecar(tmp_path: Path):
     write_scene(house, TRAPS["glass_pane"]())
     (tmp_path / "glass_pane.json").write_text('{"sofa.*": "bed"}')
     split = one_house(house, labels=tmp_path / "glass_pane.json")
-    assert split.sidecar("glass_pane") == NOTHING_FIXED
+    assert split.sidecar("glass_pane") == EMPTY_SIDECAR
 
 
 def test_a_house_with_a_sidecar_starts_where_and_seeks_what_it_says():

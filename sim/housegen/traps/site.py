@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from sim.gl import mujoco
-from sim.housegen.furniture import make_item
+from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Geom, Item, Look
-from sim.housegen.mjcf import HouseBuilder, Lamp, Placed, RoomBox
+from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
 from sim.housegen.rectangles import Rect
 
 CEILING_M = 2.5
@@ -89,12 +89,12 @@ class TrapSite:
     def thing(self, category: str, geoms: list[Geom], x: float, y: float, yaw_rad: float = 0.0) -> mujoco.MjsBody:
         """A labelled thing of several geoms, in a frame of its own, at a place."""
         item = Item(category, "trap", (0.0, 0.0, 0.0), tuple(geoms))
-        return self.spec.body(self._builder.add(Placed(item, x, y, 0.0, yaw_rad)))
+        return self.spec.body(self._builder.add(PlacedItem(item, x, y, 0.0, yaw_rad)))
 
     def furniture(self, category: str, x: float, y: float, yaw_rad: float, **hints: Any) -> None:
         """A piece of the furniture that the houses have; its front looks along `yaw_rad`."""
-        item = make_item(category, self._rng, pool="heldout", **hints)
-        self._builder.add(Placed(item, x, y, item.mount_height_m, yaw_rad))
+        item = CATALOGUE.make_item(category, self._rng, pool="heldout", **hints)
+        self._builder.add(PlacedItem(item, x, y, item.mount_height_m, yaw_rad))
 
     def slick(self, x: Span, y: Span, friction: float) -> None:
         """A patch of floor, 1 mm thick, with a friction of its own."""

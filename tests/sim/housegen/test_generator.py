@@ -11,12 +11,14 @@ import pytest
 
 from sim.gl import mujoco
 from sim.housegen import generate
-from sim.housegen.furniture import make_item
+from sim.housegen.furniture import CATALOGUE
 from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house
-from sim.housegen.placement import RoomSpace
+from sim.housegen.placement import RoomLayout
+from sim.housegen.placement.floor import put_against_wall
+from sim.housegen.placement.on_walls import hang_on_wall
 from sim.housegen.rectangles import Rect
 from sim.housegen.rooms import PLAN_AREA_M2
-from sim.housegen.shipped import SPLITS
+from sim.housegen.split_recipes import SPLITS
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import validate_house
@@ -145,9 +147,10 @@ def test_things_stand_inside_their_rooms() -> None:
 
 def test_a_picture_high_over_a_bed_keeps_nothing_out_of_the_room() -> None:
     rng = np.random.default_rng(0)
-    space = RoomSpace(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
-    bed = make_item("bed", rng, pool="train", width_m=1.8)
-    picture = make_item("picture", rng, pool="train", width_m=0.3)
-    assert space.against_wall(rng, bed, sides=["west"], along="middle") is not None
-    assert space.on_wall(rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
-    assert space.against_wall(rng, make_item("cabinet", rng, pool="train", use="wardrobe"), sides=["east"]) is not None
+    layout = RoomLayout(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
+    bed = CATALOGUE.make_item("bed", rng, pool="train", width_m=1.8)
+    picture = CATALOGUE.make_item("picture", rng, pool="train", width_m=0.3)
+    assert put_against_wall(layout, rng, bed, sides=["west"], along="middle") is not None
+    assert hang_on_wall(layout, rng, picture, sides=["west"], at=2.5, bottom_m=1.7) is not None
+    wardrobe = CATALOGUE.make_item("cabinet", rng, pool="train", use="wardrobe")
+    assert put_against_wall(layout, rng, wardrobe, sides=["east"]) is not None

@@ -13,9 +13,9 @@ import pytest
 from sim.episodes.splits import Episode, Split, load_split, write_split
 from sim.errors import HouseError
 from sim.geometry.pose import Pose
-from sim.housegen import recipes
-from sim.housegen.recipes import CACHE_VARIABLE, cache_dir, house_bytes, versions_here, write_house_list
-from sim.housegen.shipped import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
+from sim.housegen import house_list
+from sim.housegen.house_list import CACHE_VARIABLE, cache_dir, house_bytes, versions_here, write_house_list
+from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
 from sim.interface import ConfigError
 from tests.helpers.worlds import room, with_box
 
@@ -38,7 +38,7 @@ class Maker:
 @pytest.fixture
 def maker(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Maker:
     maker = Maker()
-    monkeypatch.setattr(recipes, "house_bytes", maker)
+    monkeypatch.setattr(house_list, "house_bytes", maker)
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     return maker
 

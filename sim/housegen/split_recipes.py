@@ -1,7 +1,7 @@
 """The recipes of the shipped houses: which seed, pool, shape and size each one has; and the version of them all.
 
 Val and test houses draw from the held-out pool and are shipped as files; train houses draw from the train pool and are
-shipped as a list (`sim.housegen.recipes`). Seeds of the splits lie apart, so that no two houses share one.
+shipped as a list (`sim.housegen.house_list`). Seeds of the splits lie apart, so that no two houses share one.
 """
 
 from __future__ import annotations

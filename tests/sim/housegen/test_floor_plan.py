@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floorplan
+from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
 from sim.housegen.openings import JAMB_M, cut_openings, outer_spans
 from sim.housegen.rectangles import SIDES, Rect, shared_side, subtract
 from sim.housegen.rooms import MAX_ROOMS, PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind
@@ -21,7 +21,7 @@ def plan_of(kind: PlanKind, seed: int) -> tuple[FloorPlan, float]:
     area_m2 = float(rng.uniform(*PLAN_AREA_M2[kind]))
     for _ in range(60):
         try:
-            return draw_floorplan(rng, kind, area_m2), area_m2
+            return draw_floor_plan(rng, kind, area_m2), area_m2
         except PlanError:
             continue
     raise AssertionError(f"no plan for {kind} of {area_m2:.0f} m2")

@@ -20,7 +20,7 @@ from typing import Any
 
 from sim.errors import ConfigError, HouseError
 from sim.files import write_atomically
-from sim.housegen.shipped import Recipe
+from sim.housegen.split_recipes import Recipe
 from sim.paths import assets_dir
 
 LIST_FILE = "houses.json"

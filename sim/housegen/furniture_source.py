@@ -9,7 +9,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from sim.housegen import materials
-from sim.housegen.furniture import CATALOGUE, make_item, styles
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Item, Look, Pool
 
 T = TypeVar("T")
@@ -26,16 +27,24 @@ ONE_DESIGN = frozenset(("ceiling", "office", "bar", "nightstand", "desk", "media
 """Uses whose things are all alike in a home."""
 
 
-class Kit:
+class FurnitureSource:
     """Makes items for one home. What should look alike all over it (dining chairs, door handles) is made once."""
 
-    def __init__(self, rng: np.random.Generator, pool: Pool, clutter: float, home_rooms: frozenset[str]) -> None:
+    def __init__(
+        self,
+        rng: np.random.Generator,
+        pool: Pool,
+        clutter: float,
+        home_rooms: frozenset[str],
+        catalogue: Catalogue = CATALOGUE,
+    ) -> None:
         self.rng = rng
         self.pool: Pool = pool
         self.clutter = clutter
         """0 bare, 1 full of things."""
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
+        self._catalogue = catalogue
         self._designs: dict[str, list[Item]] = {}
         self._shown: dict[tuple[str, str | None], list[str]] = {}
         self._bags: dict[str, list[Item]] = {}
@@ -47,10 +56,10 @@ class Kit:
         The same hints give one of the home's few designs again; with `fresh` there may be one more of them. Returns
         None where the pool has nothing that fits.
         """
-        if category not in CATALOGUE:
+        if category not in self._catalogue.categories:
             return None
         for use in uses or (None,):
-            if styles(category, self.pool, use):
+            if self._catalogue.styles(category, self.pool, use):
                 return self._design(category, use, fresh, hints)
         return None
 
@@ -63,7 +72,8 @@ class Kit:
                 bag.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
             return bag.pop()
         style = self._style(category, use)
-        item = make_item(category, self.rng, pool=self.pool, style=style, **({"use": use} if use else {}), **hints)
+        asked = hints if use is None else {"use": use, **hints}
+        item = self._catalogue.make_item(category, self.rng, pool=self.pool, style=style, **asked)
         known.append(item)
         return item
 
@@ -72,7 +82,7 @@ class Kit:
         shown = self._shown.setdefault((category, use), [])
         if category in SETS and shown:
             return shown[0]
-        every = styles(category, self.pool, use)
+        every = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         chosen = self.pick([style for style in every if style not in shown] or every)
         if len(shown) == len(every):
             shown.clear()
