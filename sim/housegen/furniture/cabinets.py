@@ -188,7 +188,9 @@ def wall_unit(w: Workbench) -> None:
     look = w.look("lacquer") if w.chance(0.6) else w.look("wood")
     y = (-0.5 * width, 0.5 * width)
     w.box((0.0, depth), y, (0.0, height), look)
-    parts.plain_doors(w, depth, y, (0.0, height), max(1, round(width / 0.5)), look, w.look("metal"), "bar", high=True)
+    parts.plain_doors(
+        w, depth, y, (0.0, height), max(1, round(width / 0.5)), look, w.look("metal"), "bar", low_handles=True
+    )
 
 
 def wall_unit_glazed(w: Workbench) -> None:

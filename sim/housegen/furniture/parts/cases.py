@@ -56,12 +56,12 @@ def open_case(w: Workbench, x: Range, y: Range, z: Range, board: float, look: Lo
         w.box((x[0], x[0] + 0.012), (y[0] + board, y[1] - board), (z[0] + board, z[1] - board), look)
 
 
-def prism(outline: Sequence[tuple[float, float]], high: float) -> MeshShape:
+def prism(outline: Sequence[tuple[float, float]], height: float) -> MeshShape:
     """Returns an upright prism from z = 0; its star-shaped outline runs counter-clockwise seen from above."""
     n = len(outline)
     points = np.asarray(outline, dtype=np.float64)
     ring = np.vstack([points, points.mean(axis=0)])
-    vertices = np.vstack([np.column_stack([ring, np.full(n + 1, z)]) for z in (0.0, high)])
+    vertices = np.vstack([np.column_stack([ring, np.full(n + 1, z)]) for z in (0.0, height)])
     faces = []
     for i in range(n):
         j, up = (i + 1) % n, n + 1
@@ -69,20 +69,20 @@ def prism(outline: Sequence[tuple[float, float]], high: float) -> MeshShape:
     return named_mesh("prism", vertices, faces)
 
 
-def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, free: float) -> None:
-    """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `free` metres of room above it."""
+def shelf_objects(w: Workbench, x: Range, y: Range, z: float, count: int, room: float) -> None:
+    """Adds a row of up to `count` books, boxes, bowls and vases to a shelf with `room` metres of free height."""
     each = (y[1] - y[0]) / count
     for i in range(count):
-        at, room = y[0] + (i + 0.5) * each, min(0.8 * free, 0.24)
+        at, tallest = y[0] + (i + 0.5) * each, min(0.8 * room, 0.24)
         half = min(0.42 * each, 0.09)
         middle = 0.5 * (x[0] + x[1])
         kind = w.choice(("book", "pot", "ceramic", "cardboard", "none"))
         if kind in ("book", "cardboard"):
             deep = min(0.1, 0.35 * (x[1] - x[0]))
-            high = z + w.length(0.5, 0.95) * room
+            high = z + w.length(0.5, 0.95) * tallest
             w.box((middle - deep, middle + deep), (at - half, at + half), (z, high), w.new_look(kind), solid=False)
         elif kind != "none":
-            w.cylinder((middle, at), (z, z + w.length(0.3, 0.8) * room), 0.8 * half, w.new_look(kind), solid=False)
+            w.cylinder((middle, at), (z, z + w.length(0.3, 0.8) * tallest), 0.8 * half, w.new_look(kind), solid=False)
 
 
 def worktop(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: tuple[Range, Range] | None) -> None:

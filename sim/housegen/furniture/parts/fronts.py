@@ -38,16 +38,17 @@ def plain_doors(
     count: int,
     look: Look,
     metal: Look,
-    handle: PlainHandleKind = "bar",
+    handle: PlainHandleKind,
     *,
-    high: bool = False,
+    low_handles: bool = False,
 ) -> None:
-    """Adds `count` flat hinged doors side by side; handles are near the upper edge, or near the lower one if `high`."""
+    """Adds flat hinged doors side by side, with handles near the upper or lower edge, or half-way up tall doors."""
     each = (y[1] - y[0]) / count
     if count > 1:
         _plain_joints(w, x, y, z, look)
     tall = z[1] - z[0]
-    grip = z[1] - min(0.22, 0.35 * tall) if not high else z[0] + min(0.22, 0.35 * tall)
+    inset = min(0.22, 0.35 * tall)
+    grip = z[0] + inset if low_handles else z[1] - inset
     if tall > 1.2:
         grip = z[0] + 0.52 * tall
     for i in range(count):
@@ -189,10 +190,10 @@ def _styled_joints(w: Workbench, x: float, y: Range, z: Range, look: Look) -> No
     w.box((x, x + _SHADOW_M), y, z, darker(look), solid=False)
 
 
-def handle(w: Workbench, kind: HandleKind, at: Point, wide: float, look: Look, *, upright: bool = False) -> None:
-    """Adds a handle at a point of a front; bars, rails and slots are `wide` along y, or along z if `upright`."""
+def handle(w: Workbench, kind: HandleKind, at: Point, length: float, look: Look, *, upright: bool = False) -> None:
+    """Adds a handle at a point of a front; bars, rails and slots have this length along y, or along z if `upright`."""
     x, y, z = at
-    half = 0.5 * wide
+    half = 0.5 * length
     dy, dz = (0.007, half) if upright else (half, 0.007)
     if kind in ("bar", "rail"):
         w.box((x, x + 0.025), (y - dy, y + dy), (z - dz, z + dz), look, solid=False)

@@ -14,34 +14,34 @@ from sim.housegen.furniture.workbench import Range, Workbench
 FeetKind = Literal["taper", "splay", "bun", "block", "cabriole", "sled", "castor", "plinth"]
 
 
-def feet(w: Workbench, x: Range, y: Range, high: float, kind: FeetKind, look: Look, thick: float = 0.05) -> None:
-    """Adds the support of a case with the footprint x, y, from the floor up to `high`."""
+def feet(w: Workbench, x: Range, y: Range, height: float, kind: FeetKind, look: Look, thick: float = 0.05) -> None:
+    """Adds the support of a case with the footprint x, y, from the floor up to `height`."""
     inset = thick + 0.01
     xs, ys = (x[0] + inset, x[1] - inset), (y[0] + inset, y[1] - inset)
     if kind == "plinth":
-        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (0.0, high), look)
+        w.box((x[0] + 0.02, x[1] - 0.05), (y[0] + 0.02, y[1] - 0.02), (0.0, height), look)
     elif kind == "sled":
-        _sled(w, x, xs, ys, high, look)
+        _sled(w, x, xs, ys, height, look)
     else:
         for (px, sx), (py, sy) in itertools.product(zip(xs, BOTH_SIDES, strict=True), zip(ys, BOTH_SIDES, strict=True)):
-            _foot(w, (px, py), (sx, sy), high, kind, look, thick)
+            _foot(w, (px, py), (sx, sy), height, kind, look, thick)
 
 
 def _sled(
-    w: Workbench, x: Range, posts: tuple[float, float], runners: tuple[float, float], high: float, look: Look
+    w: Workbench, x: Range, posts: tuple[float, float], runners: tuple[float, float], height: float, look: Look
 ) -> None:
     """Adds two runners along x, each with two posts."""
     for edge in runners:
         w.box((x[0] + 0.03, x[1] - 0.03), (edge - 0.014, edge + 0.014), (0.0, 0.02), look)
         for post in posts:
-            w.box((post - 0.012, post + 0.012), (edge - 0.014, edge + 0.014), (0.02, high), look)
+            w.box((post - 0.012, post + 0.012), (edge - 0.014, edge + 0.014), (0.02, height), look)
 
 
 def _foot(
     w: Workbench,
     at: tuple[float, float],
     outwards: tuple[int, int],
-    high: float,
+    height: float,
     kind: FeetKind,
     look: Look,
     thick: float,
@@ -49,29 +49,29 @@ def _foot(
     """Adds one foot at a corner; `outwards` has the signs of the directions out of the case."""
     (px, py), (sx, sy) = at, outwards
     if kind == "bun":
-        w.ellipsoid((px, py, 0.5 * high), (0.8 * thick, 0.8 * thick, 0.5 * high), look)
+        w.ellipsoid((px, py, 0.5 * height), (0.8 * thick, 0.8 * thick, 0.5 * height), look)
     elif kind == "block":
-        w.box((px - 0.6 * thick, px + 0.6 * thick), (py - 0.6 * thick, py + 0.6 * thick), (0.0, high), look)
+        w.box((px - 0.6 * thick, px + 0.6 * thick), (py - 0.6 * thick, py + 0.6 * thick), (0.0, height), look)
     elif kind == "cabriole":
-        w.mesh(_cabriole_leg(high, thick, sx, sy), (px, py, 0.0), look)
+        w.mesh(_cabriole_leg(height, thick, sx, sy), (px, py, 0.0), look)
     elif kind == "castor":
-        w.rod((px, py - 0.012, 0.5 * high), (px, py + 0.012, 0.5 * high), 0.5 * high, w.look("rubber"))
-        w.box((px - 0.01, px + 0.01), (py - 0.02, py + 0.02), (0.6 * high, high), look)
+        w.rod((px, py - 0.012, 0.5 * height), (px, py + 0.012, 0.5 * height), 0.5 * height, w.look("rubber"))
+        w.box((px - 0.01, px + 0.01), (py - 0.02, py + 0.02), (0.6 * height, height), look)
     else:
-        lean = 0.3 * high if kind == "splay" else 0.0
-        leg = frustum((0.45 * thick, 0.45 * thick), (thick, thick), high, (-sx * lean * 0.5, -sy * lean * 0.5))
+        lean = 0.3 * height if kind == "splay" else 0.0
+        leg = frustum((0.45 * thick, 0.45 * thick), (thick, thick), height, (-sx * lean * 0.5, -sy * lean * 0.5))
         w.mesh(leg, (px + sx * 0.5 * lean * 0.5, py + sy * 0.5 * lean * 0.5, 0.0), look)
 
 
-def _cabriole_leg(high: float, thick: float, x: int, y: int) -> MeshShape:
+def _cabriole_leg(height: float, thick: float, x: int, y: int) -> MeshShape:
     """Returns a leg that bends outwards at its knee and ends in a pad; x and y are the outward signs."""
     out = 0.6 * thick
     rings = [
         Ring(0.0, 0.5 * thick, 0.5 * thick, x * out, y * out),
-        Ring(0.12 * high, 0.42 * thick, 0.42 * thick, x * 0.8 * out, y * 0.8 * out),
-        Ring(0.3 * high, 0.28 * thick, 0.28 * thick, 0.0, 0.0),
-        Ring(0.75 * high, 0.6 * thick, 0.6 * thick, x * 0.7 * out, y * 0.7 * out),
-        Ring(high, 0.62 * thick, 0.62 * thick, 0.0, 0.0),
+        Ring(0.12 * height, 0.42 * thick, 0.42 * thick, x * 0.8 * out, y * 0.8 * out),
+        Ring(0.3 * height, 0.28 * thick, 0.28 * thick, 0.0, 0.0),
+        Ring(0.75 * height, 0.6 * thick, 0.6 * thick, x * 0.7 * out, y * 0.7 * out),
+        Ring(height, 0.62 * thick, 0.62 * thick, 0.0, 0.0),
     ]
     return loft(rings, 8)
 

@@ -13,7 +13,7 @@ _CLOTH_M = 0.012
 
 
 def pad(
-    w: Workbench, size: Point, at: Point, look: Look, chamfer: float = 0.025, *, tilt: float = 0.0, turn: float = 0.0
+    w: Workbench, size: Point, at: Point, look: Look, chamfer: float, *, tilt: float = 0.0, turn: float = 0.0
 ) -> None:
     """Adds a padded block with chamfered edges and its middle at `at`."""
     rounded = (round(size[0], 3), round(size[1], 3), round(size[2], 3))
@@ -21,20 +21,20 @@ def pad(
 
 
 def towel_over_bar(
-    w: Workbench, x: float, y: float, z: float, wide: float, front: float, back: float, cloth: Look
+    w: Workbench, x: float, y: float, z: float, width: float, front: float, back: float, cloth: Look
 ) -> None:
     """Adds a towel that hangs over a bar at (x, z), smooth or in folds, by `front` and `back` metres on its sides."""
     if w.chance(0.5):
         r = w.length(0.015, 0.025)
         path = [(r, -front), (1.15 * r, -0.5 * front), (r, 0.0), (0.7 * r, 0.7 * r), (0.0, r), (-0.7 * r, 0.7 * r)]
-        w.mesh(strip([*path, (-r, 0.0), (-1.1 * r, -0.5 * back), (-r, -back)], 0.010, wide), (x, y, z), cloth)
+        w.mesh(strip([*path, (-r, 0.0), (-1.1 * r, -0.5 * back), (-r, -back)], 0.010, width), (x, y, z), cloth)
         return
-    folds, deep = w.whole(2, 6), w.length(0.02, 0.045)
-    w.mesh(drape(wide, front, deep, folds, gather=w.length(0.85, 1.1)), (x + 0.004, y, z + 0.012 - front), cloth)
-    w.mesh(drape(wide, back, 0.02, folds), (x - 0.024, y, z + 0.012 - back), cloth)
+    folds, fold_depth = w.whole(2, 6), w.length(0.02, 0.045)
+    w.mesh(drape(width, front, fold_depth, folds, gather=w.length(0.85, 1.1)), (x + 0.004, y, z + 0.012 - front), cloth)
+    w.mesh(drape(width, back, 0.02, folds), (x - 0.024, y, z + 0.012 - back), cloth)
 
 
-def crumpled_cloth(w: Workbench, deep: float, wide: float, rise: float) -> MeshShape:
+def crumpled_cloth(w: Workbench, depth: float, width: float, rise: float) -> MeshShape:
     """Returns a sheet of cloth that was dropped: a bumpy grid with irregular edges, highest near its middle.
 
     Its lowest points are at z = 0.
@@ -47,7 +47,7 @@ def crumpled_cloth(w: Workbench, deep: float, wide: float, rise: float) -> MeshS
         for j in range(n):
             u, v = 2 * (i + drift[0, i, j]) / (n - 1) - 1, 2 * (j + drift[1, i, j]) / (n - 1) - 1
             fall = max(0.0, 1.0 - 0.9 * (u * u + v * v) / 1.2)
-            points.append((0.5 * deep * u, 0.5 * wide * v, _CLOTH_M + rise * (0.35 + 0.65 * bumps[i, j]) * fall))
+            points.append((0.5 * depth * u, 0.5 * width * v, _CLOTH_M + rise * (0.35 + 0.65 * bumps[i, j]) * fall))
     low = [(x, y, z - _CLOTH_M) for x, y, z in points]
     return named_mesh("crumpled", [*points, *low], _sheet_faces(n))
 

@@ -13,13 +13,13 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def cage_cube(w: Workbench) -> None:
-    """Thick leather cushions held in a cage of steel tubes."""
+    """Builds an armchair of thick leather cushions in a cage of steel tubes."""
     width, depth, seat = w.width(0.70, 0.84), w.depth(0.68, 0.78), w.length(0.40, 0.45)
     parts.cage_seat(w, width, depth, seat, 1)
 
 
 def papasan(w: Workbench) -> None:
-    """A big round bowl of cane with a thick cushion in it, tilted on a ring base."""
+    """Builds a large round cane bowl with a thick cushion, tilted on a ring base."""
     r, seat, cane = w.length(0.46, 0.56), w.length(0.36, 0.44), w.look(w.choice(("wicker", "wood")))
     cloth, tilt = parts.upholstery_look(w, 0.05), w.length(0.28, 0.5)
     base = 0.6 * r
@@ -35,7 +35,7 @@ def papasan(w: Workbench) -> None:
 
 
 def recliner(w: Workbench) -> None:
-    """Bulky padded recliner: pillow arms, a back in puffed rolls, a footrest let down or out, a lever."""
+    """Builds a padded recliner with thick arms, a back of rolls, a footrest that is in or out, and a lever."""
     width, depth, seat = w.width(0.82, 1.0), w.depth(0.84, 0.96), w.length(0.44, 0.48)
     height, cover, arm = w.length(0.98, 1.10), parts.upholstery_look(w, 0.6), w.length(0.16, 0.22)
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
@@ -69,7 +69,7 @@ def recliner(w: Workbench) -> None:
 
 
 def slipper_chair(w: Workbench) -> None:
-    """Low chair without arms: one thick seat, a straight or buttoned back, short legs or a skirt to the floor."""
+    """Builds a low armchair without arms: one thick seat, a plain or buttoned back, short legs or a skirt."""
     width, depth, seat = w.width(0.54, 0.72), w.depth(0.64, 0.80), w.length(0.38, 0.44)
     height, cover = w.length(0.74, 0.92), parts.upholstery_look(w, 0.25)
     x0, x1, half, back = -0.5 * depth, 0.5 * depth, 0.5 * width, w.length(0.10, 0.18)
@@ -104,7 +104,7 @@ def slipper_chair(w: Workbench) -> None:
 
 
 def bent_lounge(w: Workbench) -> None:
-    """Springy laminated frame that runs from the floor up into the arms, one long cushion slung in it."""
+    """Builds a lounge chair of bent laminated wood that runs from the floor into the arms, with one long cushion."""
     width, seat, height = w.width(0.62, 0.72), w.length(0.36, 0.42), w.length(0.92, 1.04)
     wood, cloth, half = w.look("wood"), parts.upholstery_look(w, 0.3), 0.5 * width
     wide = w.length(0.04, 0.06)
@@ -141,7 +141,7 @@ def bent_lounge(w: Workbench) -> None:
 
 
 def director(w: Workbench) -> None:
-    """Canvas seat and back band between wooden side frames that cross like scissors below."""
+    """Builds a director's chair: a canvas seat and back between wooden side frames with crossed legs."""
     w.mass_kg = 5.0
     seat, half, wood = w.length(0.42, 0.48), 0.5 * w.length(0.54, 0.60), parts.wood_look(w, 0.3)
     canvas, height, arm = w.look(w.choice(("bright", "fabric", "leather"))), w.length(0.80, 0.90), w.length(0.62, 0.68)
@@ -160,7 +160,7 @@ def director(w: Workbench) -> None:
 
 
 def adirondack(w: Workbench) -> None:
-    """Porch chair of boards: fanned back slats, a sloping seat, broad flat arms."""
+    """Builds a porch chair of boards with fanned back slats, a sloping seat and broad flat arms."""
     width, wood, slats = w.width(0.68, 0.80), parts.wood_look(w, 0.6), w.whole(5, 7)
     half, high, height = 0.5 * width, w.length(0.34, 0.40), w.length(0.86, 1.02)
     arm = w.length(0.52, 0.58)

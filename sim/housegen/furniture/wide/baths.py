@@ -12,8 +12,8 @@ from sim.housegen.furniture.shapes import Ring, drape, hoop, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _douche(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None:
-    """Shower fittings on a back at x: bar with hand shower, arm with a rain head, pipe, or a column with jets."""
+def _shower_fittings(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None:
+    """Adds shower fittings to a back wall at x: a rail with hand shower, an arm, an exposed pipe or a column."""
     kind, z = w.choice(("bar", "arm", "exposed", "column")), floor + w.length(0.95, 1.1)
     if kind == "column":
         w.box(
@@ -48,7 +48,7 @@ def _douche(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None
 
 
 def tiled_niche(w: Workbench) -> None:
-    """Recess of three thick tiled walls, kerb in front, a glass door in it shut or ajar, or a curtain, or open."""
+    """Builds a tiled recess with a kerb; its glass door is shut or ajar, or it has a curtain or nothing."""
     width, depth, high = w.width(0.85, 1.30), w.depth(0.85, 1.10), w.length(2.05, 2.25)
     tile, metal, thick = w.look(w.choice(("masonry", "stone", "ceramic"))), parts.fitting_look(w), w.length(0.06, 0.11)
     x, y = parts.footprint(depth, width)
@@ -92,11 +92,11 @@ def tiled_niche(w: Workbench) -> None:
         )
     if w.chance(0.5):
         w.box((x[0] + 0.04, x[0] + 0.34), (inner[1] - 0.30, inner[1]), (0.03, 0.45), tile)
-    _douche(w, x[0] + 0.04, w.length(-0.15, 0.1) * width, 0.03, metal)
+    _shower_fittings(w, x[0] + 0.04, w.length(-0.15, 0.1) * width, 0.03, metal)
 
 
 def crittall(w: Workbench) -> None:
-    """Walk-in behind one or two screens of small panes in dark bars, tray or flat floor, tiled back panel."""
+    """Builds a walk-in shower behind one or two screens of small panes in dark bars."""
     width, depth, high = w.width(0.90, 1.50), w.depth(0.80, 1.00), w.length(1.90, 2.10)
     iron, metal = w.look(w.choice(("dark", "iron", "brass", "ceramic"))), parts.fitting_look(w)
     x, y = parts.footprint(depth, width)
@@ -124,11 +124,11 @@ def crittall(w: Workbench) -> None:
     else:
         w.rod((face, end - 0.02, high - 0.02), (x[0], end - 0.02, high - 0.02), 0.010, iron)
     w.box((x[0] - 0.015, x[0] + 0.012), (-0.14, 0.14), (tray - 0.01, 2.02), w.look("ceramic"), solid=False)
-    _douche(w, x[0] + 0.012, 0.0, tray, metal)
+    _shower_fittings(w, x[0] + 0.012, 0.0, tray, metal)
 
 
 def care_shower(w: Workbench) -> None:
-    """Level shower for the old: half-height doors or a curtain, a folding or free seat, grab bars on a white back."""
+    """Builds a level-access shower with half-height doors or a curtain, a seat and grab bars."""
     width, depth, metal = w.width(0.85, 1.20), w.depth(0.85, 1.10), w.look(w.choice(("chrome", "plastic", "steel")))
     x, y = parts.footprint(depth, width)
     white = w.look(w.choice(("ceramic", "ceramic", "stone")))
@@ -164,11 +164,11 @@ def care_shower(w: Workbench) -> None:
     w.rod((x[0] + 0.30, y[0] + 0.07, 0.7), (x[0] + 0.30, y[0] + 0.07, 1.35), 0.016, metal)
     for c in (0.72, 1.33):
         w.rod((x[0] + 0.30, y[0] + 0.02, c), (x[0] + 0.30, y[0] + 0.07, c), 0.014, metal)
-    _douche(w, x[0] + 0.02, -0.15, 0.025, metal)
+    _shower_fittings(w, x[0] + 0.02, -0.15, 0.025, metal)
 
 
 def timber_shower(w: Workbench) -> None:
-    """Slatted wooden deck and a boarded back with open pipes, screens of boards or slats beside it, sauna-like."""
+    """Builds a shower with a slatted wooden deck, a boarded back with exposed pipes and slatted screens."""
     width, depth, high = w.width(0.85, 1.20), w.depth(0.80, 1.00), w.length(2.02, 2.15)
     wood, metal = w.look("wood"), w.look(w.choice(("brass", "chrome", "iron")))
     x, y = parts.footprint(depth, width)
@@ -192,11 +192,11 @@ def timber_shower(w: Workbench) -> None:
             z = 0.25 + i * 0.24
             w.box((x[0] + 0.025, x[1]), (y[0], y[0] + 0.02), (z, z + w.choice((0.10, 0.16))), wood)
         w.box((x[1] - 0.05, x[1]), (y[0], y[0] + 0.05), (0.05, high), wood)
-    _douche(w, x[0] + 0.025, 0.0, 0.075, metal)
+    _shower_fittings(w, x[0] + 0.025, 0.0, 0.075, metal)
 
 
 def hoop_curtain(w: Workbench) -> None:
-    """Curtain on a round or oval hoop held by a standing pipe above a round or square tray with a raised rim."""
+    """Builds a round or square tray with a curtain on a hoop that an upright pipe carries."""
     half, high, metal = 0.5 * w.width(0.75, 1.00), w.length(1.95, 2.15), parts.fitting_look(w)
     power, rim = w.choice((2.0, 6.0)), w.length(0.06, 0.30)
     tray = [Ring(0.0, half, half, power=power), *parts.hollow_rings(rim, half, half, min(0.8 * rim, 0.2), 0.04, power)]
@@ -207,7 +207,7 @@ def hoop_curtain(w: Workbench) -> None:
     w.rod((x, 0.0, high - 0.05), (0.0, 0.0, high + 0.06), 0.009, metal, solid=False)
     w.rod((0.0, 0.0, high + 0.06), (r, 0.0, high - 0.05), 0.007, metal, solid=False)
     cloth, each = w.look(w.choice(("curtain", "sheer", "linen"))), 0.62 * r
-    drawn = w.choice(
+    angles = w.choice(
         (
             (1.2, 1.9, 2.6, -2.6, -1.9, -1.2),
             (0.0, 0.62, -0.62, 1.25, 1.9, -1.25, -1.9),
@@ -216,7 +216,7 @@ def hoop_curtain(w: Workbench) -> None:
         )
     )
     low = max(0.12, rim - 0.05)
-    for a in drawn:
+    for a in angles:
         at = ((r - 0.03) * math.cos(a), (r - 0.03) * math.sin(a), low)
         w.mesh(drape(each, high - 0.05 - low, 0.06, 3), at, cloth, turn=a, solid=False)
     w.rod((x, 0.0, high - 0.10), (x + 0.26, 0.0, high - 0.08), 0.010, metal, solid=False)
@@ -224,8 +224,8 @@ def hoop_curtain(w: Workbench) -> None:
     w.box((x - 0.02, x + 0.05), (-0.12, 0.12), (1.0, 1.05), metal, solid=False)
 
 
-def _oblong(w: Workbench, x: float, y: float, high: float, rim: float, power: float, look: Look) -> None:
-    """A tub with straight outer sides and a hollow of the given outline, drain in it; half sizes x, y."""
+def _straight_tub(w: Workbench, x: float, y: float, high: float, rim: float, power: float, look: Look) -> None:
+    """Adds a tub with straight outer sides and a rounded hollow with a drain; x and y are half sizes."""
     rings = [
         Ring(0.0, x, y, power=24), Ring(high, x, y, power=24), Ring(high, x - rim, y - rim, power=power),
         Ring(0.5 * high, 0.88 * (x - rim), 0.92 * (y - rim), power=power), Ring(0.14, 0.65 * x, 0.78 * y, power=power),
@@ -235,7 +235,7 @@ def _oblong(w: Workbench, x: float, y: float, high: float, rim: float, power: fl
 
 
 def platform_tub(w: Workbench) -> None:
-    """Tub sunk in a broad tiled or wooden deck with one or two steps before it and shelves round its rim."""
+    """Builds a tub in a broad tiled or wooden deck with one or two steps in front of it."""
     width, depth, high = w.width(1.70, 2.10), w.length(0.90, 1.20), w.length(0.45, 0.60)
     deck, white, metal = w.look(w.choice(("stone", "masonry", "wood"))), w.look("ceramic"), parts.fitting_look(w)
     x, y, power = 0.5 * depth, 0.5 * width, w.choice((2.3, 4.0, 8.0))
@@ -245,7 +245,7 @@ def platform_tub(w: Workbench) -> None:
     for side in BOTH_SIDES:
         a, b = sorted((side * by, side * y))
         w.box((-bx, bx), (a, b), (0.0, high), deck)
-    _oblong(w, bx, by, high + 0.012, 0.05, power, white)
+    _straight_tub(w, bx, by, high + 0.012, 0.05, power, white)
     wide = w.length(0.4, 1.0) * width
     steps = w.whole(1, 2)
     for i in range(steps):
@@ -259,11 +259,11 @@ def platform_tub(w: Workbench) -> None:
 
 
 def curtain_tub(w: Workbench) -> None:
-    """Apron tub with a tiled wall behind and at the tap end, a shower pipe and a curtain on a rod along it."""
+    """Builds a tub with tiles behind it and at the tap end, a shower pipe and a curtain along its front."""
     width, depth, high = w.width(1.40, 1.75), w.depth(0.70, 0.82), w.length(0.38, 0.56)
     tile, white, metal = w.look(w.choice(("ceramic", "stone", "masonry"))), w.look("ceramic"), parts.fitting_look(w)
     x, y, top = 0.5 * depth, 0.5 * width, w.length(1.85, 2.05)
-    _oblong(w, x, y, high, 0.06, w.choice((3.0, 5.0)), white)
+    _straight_tub(w, x, y, high, 0.06, w.choice((3.0, 5.0)), white)
     back = top + 0.12 if w.chance(0.6) else w.length(0.9, 1.3)
     w.box((-x - 0.02, -x + 0.002), (-y, y), (0.0, back), tile)
     w.box((-x - 0.02, x), (y, y + 0.03), (0.0, top + 0.12), tile)
@@ -285,7 +285,7 @@ def curtain_tub(w: Workbench) -> None:
 
 
 def ofuro(w: Workbench) -> None:
-    """Short deep soaking box of boards or stone, square or oblong, with a broad rim, a cover of slats or a stool."""
+    """Builds a short deep soaking tub of boards or stone with a broad rim, and sometimes a cover or a stool."""
     width, depth, high = w.width(0.85, 1.35), w.depth(0.75, 1.00), w.length(0.60, 0.80)
     look = w.look(w.choice(("wood", "wood", "stone")))
     x, y, thick = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), w.length(0.03, 0.06)
@@ -326,25 +326,27 @@ def ofuro(w: Workbench) -> None:
 
 
 def walk_in_tub(w: Workbench) -> None:
-    """High narrow tub with a door in its front, a moulded seat at one end, grab bar and hand shower."""
+    """Builds a high narrow tub with a door in its front, a seat at one end, a grab bar and a hand shower."""
     width, depth, high = w.width(1.20, 1.55), w.depth(0.68, 0.82), w.length(0.85, 1.02)
     white, metal = w.look("ceramic"), w.look("chrome")
     x, y, thick = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), 0.06
-    way = w.choice(BOTH_SIDES)
+    tap_side = w.choice(BOTH_SIDES)
     parts.basin(w, x, y, high, high, thick, white)
-    a, b = sorted((-way * (y[1] - thick), -way * (y[1] - 0.48)))
+    a, b = sorted((-tap_side * (y[1] - thick), -tap_side * (y[1] - 0.48)))
     w.box((x[0] + thick, x[1] - thick), (a, b), (thick, 0.45), white)
-    a, b = sorted((way * 0.03, way * (0.03 + w.length(0.42, 0.50))))
+    a, b = sorted((tap_side * 0.03, tap_side * (0.03 + w.length(0.42, 0.50))))
     door = w.look(w.choice(("ceramic", "glass", "plastic")))
     w.box((x[1] - 0.01, x[1] + 0.015), (a, b), (0.12, high - 0.03), parts.darker(white, 0.6), solid=False)
     w.box((x[1], x[1] + 0.022), (a + 0.012, b - 0.012), (0.132, high - 0.042), door)
-    w.box((x[1] + 0.02, x[1] + 0.045), (way * 0.09 - 0.015, way * 0.09 + 0.015), (0.5, 0.68), metal, solid=False)
+    w.box(
+        (x[1] + 0.02, x[1] + 0.045), (tap_side * 0.09 - 0.015, tap_side * 0.09 + 0.015), (0.5, 0.68), metal, solid=False
+    )
     w.rod((x[0] + 0.03, -0.2, high + 0.10), (x[0] + 0.03, 0.2, high + 0.10), 0.014, metal)
     for side in BOTH_SIDES:
         w.rod((x[0] + 0.03, side * 0.19, high), (x[0] + 0.03, side * 0.19, high + 0.10), 0.012, metal)
-    parts.any_tap(w, (x[0] + 0.03, way * (y[1] - 0.22), high), 0.14, 0.12, metal)
+    parts.any_tap(w, (x[0] + 0.03, tap_side * (y[1] - 0.22), high), 0.14, 0.12, metal)
     if w.chance(0.5):
-        at = (x[0] + 0.025, way * (y[1] - 0.05))
+        at = (x[0] + 0.025, tap_side * (y[1] - 0.05))
         w.cylinder(at, (high, high + 0.75), 0.010, metal)
         w.rod((*at, high + 0.6), (at[0] + 0.10, at[1], high + 0.68), 0.014, metal, solid=False)
     if w.chance(0.5):
@@ -359,11 +361,11 @@ def walk_in_tub(w: Workbench) -> None:
 
 
 def screened_tub(w: Workbench) -> None:
-    """Tub closed along its front by framed sliding panes up to head height, tiled or ribbed apron, back panel."""
+    """Builds a tub behind framed sliding panes up to head height, with an apron and a back panel."""
     width, depth, high = w.width(1.45, 1.80), w.depth(0.70, 0.82), w.length(0.42, 0.58)
     white, metal = w.look("ceramic"), w.look(w.choice(("chrome", "dark", "brass")))
     x, y, top = 0.5 * depth, 0.5 * width, w.length(1.75, 2.0)
-    _oblong(w, x, y, high, 0.06, w.choice((3.0, 5.0)), white)
+    _straight_tub(w, x, y, high, 0.06, w.choice((3.0, 5.0)), white)
     apron = w.choice(("masonry", "wood", "stone", "none"))
     if apron != "none":
         w.box((x - 0.005, x + 0.012), (-y, y), (0.0, high - 0.03), w.look(apron))

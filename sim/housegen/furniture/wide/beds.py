@@ -16,7 +16,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def _mattress_size(w: Workbench, widest: float = 1.80) -> tuple[float, float]:
-    """(length, width); hint `width_m` asks for the next mattress width below."""
+    """Returns (length, width) of a mattress; hint `width_m` selects the largest width that is not above it."""
     hinted = w.hints.get("width_m")
     widths = [v for v in (0.80, 0.90, 1.00, 1.20, 1.40, 1.60, 1.80) if v <= widest + 1e-6]
     if hinted is not None:
@@ -26,8 +26,8 @@ def _mattress_size(w: Workbench, widest: float = 1.80) -> tuple[float, float]:
     return w.choice((1.90, 1.95, 2.00, 2.05, 2.10)), width
 
 
-def _rumpled(w: Workbench, length: float, width: float, thick: float, hang: float) -> MeshShape:
-    """A quilt as somebody left it: from a skewed head edge to x = `length`, lumpy, hanging at the sides."""
+def _unmade_quilt(w: Workbench, length: float, width: float, thick: float, hang: float) -> MeshShape:
+    """Returns the mesh of an unmade quilt, from a skewed head edge to x = `length`, hanging down at its sides."""
     n, m = 7, 7
     xs, ys = np.linspace(0.0, 1.0, n), np.linspace(-0.5, 0.5, m)
     skew, bumps = w.rng.uniform(-0.35, 0.35), w.rng.uniform(0.4, 1.6, (n, m))
@@ -54,7 +54,7 @@ def _rumpled(w: Workbench, length: float, width: float, thick: float, hang: floa
 
 
 def _pillows(w: Workbench, x: float, width: float, top: float) -> None:
-    """None, one, two or a heap of pillows, lying or leaning on the headboard."""
+    """Adds one or two layers of pillows, lying or leaning on the headboard, and sometimes a small cushion."""
     places = 2 if width > 1.1 else 1
     each = min(w.length(0.5, 0.8), width / places - 0.04)
     standing = w.chance(0.35)
@@ -71,8 +71,8 @@ def _pillows(w: Workbench, x: float, width: float, top: float) -> None:
         w.mesh(pillow((0.40, 0.42, 0.14), 4.0), (x + 0.55, 0.0, top + 0.15), w.new_look("fabric"), tilt=0.9)
 
 
-def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, thick: float, hang: float = 0.2) -> None:
-    """Mattress from x0 towards the foot and bedding that is tucked in, thrown back, folded, or hangs to the sides."""
+def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, thick: float, hang: float) -> None:
+    """Adds a mattress from x0 towards the foot with tucked, crumpled, folded or spread bedding, and pillows."""
     linen, duvet, x1 = w.look("linen"), w.look("bedding"), x0 + length
     w.mesh(
         chamfered_box((length, width, thick), min(0.05, 0.3 * thick)), (0.5 * (x0 + x1), 0.0, top - 0.5 * thick), linen
@@ -91,7 +91,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
         )
     elif kind == "rumpled":
         cover = w.length(0.5, 0.8) * length
-        shape = _rumpled(w, cover, width + 0.06, w.length(0.05, 0.11), min(hang, thick + 0.05))
+        shape = _unmade_quilt(w, cover, width + 0.06, w.length(0.05, 0.11), min(hang, thick + 0.05))
         w.mesh(shape, (x1 - cover + 0.02, 0.0, top), duvet)
     elif kind == "folded":
         cover = w.length(0.35, 0.6)
@@ -114,7 +114,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
 
 
 def bunk(w: Workbench) -> None:
-    """Two beds, one above the other, between four posts: guard rails and a ladder; of wood or steel tube."""
+    """Builds two beds above each other between four posts, with guard rails and a ladder, of wood or steel tube."""
     length, width = _mattress_size(w, 1.20)
     tube = w.chance(0.35)
     look = w.look("iron") if tube else parts.wood_look(w)
@@ -130,7 +130,7 @@ def bunk(w: Workbench) -> None:
     for z in (low, upper):
         for side in BOTH_SIDES:
             w.box(x, parts.centred(side * half, 0.025), (z - 0.12 if not tube else z - 0.05, z), look)
-        w.box(x, (-half, half), (z - thick - 0.0, z - thick + 0.03), look)
+        w.box(x, (-half, half), (z - thick, z - thick + 0.03), look)
     side = w.choice(BOTH_SIDES)
     gap = w.length(0.4, 0.5)
     w.box(x, parts.centred(-side * half, 0.02), (high - 0.11, high - 0.03), look)
@@ -149,13 +149,13 @@ def bunk(w: Workbench) -> None:
         )
         w.mesh(pillow((0.38, min(0.65, width - 0.1), 0.13), 4.0), (0.24, 0.0, z + 0.07), w.look("linen"))
         cover = w.length(0.55, 0.8) * length
-        shape = _rumpled(w, cover, width - 0.02, w.length(0.04, 0.09), 0.03)
+        shape = _unmade_quilt(w, cover, width - 0.02, w.length(0.04, 0.09), 0.03)
         w.mesh(shape, (length - cover - 0.01, 0.0, z + 0.035), w.new_look("bedding"))
     w.top((0.6, length - 0.3), (-0.3 * width, 0.3 * width), low + 0.08, "seat")
 
 
 def hospital(w: Workbench) -> None:
-    """Care bed on castors: a jointed mattress with its back raised, boards at head and foot, fold-down side rails."""
+    """Builds a care bed on castors with a jointed mattress, end boards and often side rails."""
     length, width = 2.0, min(0.90, _mattress_size(w, 1.0)[1])
     frame, board = w.look("metal"), w.look("plastic") if w.chance(0.5) else w.look("wood")
     top, thick, raised = w.length(0.48, 0.68), w.length(0.12, 0.16), w.choice((0.0, 0.25, 0.5, 0.8))
@@ -172,7 +172,7 @@ def hospital(w: Workbench) -> None:
     hinge, linen = 0.75, w.look("linen")
     back = (0.5 * thick, 0.5 * hinge)
     at = (
-        hinge - back[1] * math.cos(raised) - back[0] * math.sin(raised) * 0.0,
+        hinge - back[1] * math.cos(raised),
         0.0,
         base + back[0] + back[1] * math.sin(raised),
     )
@@ -195,7 +195,7 @@ def hospital(w: Workbench) -> None:
     w.mesh(pillow((0.40, 0.6, 0.13), 4.0), end, linen, tilt=raised)
     cover = w.length(0.9, 1.15)
     w.mesh(
-        _rumpled(w, cover, width + 0.04, w.length(0.03, 0.07), thick),
+        _unmade_quilt(w, cover, width + 0.04, w.length(0.03, 0.07), thick),
         (length - cover + 0.01, 0.0, top),
         w.look("bedding"),
     )
@@ -212,7 +212,7 @@ def hospital(w: Workbench) -> None:
 
 
 def pallet(w: Workbench) -> None:
-    """A mattress on one or two layers of pallets: blocks, dark gaps, boards that look out on all sides."""
+    """Builds a mattress on one or two layers of pallets."""
     length, width = _mattress_size(w)
     wood, dark, thick = w.look("wood"), w.look("dark"), w.length(0.14, 0.26)
     out = w.choice((0.0, 0.05, 0.25))
@@ -238,7 +238,7 @@ def pallet(w: Workbench) -> None:
 
 
 def box_spring(w: Workbench) -> None:
-    """Stacked divan: upholstered boxes, mattress, topper; a plain, channelled or winged headboard, or none."""
+    """Builds upholstered boxes with a mattress and a topper, and a plain, channelled, winged or no headboard."""
     length, width = _mattress_size(w)
     cloth, half, foot = w.look("fabric"), 0.5 * width + 0.01, w.length(0.05, 0.14)
     box, thick = w.length(0.20, 0.34), w.length(0.18, 0.28)
@@ -260,9 +260,7 @@ def box_spring(w: Workbench) -> None:
         each = 2 * (half + over) / count
         for i in range(count):
             size = (0.09, each - 0.003, head - 0.02)
-            w.mesh(
-                chamfered_box(size, 0.025), (-0.045, (i + 0.5) * each - half - over, 0.5 * head + 0.01 - 0.01), cloth
-            )
+            w.mesh(chamfered_box(size, 0.025), (-0.045, (i + 0.5) * each - half - over, 0.5 * head), cloth)
     elif kind != "none":
         size = (0.11, 2 * (half + over * (kind == "plain")), head)
         w.mesh(chamfered_box(size, 0.02), (-0.055, 0.0, 0.5 * head), cloth)
@@ -275,7 +273,7 @@ def box_spring(w: Workbench) -> None:
 
 
 def arched(w: Workbench) -> None:
-    """Light frame on round legs; its headboard a half disc, an arch of cane, or a fan of rods within an arch."""
+    """Builds a light bed frame with round legs and an arched headboard, solid, of cane or of rods."""
     length, width = _mattress_size(w)
     look = w.look(w.choice(("wood", "wicker", "lacquer")))
     thick, low = w.length(0.16, 0.24), w.length(0.20, 0.34)

@@ -6,16 +6,15 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.chairs import DINING_KG
+from sim.housegen.furniture.office_chairs import OFFICE_KG
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, arc_wall, frustum, loft, pillow, strip
 from sim.housegen.furniture.workbench import Workbench
 
-DINING_KG = 5.0
-OFFICE_KG = 12.0
-
 
 def wishbone(w: Workbench) -> None:
-    """A bent rail runs round into short arms on a forked splat; corded or padded seat, round legs."""
+    """Builds a chair with a bent rail that forms short arms on a forked back, and a cord or padded seat."""
     w.mass_kg = DINING_KG
     seat, half, rail = w.length(0.43, 0.46), 0.5 * w.length(0.48, 0.58), w.length(0.68, 0.80)
     back, front, r = -0.5 * w.length(0.40, 0.46), 0.21, 0.0165
@@ -52,7 +51,7 @@ def wishbone(w: Workbench) -> None:
 
 
 def monobloc(w: Workbench) -> None:
-    """Cheap plastic chair in one piece: flared angled legs, slotted round-topped back, arms or none."""
+    """Builds a one-piece plastic chair with flared legs and a slotted or plain back, with or without arms."""
     w.mass_kg = 3.0
     plastic, seat, half = w.look("plastic"), w.length(0.40, 0.45), 0.5 * w.length(0.42, 0.50)
     height, back, front = w.length(0.76, 0.90), -0.21, 0.22
@@ -90,7 +89,7 @@ def monobloc(w: Workbench) -> None:
 
 
 def folding_chair(w: Workbench) -> None:
-    """Legs crossed like scissors at each side; a thin seat and a panel or slats at the top of the long legs."""
+    """Builds a chair with crossed legs at each side, a thin seat and a panel or slats at the back."""
     w.mass_kg = 4.0
     seat, half, height = w.length(0.43, 0.46), 0.5 * w.length(0.40, 0.46), w.length(0.76, 0.86)
     wooden = w.chance(0.4)
@@ -130,7 +129,7 @@ def folding_chair(w: Workbench) -> None:
 
 
 def medallion(w: Workbench) -> None:
-    """Classical chair: a framed oval or round upholstered back on two posts, padded seat, tapering legs."""
+    """Builds a classical chair with an oval upholstered back on two posts and tapered legs."""
     w.mass_kg = 7.0
     seat, half, wood = w.length(0.45, 0.49), 0.5 * w.length(0.46, 0.54), parts.wood_look(w, 0.55)
     cloth = w.look("fabric") if w.chance(0.6) else w.look("linen")
@@ -167,7 +166,7 @@ def medallion(w: Workbench) -> None:
 
 
 def pedestal(w: Workbench) -> None:
-    """One moulded shell on a stem that spreads into a round foot, a loose seat pad."""
+    """Builds a moulded shell on a stem with a round foot and a loose seat pad."""
     w.mass_kg = 8.0
     seat, half, height = w.length(0.43, 0.47), 0.5 * w.length(0.46, 0.54), w.length(0.76, 0.86)
     body, foot = w.look(w.choice(("plastic", "ceramic"))), w.length(0.22, 0.27)
@@ -185,7 +184,7 @@ def pedestal(w: Workbench) -> None:
 
 
 def wire_chair(w: Workbench) -> None:
-    """A shell of crossed wires on bent-wire runners or legs, maybe a thin pad."""
+    """Builds a shell of crossed wires on runners or legs, with or without a thin pad."""
     w.mass_kg = 5.0
     seat, half, height = w.length(0.42, 0.45), 0.5 * w.length(0.46, 0.54), w.length(0.74, 0.86)
     wire, r = parts.tube_look(w), 0.005
@@ -217,7 +216,7 @@ def wire_chair(w: Workbench) -> None:
 
 
 def school_chair(w: Workbench) -> None:
-    """Stacking chair: bent tubes carry a board for the seat and a curved board for the back."""
+    """Builds a stacking chair of bent tubes with a seat board and a curved back board."""
     w.mass_kg = DINING_KG
     seat, half, height = w.length(0.42, 0.47), 0.5 * w.length(0.38, 0.46), w.length(0.74, 0.86)
     tube, r = parts.tube_look(w), w.choice((0.009, 0.012))
@@ -252,7 +251,7 @@ def school_chair(w: Workbench) -> None:
 
 
 def plank_chair(w: Workbench) -> None:
-    """Boards only: two solid sides or a cross of planks under the seat, a plain or pierced back board."""
+    """Builds a chair of boards with solid sides and a plain or split back."""
     w.mass_kg = 6.0
     seat, half, height = w.length(0.42, 0.46), 0.5 * w.length(0.38, 0.46), w.length(0.74, 0.98)
     wood, t = parts.wood_look(w, 0.4), w.choice((0.018, 0.025, 0.032))
@@ -276,7 +275,7 @@ def plank_chair(w: Workbench) -> None:
 
 
 def mesh_back(w: Workbench) -> None:
-    """Office chair with a thin net stretched in a frame, a lumbar bar, often a headrest and T arms."""
+    """Builds an office chair with a net in a frame, a lumbar bar, and often a headrest and arms."""
     w.mass_kg = OFFICE_KG
     seat, half, height = w.length(0.44, 0.50), 0.5 * w.length(0.46, 0.52), w.length(0.92, 1.06)
     frame = w.look(w.choice(("dark", "dark", "plastic", "chrome")))
@@ -312,7 +311,7 @@ def mesh_back(w: Workbench) -> None:
 
 
 def gaming_chair(w: Workbench) -> None:
-    """Racing seat on castors: raised sides, shoulder wings, stripes, a head pillow and a lumbar pillow."""
+    """Builds a racing seat on castors with raised sides, shoulder wings, stripes and pillows."""
     w.mass_kg = 18.0
     seat, half, height = w.length(0.46, 0.52), 0.5 * w.length(0.50, 0.56), w.length(1.20, 1.32)
     hide, stripe, dark = w.look("leather"), w.look("bright"), w.look("dark")
@@ -323,6 +322,7 @@ def gaming_chair(w: Workbench) -> None:
     lean = -w.length(0.10, 0.22)
 
     def behind(z: float) -> float:
+        """Returns the x of the middle of the back at the height z."""
         return -0.22 + (z - seat) * math.tan(lean)
 
     parts.pad(
@@ -357,7 +357,7 @@ def gaming_chair(w: Workbench) -> None:
 
 
 def swivel_shell(w: Workbench) -> None:
-    """Home-office chair: a round-backed moulded or padded shell on a low star, on castors or glides."""
+    """Builds a home-office chair with a round shell on a low star base, on castors or glides."""
     w.mass_kg = 9.0
     seat, half, height = w.length(0.43, 0.50), 0.5 * w.length(0.48, 0.58), w.length(0.72, 0.86)
     shell = w.look("plastic") if w.chance(0.5) else parts.upholstery_look(w)

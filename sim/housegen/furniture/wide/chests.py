@@ -12,8 +12,8 @@ from sim.housegen.furniture.shapes import chamfered_box, frustum
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _swell(depth: float, width: float, bulge: float, waves: bool) -> list[tuple[float, float]]:
-    """The plan of a case whose front bows out, or swings in and out."""
+def _curved_footprint(depth: float, width: float, bulge: float, waves: bool) -> list[tuple[float, float]]:
+    """Returns the footprint of a case whose front bows out, or waves in and out if `waves`."""
     outline = [(-0.5 * depth, 0.5 * width), (-0.5 * depth, -0.5 * width)]
     for i in range(13):
         s = i / 6 - 1
@@ -23,26 +23,28 @@ def _swell(depth: float, width: float, bulge: float, waves: bool) -> list[tuple[
 
 
 def curved_commode(w: Workbench) -> None:
-    """Commode whose front bows or swings, on curved or bun feet, its top overhanging."""
+    """Builds a commode with a bowed or waved front and an overhanging top."""
     width, depth, height = w.width(0.75, 1.30), w.depth(0.44, 0.56), w.length(0.76, 0.95)
     look, metal = parts.wood_look(w), w.look(w.choice(("brass", "iron", "metal")))
     waves, bulge, rows = w.chance(0.4), w.length(0.06, 0.13), w.whole(2, 4)
     kind: FeetKind = w.choice(("cabriole", "bun", "taper"))
     foot = w.length(0.07, 0.10) if kind == "bun" else w.length(0.12, 0.32)
     x, y = parts.footprint(depth, width)
-    w.mesh(parts.prism(_swell(depth, width - 0.03, bulge, waves), height - 0.03 - foot), (0.0, 0.0, foot), look)
     w.mesh(
-        parts.prism(_swell(depth + 0.05, width, bulge, waves), 0.03),
+        parts.prism(_curved_footprint(depth, width - 0.03, bulge, waves), height - 0.03 - foot), (0.0, 0.0, foot), look
+    )
+    w.mesh(
+        parts.prism(_curved_footprint(depth + 0.05, width, bulge, waves), 0.03),
         (0.025, 0.0, height - 0.03),
         w.look("stone") if w.chance(0.35) else look,
     )
     front = parts.darker(look, 0.8) if look.texture is None and w.chance(0.3) else look
     edges = parts.graded_rows(foot + 0.02, height - 0.05, rows, w.choice((1.0, 1.2)))
-    shade = parts.prism(_swell(depth, width - 0.08, bulge, waves), round(edges[-1] - edges[0], 4))
+    shade = parts.prism(_curved_footprint(depth, width - 0.08, bulge, waves), round(edges[-1] - edges[0], 4))
     w.mesh(shade, (0.008, 0.0, edges[0]), parts.darker(look), solid=False)
     grip: HandleKind = w.choice(("drop", "knob", "cup", "bar"))
     for low, high in itertools.pairwise(edges):
-        outline = _swell(depth, width - 0.09, bulge * ((width - 0.09) / width) ** 2, waves)
+        outline = _curved_footprint(depth, width - 0.09, bulge * ((width - 0.09) / width) ** 2, waves)
         w.mesh(parts.prism(outline, round(high - low - 0.012, 4)), (0.018, 0.0, low + 0.006), front, solid=False)
         for side in BOTH_SIDES:
             share = 0.5 if waves else 0.55
@@ -54,7 +56,7 @@ def curved_commode(w: Workbench) -> None:
 
 
 def step_chest(w: Workbench) -> None:
-    """Stair chest: columns of drawers and doors that rise like steps to one side."""
+    """Builds a chest whose columns of drawers and doors rise like steps to one side."""
     columns = w.whole(2, 4)
     width, depth = w.width(0.32 * columns, 0.46 * columns), w.depth(0.36, 0.46)
     first, rise = w.length(0.28, 0.5), w.length(0.2, 0.48 - 0.05 * columns)
@@ -81,7 +83,7 @@ def step_chest(w: Workbench) -> None:
 
 
 def chest_on_chest(w: Workbench) -> None:
-    """Tall chest in two stages: a narrower one stands on a wider one, moulding between, perhaps on curved legs."""
+    """Builds a tall chest of two stages, the upper one narrower."""
     width, depth = w.width(0.75, 1.05), w.depth(0.44, 0.54)
     kind: FeetKind = w.choice(("cabriole", "bun", "block", "taper"))
     foot = w.length(0.30, 0.48) if kind in ("cabriole", "taper") else w.length(0.08, 0.14)
@@ -110,7 +112,7 @@ def chest_on_chest(w: Workbench) -> None:
 
 
 def basket_chest(w: Workbench) -> None:
-    """Open frame of posts and boards in which baskets or canvas boxes serve as drawers."""
+    """Builds an open frame with baskets or canvas boxes as drawers."""
     rows, columns = w.whole(2, 4), w.whole(1, 3)
     width, depth = w.width(0.34 * columns, 0.44 * columns), w.depth(0.32, 0.44)
     foot, pitch = w.length(0.05, 0.22), w.length(0.20, 0.29)
@@ -141,7 +143,7 @@ def basket_chest(w: Workbench) -> None:
 
 
 def plastic_tower(w: Workbench) -> None:
-    """Tower of rounded plastic drawers between thin shelves, on castors or small feet."""
+    """Builds a tower of rounded plastic drawers on castors or small feet."""
     columns, rows = w.choice((1, 1, 2)), w.whole(3, 5)
     width, depth = w.width(0.36 * columns, 0.52 * columns), w.depth(0.36, 0.46)
     pitch, foot = w.length(0.16, 0.25), w.length(0.04, 0.07)
@@ -175,7 +177,7 @@ def plastic_tower(w: Workbench) -> None:
 
 
 def mirror_dresser(w: Workbench) -> None:
-    """Low dresser with a mirror standing at its back, trinket drawers on top beside it."""
+    """Builds a low dresser with a mirror at its back and sometimes small drawers beside it."""
     width, depth, height = w.width(0.95, 1.55), w.depth(0.42, 0.52), w.length(0.68, 0.82)
     look, metal = parts.wood_look(w), w.look(w.choice(("brass", "metal")))
     kind: FeetKind = w.choice(("taper", "splay", "bun", "plinth", "cabriole"))
@@ -211,7 +213,7 @@ def mirror_dresser(w: Workbench) -> None:
 
 
 def graded_chest(w: Workbench) -> None:
-    """Chest whose drawers deepen downwards, a row of small ones on top; many fronts, handles and feet."""
+    """Builds a chest whose drawers are deeper towards the floor, below a row of small drawers."""
     width, depth = w.width(0.70, 1.45), w.depth(0.40, 0.52)
     height = w.length(0.72, 1.25) if width < 1.0 else w.length(0.66, 0.86)
     kind: FeetKind = w.choice(("taper", "splay", "sled", "block", "castor", "plinth"))
@@ -245,7 +247,7 @@ def graded_chest(w: Workbench) -> None:
 
 
 def steel_drawers(w: Workbench) -> None:
-    """Steel filing chest: deep drawers with label holders, a lock, and recessed or bar pulls."""
+    """Builds a steel filing cabinet with deep drawers, label holders and recessed or bar handles."""
     columns = w.choice((1, 1, 2))
     width, depth = w.width(0.40 * columns, 0.47 * columns), w.depth(0.40, 0.60)
     rows, pitch = w.whole(2, 4), w.length(0.24, 0.32)
@@ -274,7 +276,7 @@ def steel_drawers(w: Workbench) -> None:
 
 
 def bedside_niche(w: Workbench) -> None:
-    """Bedside cabinet with an open niche over or under a drawer, books in it, on tapered legs or a plinth."""
+    """Builds a bedside cabinet with an open niche above or below a drawer."""
     width, depth, height = w.width(0.38, 0.56), w.depth(0.32, 0.44), w.length(0.46, 0.66)
     kind: FeetKind = w.choice(("taper", "splay", "sled", "plinth", "block"))
     foot = w.length(0.03, 0.08) if kind in ("plinth", "block") else w.length(0.12, 0.26)
@@ -307,7 +309,7 @@ def bedside_niche(w: Workbench) -> None:
 
 
 def bedside_locker(w: Workbench) -> None:
-    """Hospital-like bedside locker on castors: a drawer, an open gap, a door, rails round the top."""
+    """Builds a hospital locker on castors with a drawer, an open gap and a door."""
     width, depth, height = w.width(0.40, 0.50), w.depth(0.40, 0.48), w.length(0.70, 0.86)
     shell = w.look(w.choice(("appliance", "lacquer", "plastic")))
     face = w.look(w.choice(("wood", "plastic", "appliance")))
@@ -340,7 +342,7 @@ def bedside_locker(w: Workbench) -> None:
 
 
 def bedside_box(w: Workbench) -> None:
-    """One or two flat drawers held high on long legs, perhaps with a slatted shelf near the floor."""
+    """Builds one or two flat drawers on long legs, sometimes with a shelf near the floor."""
     width, depth, height = w.width(0.38, 0.60), w.depth(0.34, 0.45), w.length(0.50, 0.68)
     look, box = parts.wood_look(w), w.length(0.13, 0.24)
     legs = w.look(w.choice(("wood", "iron", "brass", "metal"))) if w.chance(0.5) else look
@@ -371,7 +373,7 @@ def bedside_box(w: Workbench) -> None:
 
 
 def bedside_padded(w: Workbench) -> None:
-    """Upholstered bedside block with soft edges and two padded fronts on a thin metal base."""
+    """Builds an upholstered bedside block with padded fronts on a thin metal base."""
     width, depth, height = w.width(0.42, 0.60), w.depth(0.38, 0.46), w.length(0.42, 0.56)
     cloth, metal = w.look(w.choice(("leather", "fabric"))), w.look(w.choice(("brass", "dark", "chrome")))
     foot, rows = w.length(0.03, 0.12), w.whole(1, 3)

@@ -12,8 +12,11 @@ from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
-def _cut_out(outline: list[tuple[float, float]], centre: tuple[float, float], thick: float) -> MeshShape:
-    """Cloth of a (y, z) outline, star-shaped about `centre`, counter-clockwise seen from +x, thickest there."""
+def _flat_cloth(outline: list[tuple[float, float]], centre: tuple[float, float], thick: float) -> MeshShape:
+    """Returns cloth with a (y, z) outline that is star-shaped about `centre`, where it is thickest.
+
+    The outline runs counter-clockwise seen from +x.
+    """
     n = len(outline)
     vertices = [(s * 0.35 * thick, y, z) for s in BOTH_SIDES for y, z in outline]
     vertices += [(s * 0.5 * thick, *centre) for s in BOTH_SIDES]
@@ -25,23 +28,23 @@ def _cut_out(outline: list[tuple[float, float]], centre: tuple[float, float], th
 
 
 def _mirrored(right: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The outline that a right half (from the top down) and its mirror image make."""
+    """Returns the outline of a right half, given from the top down, and its mirror image."""
     return [(-y, z) for y, z in right] + [(y, z) for y, z in reversed(right) if y > 0.0]
 
 
-def _clothing(w: Workbench, kind: str, high: float, thick: float = 0.05) -> MeshShape:
-    """A piece of clothing hanging flat, its shoulders or waist at z = `high`, its hem at z = 0."""
+def _garment(w: Workbench, kind: str, high: float, thick: float) -> MeshShape:
+    """Returns a garment that hangs flat, with its shoulders or waist at z = `high` and its hem at z = 0."""
     h, s = high, w.length(0.9, 1.15)
     if kind == "trousers":
         flare, hip = w.length(-0.03, 0.05), 0.19 * s
         right = [(0.16 * s, h), (hip, 0.72 * h), (hip + flare, 0.0), (0.06 + 0.5 * flare, 0.0)]
-        return _cut_out(_mirrored([*right, (0.0, 0.66 * h)]), (0.0, 0.8 * h), thick)
+        return _flat_cloth(_mirrored([*right, (0.0, 0.66 * h)]), (0.0, 0.8 * h), thick)
     if kind == "skirt":
         right = [(0.14 * s, h), (0.19 * s, 0.7 * h), (w.length(0.18, 0.34) * s, 0.0)]
-        return _cut_out(_mirrored(right), (0.0, 0.5 * h), thick)
+        return _flat_cloth(_mirrored(right), (0.0, 0.5 * h), thick)
     if kind == "vest":
         right = [(0.06, h - 0.05), (0.09, h), (0.15 * s, h - 0.02), (0.14 * s, h - 0.22), (0.19 * s, h - 0.28)]
-        return _cut_out(_mirrored([*right, (w.length(0.18, 0.24) * s, 0.0)]), (0.0, h - 0.3), thick)
+        return _flat_cloth(_mirrored([*right, (w.length(0.18, 0.24) * s, 0.0)]), (0.0, h - 0.3), thick)
     hem = {"dress": w.length(0.22, 0.34), "coat": 0.24, "tee": 0.21, "shirt": 0.20}[kind]
     arm = 0.20 if kind == "tee" else min(0.52, 0.85 * h)
     right = [(0.06, h), (0.20 * s, h - 0.05), (0.25 * s + 0.14 * arm, h - arm), (0.16 * s + 0.11 * arm, h - arm - 0.02)]
@@ -52,39 +55,47 @@ def _clothing(w: Workbench, kind: str, high: float, thick: float = 0.05) -> Mesh
     ]
     if kind != "tee":
         right[4] = (0.19 * s, h - 0.22)
-    return _cut_out(_mirrored(right), (0.0, h - 0.16), thick)
+    return _flat_cloth(_mirrored(right), (0.0, h - 0.16), thick)
 
 
-_TALL = {"shirt": (0.62, 0.78), "tee": (0.58, 0.72), "vest": (0.5, 0.7), "dress": (0.8, 1.15), "coat": (0.85, 1.1),
-         "trousers": (0.9, 1.05), "skirt": (0.5, 0.8)}  # fmt: skip
-"""Usual lengths of clothes on a hanger."""
+_GARMENT_LENGTHS_M = {
+    "shirt": (0.62, 0.78),
+    "tee": (0.58, 0.72),
+    "vest": (0.5, 0.7),
+    "dress": (0.8, 1.15),
+    "coat": (0.85, 1.1),
+    "trousers": (0.9, 1.05),
+    "skirt": (0.5, 0.8),
+}
+"""Shortest and longest usual length of a garment on a hanger, in metres."""
 
 
-def _cloth(w: Workbench) -> Look:
+def _garment_look(w: Workbench) -> Look:
+    """Returns a new look for a garment."""
     return w.new_look(w.choice(("bright", "bright", "denim", "fabric", "linen")))
 
 
-def _row(w: Workbench, x: float, y: Range, rail: float, room: float, metal: Look, most: int) -> None:
-    """Garments on hangers side by side along y under a rail, none longer than `room`."""
+def _hanging_row(w: Workbench, x: float, y: Range, rail: float, room: float, metal: Look, most: int) -> None:
+    """Adds garments on hangers in a row under a rail, none longer than `room`."""
     count = min(most, max(2, int((y[1] - y[0]) / w.length(0.07, 0.16))))
     for i in range(count):
-        kind = w.choice(tuple(_TALL))
-        high = min(w.length(*_TALL[kind]), room - 0.10)
+        kind = w.choice(tuple(_GARMENT_LENGTHS_M))
+        high = min(w.length(*_GARMENT_LENGTHS_M[kind]), room - 0.10)
         c = y[0] + (i + 0.5) * (y[1] - y[0]) / count
         turn = 0.5 * math.pi + w.length(-0.25, 0.25)
         w.rod((x, c, rail - 0.08), (x, c, rail + 0.012), 0.003, metal, solid=False)
-        shape = _clothing(w, kind, high, w.length(0.03, 0.07))
-        w.mesh(shape, (x, c, rail - 0.07 - high), _cloth(w), turn=turn, solid=i % 2 == 0)
+        shape = _garment(w, kind, high, w.length(0.03, 0.07))
+        w.mesh(shape, (x, c, rail - 0.07 - high), _garment_look(w), turn=turn, solid=i % 2 == 0)
 
 
 def a_frame(w: Workbench) -> None:
-    """Wooden A-frame or pair of trestles with a pole through the tops, garments on it, a slatted shelf with shoes."""
+    """Builds an A-frame rack with a pole, hanging garments and often a slatted shelf with shoes."""
     width, high, wood = w.width(0.80, 1.40), w.length(1.35, 1.75), w.look(w.choice(("wood", "wood", "lacquer", "iron")))
     y, spread = 0.5 * width, w.length(0.18, 0.30)
     for side in BOTH_SIDES:
         c = side * (y - 0.06)
-        for way in BOTH_SIDES:
-            w.bar((way * spread, c, 0.0), (-way * 0.05, c + way * 0.012, high), 0.02, 0.035, wood)
+        for sign in BOTH_SIDES:
+            w.bar((sign * spread, c, 0.0), (-sign * 0.05, c + sign * 0.012, high), 0.02, 0.035, wood)
         w.box((-0.8 * spread, 0.8 * spread), (c - 0.01, c + 0.01), (0.17, 0.20), wood)
     rail = high - 0.10
     w.rod((0.0, -y, rail), (0.0, y, rail), 0.014, wood)
@@ -96,35 +107,35 @@ def a_frame(w: Workbench) -> None:
             c, shoe = -y + 0.25 + 0.26 * i, w.new_look("leather")
             for side in BOTH_SIDES:
                 w.ellipsoid((0.0, c + 0.05 * side, 0.25), (0.13, 0.042, 0.045), shoe, solid=False)
-    _row(w, 0.0, (-y + 0.16, y - 0.16), rail, rail - 0.32, w.look("metal"), 9)
+    _hanging_row(w, 0.0, (-y + 0.16, y - 0.16), rail, rail - 0.32, w.look("metal"), 9)
 
 
 def double_rail(w: Workbench) -> None:
-    """Steel rail on castors with two levels of hanging clothes, or one level above a box shelf."""
+    """Builds a steel rack on castors with two levels of garments, or one level above a shelf."""
     width, high, metal = w.width(0.70, 1.20), w.length(1.60, 1.85), w.look(w.choice(("metal", "chrome", "iron")))
     y, deep = 0.5 * width, w.length(0.20, 0.26)
     for side in BOTH_SIDES:
         c = side * (y - 0.02)
         w.rod((0.0, c, 0.08), (0.0, c, high), 0.015, metal)
         w.rod((-deep, c, 0.08), (deep, c, 0.08), 0.015, metal)
-        for way in BOTH_SIDES:
-            w.ball((way * (deep - 0.02), c, 0.035), 0.035, w.look("dark"))
+        for sign in BOTH_SIDES:
+            w.ball((sign * (deep - 0.02), c, 0.035), 0.035, w.look("dark"))
     w.rod((0.0, -y, high), (0.0, y, high), 0.015, metal)
     middle = 0.5 * high + 0.06
     if w.chance(0.6):
         w.rod((0.0, -y + 0.02, middle), (0.0, y - 0.02, middle), 0.013, metal)
-        _row(w, 0.0, (-y + 0.10, y - 0.10), middle, middle - 0.1, metal, 6)
+        _hanging_row(w, 0.0, (-y + 0.10, y - 0.10), middle, middle - 0.1, metal, 6)
     else:
         w.box((-deep, deep), (-y + 0.02, y - 0.02), (0.07, 0.09), metal)
         for i in range(w.whole(1, 3)):
             c = -y + 0.22 + 0.3 * i
             if c < y - 0.15:
-                w.mesh(chamfered_box((0.3, 0.26, w.length(0.06, 0.2)), 0.03), (0.0, c, 0.12), _cloth(w))
-    _row(w, 0.0, (-y + 0.10, y - 0.10), high, high - middle - 0.03, metal, 7)
+                w.mesh(chamfered_box((0.3, 0.26, w.length(0.06, 0.2)), 0.03), (0.0, c, 0.12), _garment_look(w))
+    _hanging_row(w, 0.0, (-y + 0.10, y - 0.10), high, high - middle - 0.03, metal, 7)
 
 
 def dress_form(w: Workbench) -> None:
-    """Tailor's dummy on a stand, dressed: torso with a skirt, jacket sleeves or only a shawl."""
+    """Builds a dressmaker's dummy on a stand, with a dress, a jacket or a shawl."""
     high, stand = w.length(1.35, 1.65), w.look(w.choice(("wood", "iron", "metal")))
     s = w.length(0.9, 1.1)
     for i in range(w.whole(3, 4)):
@@ -132,7 +143,7 @@ def dress_form(w: Workbench) -> None:
         w.rod((0.0, 0.0, 0.14), (0.24 * math.cos(a), 0.24 * math.sin(a), 0.012), 0.012, stand)
     w.rod((0.0, 0.0, 0.06), (0.0, 0.0, high - 0.05), 0.016, stand)
     top = high - 0.06
-    cloth, form = _cloth(w), w.look("linen")
+    cloth, form = _garment_look(w), w.look("linen")
     body = [
         Ring(top - 0.66, 0.12 * s, 0.17 * s), Ring(top - 0.52, 0.12 * s, 0.18 * s),
         Ring(top - 0.38, 0.09 * s, 0.125 * s),
@@ -176,7 +187,7 @@ def dress_form(w: Workbench) -> None:
 
 
 def drying_tower(w: Workbench) -> None:
-    """Upright drying tower of two or three wire tiers on posts, shirts, trousers and socks hung over and under them."""
+    """Builds an upright drying rack of two or three tiers with garments on them."""
     width, deep, tiers = w.width(0.55, 0.80), w.length(0.22, 0.32), w.whole(2, 3)
     metal = w.look(w.choice(("plastic", "steel", "ceramic")))
     high, y = w.length(1.10, 1.55), 0.5 * width
@@ -196,20 +207,20 @@ def drying_tower(w: Workbench) -> None:
             if kind == "socks":
                 for k in range(w.whole(2, 4)):
                     at = (x, -y + 0.12 + 0.13 * k, z - 0.12)
-                    w.mesh(chamfered_box((0.02, 0.075, 0.25), 0.009), at, _cloth(w), solid=False)
+                    w.mesh(chamfered_box((0.02, 0.075, 0.25), 0.009), at, _garment_look(w), solid=False)
             elif kind == "over":
-                parts.towel_over_bar(w, x, c, z, w.length(0.25, 0.42), room, 0.7 * room, _cloth(w))
+                parts.towel_over_bar(w, x, c, z, w.length(0.25, 0.42), room, 0.7 * room, _garment_look(w))
             elif kind == "shirt":
                 tall = min(0.7, max(0.5, room + 0.15))
                 w.mesh(
-                    _clothing(w, w.choice(("tee", "shirt", "vest")), min(tall, z - 0.02), 0.03),
+                    _garment(w, w.choice(("tee", "shirt", "vest")), min(tall, z - 0.02), 0.03),
                     (x, c, z - min(tall, z - 0.02)),
-                    _cloth(w),
+                    _garment_look(w),
                 )
 
 
 def pipe_rail(w: Workbench) -> None:
-    """Bent pipe or pole on brackets out of the wall with garments on hangers below, perhaps a shelf above."""
+    """Builds a wall-mounted rail with garments on hangers, with or without a shelf above it."""
     width, out = w.width(0.60, 1.20), w.length(0.22, 0.32)
     metal, tall = w.look(w.choice(("iron", "brass", "metal", "wood"))), w.length(1.00, 1.35)
     w.mount_height_m = w.length(1.70, 1.85) - tall
@@ -225,13 +236,13 @@ def pipe_rail(w: Workbench) -> None:
             w.mesh(
                 chamfered_box((0.26, 0.32, 0.12), 0.03),
                 (0.5 * out, w.length(-0.2, 0.2) * width, tall + 0.035),
-                _cloth(w),
+                _garment_look(w),
             )
-    _row(w, out, (-y + 0.10, y - 0.10), rail, rail, metal, 9)
+    _hanging_row(w, out, (-y + 0.10, y - 0.10), rail, rail, metal, 9)
 
 
 def hung_flat(w: Workbench) -> None:
-    """One or two garments on hangers flat at the wall, fronts outwards, on a knob, nail or door hook each."""
+    """Builds one or two garments on hangers that hang flat on the wall."""
     count = w.whole(1, 2)
     tall = w.length(0.95, 1.25)
     w.mount_height_m = w.length(1.65, 1.95) - tall
@@ -239,11 +250,11 @@ def hung_flat(w: Workbench) -> None:
     for i in range(count):
         y = (i - 0.5 * (count - 1)) * w.length(0.62, 0.75)
         kind = w.choice(("shirt", "tee", "vest", "dress", "coat"))
-        high = min(w.length(*_TALL[kind]), tall - 0.13)
-        top, cloth = tall - 0.13, _cloth(w)
+        high = min(w.length(*_GARMENT_LENGTHS_M[kind]), tall - 0.13)
+        top, cloth = tall - 0.13, _garment_look(w)
         w.rod((0.0, y, tall - 0.02), (0.06, y, tall - 0.02), 0.014, wood)
         w.rod((0.045, y, top - 0.02), (0.045, y, tall - 0.01), 0.004, wood, solid=False)
-        w.mesh(_clothing(w, kind, high, 0.06), (0.045, y, top - high), cloth)
+        w.mesh(_garment(w, kind, high, 0.06), (0.045, y, top - high), cloth)
         for side in BOTH_SIDES:
             w.rod((0.045, y, top + 0.02), (0.045, y + side * 0.17, top - 0.045), 0.009, wood, solid=False)
         if kind in ("shirt", "coat"):
@@ -261,7 +272,7 @@ def hung_flat(w: Workbench) -> None:
 
 
 def bathrobe(w: Workbench) -> None:
-    """Robe, or a hooded coat, hung by its collar on one big hook: long folds, sleeves, a belt hanging."""
+    """Builds a bathrobe that hangs from a hook by its collar, with a belt and sometimes a hood."""
     tall, metal = w.length(1.05, 1.35), parts.fitting_look(w)
     cloth = w.new_look(w.choice(("towel", "linen", "bright")))
     w.mount_height_m = w.length(1.60, 1.75) - tall
@@ -297,25 +308,25 @@ def bathrobe(w: Workbench) -> None:
 
 
 def strewn(w: Workbench) -> None:
-    """Clothes lying flat and apart on the floor: shirt, trousers, socks, a crumpled thing, perhaps shoes."""
+    """Builds garments that lie flat and apart on the floor, with socks and sometimes shoes."""
     kinds = [w.choice(("shirt", "tee", "coat", "dress")), w.choice(("trousers", "skirt", "trousers"))]
     if w.chance(0.5):
         kinds.append(w.choice(("tee", "vest")))
     for i, kind in enumerate(kinds):
         turn, high = 2.1 * i + w.length(-0.5, 0.5), w.length(0.55, 0.85)
         at = (w.length(0.0, 0.15) * math.cos(turn), w.length(0.0, 0.15) * math.sin(turn), 0.025 + 0.02 * i)
-        w.mesh(_clothing(w, kind, high, 0.045), at, _cloth(w), tilt=-0.5 * math.pi, turn=turn, solid=i == 0)
+        w.mesh(_garment(w, kind, high, 0.045), at, _garment_look(w), tilt=-0.5 * math.pi, turn=turn, solid=i == 0)
     w.mesh(
         parts.crumpled_cloth(w, w.length(0.3, 0.5), w.length(0.25, 0.4), w.length(0.08, 0.18)),
         (0.0, 0.0, 0.02),
-        _cloth(w),
+        _garment_look(w),
     )
     for i in range(w.whole(0, 3)):
         a = 1.3 + 1.7 * i
         w.mesh(
             chamfered_box((0.22, 0.08, 0.025), 0.01),
             (0.38 * math.cos(a), 0.38 * math.sin(a), 0.0125),
-            _cloth(w),
+            _garment_look(w),
             turn=3 * a,
         )
     if w.chance(0.4):
@@ -325,24 +336,24 @@ def strewn(w: Workbench) -> None:
 
 
 def mound(w: Workbench) -> None:
-    """High heap of laundry: rumpled sheets over a soft core, legs and sleeves hanging out."""
+    """Builds a high heap of laundry from which legs and sleeves stick out."""
     r, high = w.length(0.22, 0.36), w.length(0.16, 0.38)
     core = [Ring(0.0, 0.7 * r, 0.7 * r), Ring(0.45 * high, 0.55 * r, 0.55 * r), Ring(0.7 * high, 0.2 * r, 0.2 * r)]
-    w.mesh(loft(core, 10), (0.0, 0.0, 0.0), _cloth(w))
+    w.mesh(loft(core, 10), (0.0, 0.0, 0.0), _garment_look(w))
     for i in range(w.whole(3, 5)):
         a, out = 2.3 * i, 0.2 * r * i
         at = (out * math.cos(a), out * math.sin(a), 0.11 * high * i)
         shape = parts.crumpled_cloth(w, (2.3 - 0.35 * i) * r, (2.0 - 0.3 * i) * r, (0.95 - 0.12 * i) * high)
-        w.mesh(shape, at, _cloth(w), turn=w.length(0.0, 3.0), solid=False)
+        w.mesh(shape, at, _garment_look(w), turn=w.length(0.0, 3.0), solid=False)
     for i in range(w.whole(2, 4)):
-        a, cloth = 1.6 * i + w.length(0.0, 1.0), _cloth(w)
+        a, cloth = 1.6 * i + w.length(0.0, 1.0), _garment_look(w)
         p = (0.4 * r * math.cos(a), 0.4 * r * math.sin(a), 0.6 * high)
         q = (1.25 * r * math.cos(a), 1.25 * r * math.sin(a), 0.04)
         w.bar(p, q, w.length(0.08, 0.14), 0.04, cloth, solid=False)
 
 
 def sorted_piles(w: Workbench) -> None:
-    """Folded laundry in two to four separate piles on the floor, jeans, shirts, a bundle of socks."""
+    """Builds two to four piles of folded laundry on the floor."""
     count = w.whole(2, 4)
     for k in range(count):
         x, y, z = 0.17 * (-1) ** k if count > 2 else 0.0, (k - 0.5 * (count - 1)) * w.length(0.28, 0.36), 0.0
@@ -350,19 +361,19 @@ def sorted_piles(w: Workbench) -> None:
         for i in range(w.whole(2, 5)):
             thick = w.length(0.03, 0.07)
             shape = chamfered_box((size[0] * w.length(0.9, 1.0), size[1] * w.length(0.9, 1.0), thick), 0.016)
-            w.mesh(shape, (x, y, z + 0.5 * thick), _cloth(w), turn=w.length(-0.1, 0.1), solid=i < 2)
+            w.mesh(shape, (x, y, z + 0.5 * thick), _garment_look(w), turn=w.length(-0.1, 0.1), solid=i < 2)
             z += thick - 0.003
         if w.chance(0.4):
             for side in BOTH_SIDES:
-                w.ellipsoid((x + 0.05 * side, y, z + 0.03), (0.045, 0.045, 0.035), _cloth(w), solid=False)
+                w.ellipsoid((x + 0.05 * side, y, z + 0.03), (0.045, 0.045, 0.035), _garment_look(w), solid=False)
 
 
 def dress_shirts(w: Workbench) -> None:
-    """Folded shirts with collars and button strips, one upon the other, or a single one beside rolled ties."""
+    """Builds a pile of folded shirts with collars, and sometimes rolled ties beside it."""
     z, deep, wide = 0.0, w.length(0.30, 0.38), w.length(0.22, 0.27)
     count = w.whole(1, 4)
     for i in range(count):
-        thick, cloth = w.length(0.025, 0.04), _cloth(w)
+        thick, cloth = w.length(0.025, 0.04), _garment_look(w)
         w.mesh(
             chamfered_box((deep, wide, thick), 0.010), (0.0, 0.0, z + 0.5 * thick), cloth, turn=w.length(-0.05, 0.05)
         )
@@ -388,12 +399,12 @@ def dress_shirts(w: Workbench) -> None:
     )
     for i in range(w.whole(0, 3)):
         at = (-0.12 + 0.11 * i, 0.5 * wide + 0.06)
-        w.cylinder(at, (0.0, 0.05), 0.04, _cloth(w))
+        w.cylinder(at, (0.0, 0.05), 0.04, _garment_look(w))
         w.cylinder(at, (0.048, 0.053), 0.015, w.look("dark"), solid=False)
 
 
 def hat_and_scarf(w: Workbench) -> None:
-    """Hat with a brim or a knitted cap, a folded or rumpled scarf beside it, gloves."""
+    """Builds a hat or a knitted cap with a folded or crumpled scarf, and often gloves."""
     felt, r = w.new_look(w.choice(("fabric", "denim", "bright"))), w.length(0.085, 0.10)
     high = w.length(0.08, 0.13)
     if w.chance(0.6):
@@ -425,8 +436,8 @@ def hat_and_scarf(w: Workbench) -> None:
             (0.0, 0.0, 0.0),
             felt,
         )
-        w.ball((0.0, 0.0, high + 0.035), w.length(0.02, 0.035), _cloth(w), solid=False)
-    scarf = _cloth(w)
+        w.ball((0.0, 0.0, high + 0.035), w.length(0.02, 0.035), _garment_look(w), solid=False)
+    scarf = _garment_look(w)
     if w.chance(0.5):
         thick = w.length(0.04, 0.08)
         at = (0.0, 0.27, 0.5 * thick)

@@ -14,8 +14,8 @@ from sim.housegen.furniture.workbench import Range, Workbench
 _Hole = tuple[Range, Range] | None
 
 
-def _base(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: _Hole) -> None:
-    """The cupboards' body, lower where a sink hangs."""
+def _cupboard_body(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: _Hole) -> None:
+    """Adds the body of the cupboards, which is lower below a sink."""
     if hole is None:
         w.box(x, y, z, look)
         return
@@ -27,7 +27,7 @@ def _base(w: Workbench, x: Range, y: Range, z: Range, look: Look, hole: _Hole) -
 
 
 def _framed_front(w: Workbench, x: float, y: Range, z: Range, look: Look, knob: Look, *, raised: bool) -> None:
-    """A door whose panel lies within a frame: darker, or `raised` with a darker line round it."""
+    """Adds a framed door with a knob; its panel is darker, or `raised` inside a darker line."""
     w.box((x, x + 0.02), (y[0] + 0.004, y[1] - 0.004), (z[0] + 0.004, z[1] - 0.004), look, solid=False)
     rim = min(0.06, 0.28 * (z[1] - z[0]))
     w.box((x + 0.019, x + 0.022), (y[0] + rim, y[1] - rim), (z[0] + rim, z[1] - rim), parts.darker(look, 0.7))
@@ -38,20 +38,20 @@ def _framed_front(w: Workbench, x: float, y: Range, z: Range, look: Look, knob: 
 
 
 def _upstand(w: Workbench, x: float, y: Range, z: float, look: Look) -> None:
-    """Maybe a strip of the worktop's stone along the wall."""
+    """Adds a strip of the worktop's material along the wall with a probability of 0.6."""
     if w.chance(0.6):
         w.box((x, x + 0.02), y, (z, z + w.choice((0.06, 0.12, 0.30))), look)
 
 
 def shaker_run(w: Workbench) -> None:
-    """Country run: framed doors, some under a drawer, end posts as furniture feet, thick overhanging worktop."""
+    """Builds a country kitchen run with framed doors, end posts and a thick overhanging worktop."""
     width, depth, height = w.width(1.10, 2.80), w.depth(0.60, 0.66), w.height(0.86, 0.94)
     body, thick = parts.wood_look(w), w.length(0.03, 0.06)
     top = w.look("wood") if w.chance(0.5) else w.look("stone")
     x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under, face, foot = height - thick, x[1] - 0.05, w.length(0.07, 0.15)
-    _base(w, (x[0], face), (y[0] + 0.01, y[1] - 0.01), (foot, under), body, hole)
+    _cupboard_body(w, (x[0], face), (y[0] + 0.01, y[1] - 0.01), (foot, under), body, hole)
     parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     if w.chance(0.5):
@@ -84,14 +84,14 @@ def shaker_run(w: Workbench) -> None:
 
 
 def masonry_run(w: Workbench) -> None:
-    """Built kitchen of the south: thick piers and slab of masonry, plank doors set deep between the piers."""
+    """Builds a kitchen run with thick masonry piers and plank doors set back between them."""
     width, depth, height = w.width(1.20, 2.80), w.depth(0.60, 0.68), w.height(0.84, 0.92)
     wall = w.look("masonry") if w.chance(0.6) else w.look("stone")
     wood, thick = w.look("wood"), w.length(0.06, 0.11)
     x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under, back = height - thick, x[1] - 0.10
-    _base(w, (x[0], back), y, (0.0, under), wall, hole)
+    _cupboard_body(w, (x[0], back), y, (0.0, under), wall, hole)
     parts.worktop(w, x, y, (under, height), w.look("stone") if w.chance(0.6) else wall, hole)
     _upstand(w, x[0], y, height, wall)
     pier = w.length(0.08, 0.16)
@@ -118,13 +118,13 @@ def masonry_run(w: Workbench) -> None:
 
 
 def hovering_run(w: Workbench) -> None:
-    """Slim run that hangs on a panel before the wall: shallow drawers, air below, a thin top, maybe a glowing edge."""
+    """Builds a slim wall-hung run with shallow drawers and a thin worktop."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.86, 0.94)
     front, top = parts.wood_look(w), w.look(w.choice(("stone", "steel", "wood")))
     x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under, face, low = height - 0.02, x[1] - 0.03, w.length(0.24, 0.45)
-    _base(w, (x[0], face), y, (low, under), front, hole)
+    _cupboard_body(w, (x[0], face), y, (low, under), front, hole)
     parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     w.box((x[0], x[0] + 0.04), y, (0.0, low), w.look("dark") if w.chance(0.5) else front)
@@ -143,7 +143,7 @@ def hovering_run(w: Workbench) -> None:
 
 
 def niche_run(w: Workbench) -> None:
-    """Run of tall narrow doors whose one end is an open niche with shelves, bottles or baskets, on turned feet."""
+    """Builds a run of tall narrow doors with open shelves at one end, on round feet."""
     width, depth, height = w.width(1.20, 2.60), w.depth(0.60, 0.64), w.height(0.86, 0.92)
     body, front = parts.wood_look(w), parts.wood_look(w)
     x, y = parts.footprint(depth, width)
@@ -152,7 +152,7 @@ def niche_run(w: Workbench) -> None:
     hole, free = parts.worktop_fittings(w, closed, height)
     under, face, foot = height - 0.04, x[1] - 0.04, w.length(0.06, 0.14)
     top = w.look("stone")
-    _base(w, (x[0], face), closed, (foot, under), body, hole)
+    _cupboard_body(w, (x[0], face), closed, (foot, under), body, hole)
     parts.worktop(w, x, y, (under, height), top, hole)
     _upstand(w, x[0], y, height, top)
     for cx in (x[0] + 0.05, face - 0.05):
@@ -180,7 +180,7 @@ def niche_run(w: Workbench) -> None:
 
 
 def oval_island(w: Workbench) -> None:
-    """Island of rounded plan: a smooth or fluted body under a rounded top that reaches out to the front."""
+    """Builds an island with a rounded footprint, smooth or fluted, whose top overhangs at the front."""
     width, depth, height = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.88, 0.94)
     body, top, power = parts.wood_look(w), w.look("stone"), w.choice((2.4, 4.0, 6.0))
     thick, rx, ry = w.length(0.02, 0.06), 0.5 * depth, 0.5 * width
@@ -203,7 +203,7 @@ def oval_island(w: Workbench) -> None:
 
 
 def post_island(w: Workbench) -> None:
-    """Farmhouse island: framed cupboards behind, an overhanging top carried by posts at the front corners."""
+    """Builds a farmhouse island whose overhanging top stands on posts at the front corners."""
     width, depth, height = w.width(1.30, 2.40), w.depth(0.90, 1.15), w.height(0.88, 0.94)
     body, top = parts.wood_look(w), w.look("wood") if w.chance(0.6) else w.look("stone")
     x, y = parts.footprint(depth, width)
@@ -240,7 +240,7 @@ def post_island(w: Workbench) -> None:
 
 
 def table_island(w: Workbench) -> None:
-    """A cupboard block whose one end runs on as a lower dining board on a leg frame or a panel."""
+    """Builds an island that continues at one end as a lower dining table."""
     width, depth, height = w.width(1.60, 2.60), w.depth(0.75, 1.0), w.height(0.88, 0.94)
     body, top, board = parts.wood_look(w), w.look("stone"), w.look("wood")
     x = parts.centred(0.0, depth)

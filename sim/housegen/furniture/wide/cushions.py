@@ -13,7 +13,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def flanged_cushion(w: Workbench) -> None:
-    """Throw cushion with a flat border all round, leaning back; sometimes a smaller one in front."""
+    """Builds a leaning throw cushion with a flat border, and sometimes a smaller cushion before it."""
     side, lean = w.length(0.38, 0.60), w.length(1.05, 1.35)
     high = side * w.choice((1.0, 1.0, 0.75))
     edge, cloth = w.length(0.03, 0.06), w.look("bright")
@@ -26,7 +26,7 @@ def flanged_cushion(w: Workbench) -> None:
 
 
 def flat_cushion(w: Workbench) -> None:
-    """One or two cushions lying flat on their faces, askew."""
+    """Builds one or two cushions that lie flat and turned by a small angle."""
     side, thick = w.length(0.36, 0.52), w.length(0.10, 0.16)
     other = side * w.choice((1.0, 0.65))
     w.mesh(pillow((other, side, thick)), (0.0, 0.0, 0.5 * thick), w.look("bright"), turn=w.length(-0.4, 0.4))
@@ -38,7 +38,7 @@ def flat_cushion(w: Workbench) -> None:
 
 
 def tasselled_cushion(w: Workbench) -> None:
-    """Square or long cushion on its edge, tassels or pompoms at its corners, maybe stripes."""
+    """Builds a cushion on its edge with tassels or pompoms at its corners and sometimes stripes."""
     wide, tall, lean = w.length(0.36, 0.60), w.length(0.32, 0.46), 1.25
     cloth, trim, z = w.look("bright"), w.new_look("bright"), 0.5 * tall
     w.mesh(pillow((tall, wide, 0.15)), (0.0, 0.0, z), cloth, tilt=lean)
@@ -55,7 +55,7 @@ def tasselled_cushion(w: Workbench) -> None:
 
 
 def shaped_cushion(w: Workbench) -> None:
-    """Novelty cushion: a heart, a ball, a star-like flower or a pet's face with ears."""
+    """Builds a cushion in the shape of a ball, a heart, a flower or an animal's face with ears."""
     cloth, kind, r = w.look("bright"), w.choice(("ball", "heart", "flower", "pet")), w.length(0.14, 0.20)
     if kind == "ball":
         w.ball((0.0, 0.0, r), r, cloth)
@@ -79,7 +79,7 @@ def shaped_cushion(w: Workbench) -> None:
 
 
 def mattress_cushion(w: Workbench) -> None:
-    """Thick boxed floor cushion with piping, tufts and a side handle, one to three in a pile."""
+    """Builds one to three thick square floor cushions with tufts and a side handle in a pile."""
     side, thick, count = w.length(0.50, 0.75), w.length(0.08, 0.16), w.choice((1, 1, 2, 3))
     for k in range(count):
         cloth = w.look("bright") if k == 0 else w.new_look("bright")
@@ -98,7 +98,7 @@ def mattress_cushion(w: Workbench) -> None:
 
 
 def thai_triangle(w: Workbench) -> None:
-    """A three-sided backrest on a mat that folds out in front in one to three panels."""
+    """Builds a triangular backrest with a mat of one to three panels that folds out in front of it."""
     wide, deep, high = w.length(0.46, 0.62), w.length(0.36, 0.44), w.length(0.32, 0.42)
     cloth, panels = w.look("bright"), w.whole(1, 3)
     w.mesh(frustum((deep, wide), (0.06, wide), high, (-0.10, 0.0)), (0.0, 0.0, 0.0), cloth)

@@ -9,7 +9,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def desk_hutch(w: Workbench) -> None:
-    """Desk with pigeon holes and shelves rising from its back edge; panel sides, loop frames or four legs below."""
+    """Builds a desk with shelves above its back edge, on panels, loop frames or four legs."""
     width, depth, height = w.width(0.95, 1.45), w.depth(0.52, 0.70), w.length(0.72, 0.76)
     wood, thick, legs = (
         w.look("wood") if w.chance(0.6) else w.look("lacquer"),
@@ -59,7 +59,7 @@ def desk_hutch(w: Workbench) -> None:
 
 
 def desk_kneehole(w: Workbench) -> None:
-    """Two drawer pedestals with a hole for the knees, a back panel, plinths or short legs, maybe a leather field."""
+    """Builds a desk on two drawer pedestals, often with a back panel, and sometimes with a leather top."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.60, 0.85), w.length(0.73, 0.78)
     wood, metal = w.look("wood") if w.chance(0.7) else w.look("lacquer"), w.look("brass")
     x, y = parts.slab(w, depth, width, (height - w.length(0.02, 0.045), height), wood)
@@ -91,7 +91,7 @@ def desk_kneehole(w: Workbench) -> None:
 
 
 def desk_gaming(w: Workbench) -> None:
-    """Slanted K- or Z-shaped metal legs, dark top with a notch, a raised board for screens, a hook or cup holder."""
+    """Builds a desk with slanted metal legs, a dark top and often a raised board for screens."""
     width, depth, height = w.width(1.10, 1.60), w.depth(0.60, 0.75), w.length(0.73, 0.76)
     frame, top = w.look("metal"), w.look("dark") if w.chance(0.6) else w.look("lacquer")
     x, y = parts.slab(w, depth, width, (height - 0.022, height), top)
@@ -123,7 +123,7 @@ def desk_gaming(w: Workbench) -> None:
 
 
 def desk_tray(w: Workbench) -> None:
-    """Mid-century writing desk: thin box with drawers or open slots, a low rim at back and sides, splayed legs."""
+    """Builds a writing desk: a thin box with drawers or open slots, with a low rim and often splayed legs."""
     width, depth, height = w.width(0.90, 1.35), w.depth(0.48, 0.65), w.length(0.73, 0.77)
     wood, front = w.look("wood"), parts.wood_look(w)
     x, y, deep = parts.centred(0.0, depth), parts.centred(0.0, width), w.length(0.08, 0.14)

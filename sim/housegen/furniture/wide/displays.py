@@ -15,7 +15,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def vitrine(w: Workbench) -> None:
-    """Showcase of glass on all sides with glass shelves between thin posts, a closed base or short legs."""
+    """Builds a glass showcase with shelves between thin posts."""
     width, depth, height = w.width(0.45, 1.10), w.depth(0.34, 0.45), w.height(1.30, 1.95)
     frame = w.look(w.choice(("wood", "brass", "iron", "lacquer", "metal")))
     post = w.length(0.014, 0.045)
@@ -57,7 +57,7 @@ def vitrine(w: Workbench) -> None:
 
 
 def display_arch(w: Workbench) -> None:
-    """Tall cabinet with an arched head: arched back, shelves, glazed or open above, doors below."""
+    """Builds a tall cabinet with an arched head and shelves above doors."""
     width, depth = w.width(0.70, 1.10), w.depth(0.32, 0.44)
     spring, arch = w.length(1.35, 1.65), w.length(0.16, 0.5) * width
     look, metal = parts.wood_look(w), w.look(w.choice(("brass", "dark")))
@@ -91,7 +91,7 @@ def display_arch(w: Workbench) -> None:
         w.choice(("knob", "bar", "tab")),
     )
     shelves = w.whole(2, 3)
-    step = (spring + 0.05 - base) / (shelves + 0.0)
+    step = (spring + 0.05 - base) / shelves
     for i in range(shelves + 1):
         z = base + i * step
         if i:
@@ -108,15 +108,15 @@ def display_arch(w: Workbench) -> None:
 
 
 def hoosier(w: Workbench) -> None:
-    """Kitchen hutch: doors and drawers below, an open worktop, a shallow cupboard or rack on brackets above."""
+    """Builds a kitchen hutch: doors and drawers, an open worktop, and a shallow cupboard or rack above it."""
     width, depth, height = w.width(0.85, 1.35), w.depth(0.42, 0.55), w.height(1.65, 2.0)
     look, metal = parts.wood_look(w), w.look(w.choice(("iron", "brass", "metal")))
-    top, bench = w.look(w.choice(("wood", "steel", "stone"))), w.length(0.80, 0.90)
+    top, worktop = w.look(w.choice(("wood", "steel", "stone"))), w.length(0.80, 0.90)
     foot, gap = w.length(0.06, 0.16), w.length(0.25, 0.42)
     x, y = parts.footprint(depth, width)
     upper = x[0] + w.length(0.26, 0.34)
-    w.box(x, y, (foot, bench - 0.03), look)
-    w.box((x[0], x[1] + 0.03), (y[0] - 0.02, y[1] + 0.02), (bench - 0.03, bench), top)
+    w.box(x, y, (foot, worktop - 0.03), look)
+    w.box((x[0], x[1] + 0.03), (y[0] - 0.02, y[1] + 0.02), (worktop - 0.03, worktop), top)
     front: FrontKind = w.choice(("frame", "raised", "flat"))
     share = w.choice((0.4, 0.55)) * width
     side = w.choice(BOTH_SIDES)
@@ -125,15 +125,15 @@ def hoosier(w: Workbench) -> None:
         left, right = (-right[1], -right[0]), (-left[1], -left[0])
     wide, narrow = (left, right) if left[1] - left[0] > right[1] - right[0] else (right, left)
     parts.styled_doors(
-        w, x[1], wide, (foot + 0.01, bench - 0.05), 1 if wide[1] - wide[0] < 0.6 else 2, look, metal, front, "knob"
+        w, x[1], wide, (foot + 0.01, worktop - 0.05), 1 if wide[1] - wide[0] < 0.6 else 2, look, metal, front, "knob"
     )
     parts.styled_drawers(
-        w, x[1], narrow, parts.graded_rows(foot + 0.01, bench - 0.05, w.whole(2, 4), 1.15), look, metal, "flat", "cup"
+        w, x[1], narrow, parts.graded_rows(foot + 0.01, worktop - 0.05, w.whole(2, 4), 1.15), look, metal, "flat", "cup"
     )
-    w.box((x[0], x[0] + 0.018), y, (bench, height), look)
+    w.box((x[0], x[0] + 0.018), y, (worktop, height), look)
     for edge in (y[0], y[1] - 0.025):
-        w.box((x[0], upper - 0.06), (edge, edge + 0.025), (bench, bench + gap), look)
-    z = (bench + gap, height)
+        w.box((x[0], upper - 0.06), (edge, edge + 0.025), (worktop, worktop + gap), look)
+    z = (worktop + gap, height)
     if w.chance(0.7):
         w.box((x[0], upper), y, z, look)
         parts.styled_doors(
@@ -154,12 +154,12 @@ def hoosier(w: Workbench) -> None:
         w.box((x[0], upper - 0.02), (y[0] + 0.02, y[1] - 0.02), (middle - 0.009, middle + 0.009), look)
         for low in (z[0] + 0.022, middle + 0.009):
             parts.shelf_objects(w, (x[0] + 0.02, upper), (y[0] + 0.05, y[1] - 0.05), low, 3, 0.5 * (z[1] - z[0]) - 0.03)
-    w.top((upper + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), bench)
+    w.top((upper + 0.03, x[1] - 0.03), (y[0] + 0.05, y[1] - 0.05), worktop)
     parts.feet(w, x, y, foot + 0.001, w.choice(("block", "taper", "plinth", "bun")), look)
 
 
 def media_frame(w: Workbench) -> None:
-    """Television stand without a case: two or three boards or panes of glass between posts or tubes, boxes on them."""
+    """Builds a television stand of two or three boards or panes between posts, panels or tubes."""
     width, depth, height = w.width(0.90, 1.60), w.depth(0.38, 0.48), w.length(0.42, 0.60)
     board = w.look(w.choice(("wood", "glass", "dark", "lacquer")))
     frame = w.look(w.choice(("metal", "iron", "chrome", "wood")))
@@ -195,7 +195,7 @@ def media_frame(w: Workbench) -> None:
 
 
 def media_corner(w: Workbench) -> None:
-    """Television cabinet with cut-off back corners: glazed or solid doors below an open slot."""
+    """Builds a television cabinet with cut-off back corners and an open slot above its doors."""
     width, depth, height = w.width(0.85, 1.25), w.depth(0.42, 0.55), w.length(0.45, 0.65)
     look, foot = parts.wood_look(w), w.length(0.03, 0.07)
     back, cut = w.length(0.4, 0.6) * width, w.length(0.4, 0.65) * depth
@@ -235,7 +235,7 @@ def media_corner(w: Workbench) -> None:
 
 
 def media_offset(w: Workbench) -> None:
-    """Long low bench laid over a higher or lower block: boxes of unequal height that overlap, open cells beside."""
+    """Builds a long low worktop beside a higher open block."""
     width, depth, high = w.width(1.30, 2.00), w.depth(0.36, 0.45), w.length(0.30, 0.40)
     body, face, side = parts.wood_look(w), w.look(w.choice(("wood", "lacquer"))), w.choice(BOTH_SIDES)
     x, y = parts.footprint(depth, width)

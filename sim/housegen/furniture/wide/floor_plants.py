@@ -6,20 +6,21 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Leaf, Ring, foliage, loft
 from sim.housegen.furniture.wide import greenery
 from sim.housegen.furniture.workbench import Point, Workbench
 
 
 def _frond(w: Workbench, base: Point, angle: float, reach: float, up: float, end: float, wide: float) -> greenery.Blade:
-    """The leaflets, in pairs, of one feathery leaf; its rib."""
+    """Adds the leaflets of one feathery leaf, and returns its rib."""
     path = greenery.curve(base, angle, reach, up, end, 8)
     side = (-math.sin(angle), math.cos(angle))
     leaves = []
     for k in range(1, 8):
         size = wide * (1.0, 1.15, 1.1, 0.95, 0.75, 0.5, 0.3)[k - 1]
         ahead = tuple(0.6 * (b - a) for a, b in zip(path[k - 1], path[k], strict=True))
-        for s in greenery.BOTH:
+        for s in BOTH_SIDES:
             tip = greenery.shifted(
                 path[k], (ahead[0] + s * size * side[0], ahead[1] + s * size * side[1], ahead[2] - 0.2 * size)
             )
@@ -29,7 +30,7 @@ def _frond(w: Workbench, base: Point, angle: float, reach: float, up: float, end
 
 
 def floor_fern(w: Workbench) -> None:
-    """Fern whose feathery fronds arch over all sides of its pot."""
+    """Builds a fern with feathery fronds that arch over all sides of its pot."""
     z = greenery.planter(w, w.length(0.13, 0.19), w.length(0.22, 0.38))
     reach, count, ribs = w.length(0.30, 0.50), w.whole(11, 20), []
     for i in range(count):
@@ -40,11 +41,11 @@ def floor_fern(w: Workbench) -> None:
         ribs.append(
             _frond(w, greenery.polar(0.03, 2.4 * i, z - 0.005), 2.4 * i, out, up, max(end, 0.03 - z), 0.24 * reach)
         )
-    greenery.blades(w, ribs, w.look("foliage"))
+    greenery.add_blades(w, ribs, w.look("foliage"))
 
 
 def bamboo(w: Workbench) -> None:
-    """Jointed upright canes with tufts of narrow leaves at the joints."""
+    """Builds upright jointed canes with tufts of narrow leaves."""
     r = w.length(0.14, 0.22)
     z = greenery.planter(w, r, w.length(0.25, 0.40))
     tall, thick = w.length(0.8, 1.6), w.length(0.008, 0.016)
@@ -66,11 +67,11 @@ def bamboo(w: Workbench) -> None:
                 leaves.append(
                     Leaf(at, greenery.shifted(at, greenery.polar(long, angle, long * w.length(-0.3, 0.6))), 0.035, 0.04)
                 )
-    greenery.leaves(w, leaves[:180], w.look("foliage"))
+    greenery.add_leaves(w, leaves[:180], w.look("foliage"))
 
 
 def dracaena(w: Workbench) -> None:
-    """Bare stems of different heights, each with a tuft of sword leaves at its top."""
+    """Builds bare stems of different heights with a tuft of sword-shaped leaves on each."""
     r = w.length(0.13, 0.20)
     z = greenery.planter(w, r, w.length(0.22, 0.36))
     tall, thick = w.length(0.35, 1.2), w.length(0.012, 0.032)
@@ -89,11 +90,11 @@ def dracaena(w: Workbench) -> None:
             out, up = reach * (0.35 + 0.65 * t), reach * (1.2 - 0.8 * t)
             base = greenery.shifted(top, (0.0, 0.0, -0.12 * t * reach - 0.005))
             blades.append((greenery.curve(base, 2.4 * k + i, out, up, up * (1.0 - droop * t)), width))
-        greenery.blades(w, blades, w.look("foliage"))
+        greenery.add_blades(w, blades, w.look("foliage"))
 
 
 def braided_ficus(w: Workbench) -> None:
-    """Three stems plaited round each other under a round crown of small leaves."""
+    """Builds two or three braided stems under a round crown of small leaves."""
     z = greenery.planter(w, w.length(0.14, 0.20), w.length(0.22, 0.36))
     tall, twist, out = w.length(0.45, 0.95), w.length(1.6, 3.0), w.length(0.020, 0.032)
     stems, steps = w.whole(2, 3), 7
@@ -116,11 +117,11 @@ def braided_ficus(w: Workbench) -> None:
             middle, greenery.polar(size * crown * ring, 2.4 * k + 0.12, size * crown * squash * height - 0.03)
         )
         leaves.append(Leaf(base, tip, 0.06, 0.02))
-    greenery.leaves(w, leaves, w.look("foliage"))
+    greenery.add_leaves(w, leaves, w.look("foliage"))
 
 
 def climber_on_pole(w: Workbench) -> None:
-    """Climbing plant: a mossy pole or a bamboo ladder hidden by heart-shaped leaves all the way up."""
+    """Builds a climbing plant with heart-shaped leaves on a pole or a bamboo ladder."""
     r = w.length(0.12, 0.18)
     z = greenery.planter(w, r, w.length(0.20, 0.32))
     tall, thick = w.length(0.5, 1.3), w.length(0.020, 0.040)
@@ -128,7 +129,7 @@ def climber_on_pole(w: Workbench) -> None:
         w.cylinder((0.0, 0.0), (z - 0.01, z + tall), thick, w.look(w.choice(("soil", "wicker", "wood"))))
     else:
         thick = 0.45 * r
-        for side in greenery.BOTH:
+        for side in BOTH_SIDES:
             w.rod((0.0, 0.6 * side * thick, z - 0.01), (0.0, side * thick, z + tall), 0.007, w.look("wood"))
         for k in range(1, 5):
             y = thick * (0.7 + 0.09 * k)
@@ -138,21 +139,21 @@ def climber_on_pole(w: Workbench) -> None:
         t = k / count
         base = greenery.polar(0.9 * thick if thick < 0.045 else 0.0, 2.4 * k, z + 0.02 + tall * t)
         bend = greenery.shifted(base, greenery.polar(0.35 * size, 2.4 * k, 0.35 * size))
-        drawn = size * w.length(0.7, 1.1)
+        length = size * w.length(0.7, 1.1)
         leaves += [
             Leaf(base, bend, 0.008),
             Leaf(
                 bend,
-                greenery.shifted(bend, greenery.polar(0.8 * drawn, 2.4 * k, -0.7 * drawn)),
-                0.85 * drawn,
-                0.1 * drawn,
+                greenery.shifted(bend, greenery.polar(0.8 * length, 2.4 * k, -0.7 * length)),
+                0.85 * length,
+                0.1 * length,
             ),
         ]
-    greenery.leaves(w, leaves, w.look("foliage"))
+    greenery.add_leaves(w, leaves, w.look("foliage"))
 
 
 def papyrus(w: Workbench) -> None:
-    """Bare reeds, each with an umbrella of thread leaves; or bulrushes with brown heads."""
+    """Builds bare reeds with umbrellas of thin leaves, or bulrushes with brown heads."""
     r = w.length(0.12, 0.20)
     z = greenery.planter(w, r, w.length(0.20, 0.42))
     tall, count, heads = w.length(0.55, 1.3), w.whole(6, 13), w.chance(0.5)
@@ -183,11 +184,11 @@ def papyrus(w: Workbench) -> None:
                 green,
                 solid=False,
             )
-    greenery.blades(w, blades, green)
+    greenery.add_blades(w, blades, green)
 
 
 def paddle_leaves(w: Workbench) -> None:
-    """Banana or strelitzia: long stalks from the pot, each ending in one big upright paddle."""
+    """Builds a banana plant or strelitzia: long stalks with one large upright leaf each."""
     z = greenery.planter(w, w.length(0.15, 0.22), w.length(0.26, 0.42))
     tall, width = w.length(0.8, 1.6), w.length(0.14, 0.26)
     green, blades = w.look("foliage"), []
@@ -201,11 +202,11 @@ def paddle_leaves(w: Workbench) -> None:
         blades.append(
             (greenery.curve(top, angle, w.length(0.2, 0.6) * long, 0.75 * long, w.length(0.4, 1.0) * long), width)
         )
-    greenery.blades(w, blades, green)
+    greenery.add_blades(w, blades, green)
 
 
 def planter_trough(w: Workbench) -> None:
-    """Long low box, plain or on legs, with a row of upright grasses or bushy plants."""
+    """Builds a long low planter with a row of grasses or bushy plants."""
     wide, deep, high = w.width(0.60, 1.20), w.length(0.22, 0.34), w.length(0.25, 0.50)
     box, x, y = w.look(w.choice(("lacquer", "wood", "masonry", "metal"))), 0.5 * deep, 0.5 * wide
     lift = w.length(0.10, 0.35) if w.chance(0.4) else 0.0
@@ -223,7 +224,7 @@ def planter_trough(w: Workbench) -> None:
             for k in range(18):
                 up = tall * w.length(0.7, 1.1)
                 blades.append((greenery.curve(c, 2.4 * k, up * w.length(0.1, 0.5), up, up * w.length(0.5, 1.0)), 0.02))
-            greenery.blades(w, blades, green)
+            greenery.add_blades(w, blades, green)
         else:
             leaves = []
             w.rod(c, greenery.shifted(c, (0.0, 0.0, 0.8 * tall)), 0.008, w.look("wood"), solid=False)
@@ -232,11 +233,11 @@ def planter_trough(w: Workbench) -> None:
                 leaves.append(
                     Leaf(at, greenery.shifted(at, greenery.polar(w.length(0.08, 0.16), 2.4 * k, 0.10)), 0.06, 0.02)
                 )
-            greenery.leaves(w, leaves, green)
+            greenery.add_leaves(w, leaves, green)
 
 
 def agave(w: Workbench) -> None:
-    """Stiff thick leaves in one big rosette straight out of the pot."""
+    """Builds one large rosette of stiff thick leaves."""
     r = w.length(0.15, 0.24)
     z = greenery.planter(w, r, w.length(0.22, 0.40))
     size, width, count = w.length(0.28, 0.50), w.length(0.06, 0.11), w.whole(16, 30)
@@ -252,11 +253,11 @@ def agave(w: Workbench) -> None:
                 width,
             )
         )
-    greenery.blades(w, blades, w.look("foliage"))
+    greenery.add_blades(w, blades, w.look("foliage"))
 
 
 def dried_stalks(w: Workbench) -> None:
-    """Tall floor vase with plumes or branches that fan out of its narrow mouth."""
+    """Builds a tall floor vase with plumes or branches."""
     high, r = w.length(0.40, 0.75), w.length(0.11, 0.18)
     look = w.look(w.choice(("ceramic", "wicker", "glass", "pot")))
     shape = w.choice(((0.6, 1.0, 0.9, 0.45, 0.5), (0.9, 0.95, 0.9, 0.8, 0.85), (0.45, 0.6, 1.0, 0.5, 0.6)))
@@ -279,7 +280,7 @@ def dried_stalks(w: Workbench) -> None:
                 t = 0.35 + 0.13 * k
                 at: Point = tuple(a + t * (b - a) for a, b in zip(foot, tip, strict=True))  # type: ignore[assignment]
                 leaves.append(Leaf(at, greenery.shifted(at, greenery.polar(0.09, 2.4 * k + i, 0.05)), 0.045, 0.01))
-    greenery.leaves(w, leaves, w.look(w.choice(("foliage", "flower"))))
+    greenery.add_leaves(w, leaves, w.look(w.choice(("foliage", "flower"))))
 
 
 STYLES = (

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, hoop, loft, named_mesh
 from sim.housegen.furniture.workbench import Point, Workbench
 
 
-def _pad(w: Workbench, size: Point, at: Point, *, tilt: float = 0.0, material: str = "leather") -> None:
-    """An upholstered pad about `at`."""
-    w.mesh(chamfered_box(size, 0.25 * min(size)), at, w.look(material), tilt=tilt)
+def _leather_pad(w: Workbench, size: Point, at: Point, *, tilt: float = 0.0) -> None:
+    """Adds an upholstered pad with its middle at `at`."""
+    parts.pad(w, size, at, w.look("leather"), 0.25 * min(size), tilt=tilt)
 
 
-def _plates(w: Workbench, x: float, y: float, z: float, side: int, radius: float, count: int) -> float:
-    """Weight discs side by side on a bar that runs along y, outwards from `y`; where they end."""
+def _weight_discs(w: Workbench, x: float, y: float, z: float, side: int, radius: float, count: int) -> float:
+    """Adds weight discs on a bar along y, outwards from `y`, and returns the y where they end."""
     for i in range(count):
         thick, r = 0.035, radius * (1.0 - 0.18 * i)
         look = w.look("rubber") if i % 2 == 0 else w.look("paint")
@@ -26,7 +27,7 @@ def _plates(w: Workbench, x: float, y: float, z: float, side: int, radius: float
 
 
 def elliptical(w: Workbench) -> None:
-    """Cross trainer: flywheel housing, two long pedal arms on a rail and two swinging handles."""
+    """Builds a cross trainer with a flywheel housing, two pedal arms and two swinging handles."""
     length, high = w.depth(1.35, 1.85), w.length(1.50, 1.75)
     iron, dark, grey = w.look("iron"), w.look("dark"), w.look("metal")
     x0, x1, apart = -0.5 * length, 0.5 * length, w.length(0.11, 0.16)
@@ -78,7 +79,7 @@ def elliptical(w: Workbench) -> None:
 
 
 def stair_climber(w: Workbench) -> None:
-    """Stair machine: a short flight of moving steps between side panels, handrails and a console."""
+    """Builds a stair machine with steps between side panels, handrails and a console."""
     half, length = 0.5 * w.width(0.72, 0.90), w.depth(1.15, 1.45)
     shell, dark = w.look("dark") if w.chance(0.5) else w.look("appliance"), w.look("dark")
     count, rise = w.whole(3, 5), w.length(0.17, 0.21)
@@ -109,7 +110,7 @@ def stair_climber(w: Workbench) -> None:
 
 
 def functional_trainer(w: Workbench) -> None:
-    """Two cable columns with weight stacks, a cross beam above, handles on cords."""
+    """Builds two cable columns with weight stacks, a cross beam and handles on cords."""
     half, high = 0.5 * w.width(1.20, 1.75), w.height(1.95, 2.15)
     iron, chrome = w.look("iron") if w.chance(0.6) else w.look("appliance"), w.look("chrome")
     angled = w.length(0.0, 0.25)
@@ -139,7 +140,7 @@ def functional_trainer(w: Workbench) -> None:
 
 
 def vibration_plate(w: Workbench) -> None:
-    """Thick rounded platform with a leaning column, two handles and a small console."""
+    """Builds a thick rounded platform with a column, two handles and a console."""
     deep, half = w.length(0.62, 0.80), 0.5 * w.width(0.60, 0.78)
     shell = w.look("appliance") if w.chance(0.5) else w.look("dark")
     plinth, high = w.length(0.13, 0.20), w.length(1.15, 1.40)
@@ -170,7 +171,7 @@ def vibration_plate(w: Workbench) -> None:
 
 
 def reformer(w: Workbench) -> None:
-    """Pilates bed: long frame with rails, a padded carriage with shoulder rests, a foot bar and straps."""
+    """Builds a Pilates reformer: a long frame with a padded carriage, shoulder rests and a foot bar."""
     length, half, z = w.depth(2.10, 2.40), 0.5 * w.width(0.60, 0.72), w.length(0.18, 0.42)
     frame = w.look("wood") if w.chance(0.7) else w.look("metal")
     x0, x1 = -0.5 * length, 0.5 * length
@@ -183,9 +184,9 @@ def reformer(w: Workbench) -> None:
         w.box((x, x + 0.05), (-half, half), (z, z + 0.12), frame)
     at = w.length(-0.35, 0.15)
     w.box((at - 0.40, at + 0.40), (-half + 0.04, half - 0.04), (z + 0.10, z + 0.14), w.look("dark"))
-    _pad(w, (0.85, 2 * half - 0.12, 0.07), (at, 0.0, z + 0.17))
+    _leather_pad(w, (0.85, 2 * half - 0.12, 0.07), (at, 0.0, z + 0.17))
     for side in BOTH_SIDES:
-        _pad(w, (0.06, 0.14, 0.18), (at - 0.30, side * 0.15, z + 0.28))
+        _leather_pad(w, (0.06, 0.14, 0.18), (at - 0.30, side * 0.15, z + 0.28))
         w.rod(
             (x0 + 0.06, side * (half - 0.03), z + 0.10),
             (x0 + 0.06, side * (half - 0.03), z + w.length(0.35, 0.60)),
@@ -198,7 +199,7 @@ def reformer(w: Workbench) -> None:
             0.016,
             w.look("chrome"),
         )
-    _pad(w, (0.20, 0.30, 0.05), (at - 0.52, 0.0, z + 0.20), tilt=w.length(0.0, 0.3))
+    _leather_pad(w, (0.20, 0.30, 0.05), (at - 0.52, 0.0, z + 0.20), tilt=w.length(0.0, 0.3))
     w.rod(
         (x1 - 0.15, -half + 0.01, z + 0.45),
         (x1 - 0.15, half - 0.01, z + 0.45),
@@ -213,7 +214,7 @@ def reformer(w: Workbench) -> None:
 
 
 def inversion_table(w: Workbench) -> None:
-    """Folding A-frame with a tilted padded back board between its sides and foot clamps at the end of a bar."""
+    """Builds an A-frame with a tilted padded board and foot clamps."""
     half, pivot, tilt = 0.5 * w.width(0.62, 0.76), w.length(0.80, 1.00), w.length(0.25, 0.95)
     iron, y_in = w.look("iron") if w.chance(0.6) else w.look("paint"), 0.5 * w.length(0.36, 0.44)
     spread = w.length(0.45, 0.60)
@@ -242,7 +243,7 @@ def inversion_table(w: Workbench) -> None:
 
 
 def squat_rack(w: Workbench) -> None:
-    """Power cage or half rack of square tubes with holes, a loaded barbell on its hooks and safety arms."""
+    """Builds a power cage or a half rack with a loaded barbell."""
     half, high, deep = 0.5 * w.length(1.08, 1.25), w.height(1.80, 2.20), w.length(0.80, 1.30)
     iron, steel = w.look("iron") if w.chance(0.65) else w.look("paint"), w.look("chrome")
     cage = w.chance(0.6)
@@ -268,18 +269,18 @@ def squat_rack(w: Workbench) -> None:
     z, reach, x = w.length(0.95, 1.40), 0.5 * w.length(1.80, 2.10), post + t + 0.025
     for side in BOTH_SIDES:
         w.box((post, post + 0.12), (side * (half - t) - 0.03, side * (half - t) + 0.03), (z - 0.06, z - 0.014), iron)
-        end = _plates(w, x, side * (reach - 0.30), z, side, w.length(0.18, 0.225), w.whole(1, 3))
+        end = _weight_discs(w, x, side * (reach - 0.30), z, side, w.length(0.18, 0.225), w.whole(1, 3))
         w.rod((x, end, z), (x, side * reach, z), 0.025, steel)
     w.rod((x, -reach + 0.25, z), (x, reach - 0.25, z), 0.015, steel)
     if cage and w.chance(0.6):
-        _pad(w, (1.10, 0.28, 0.08), (0.1, 0.0, 0.43))
+        _leather_pad(w, (1.10, 0.28, 0.08), (0.1, 0.0, 0.43))
         for c in (-0.30, 0.50):
             w.box((c - 0.03, c + 0.03), (-0.20, 0.20), (0.0, 0.05), iron)
             w.box((c - 0.03, c + 0.03), (-0.03, 0.03), (0.05, 0.40), iron)
 
 
 def plate_tree(w: Workbench) -> None:
-    """Upright or slanted stand whose pegs carry discs of several sizes."""
+    """Builds a stand with weight discs on pegs."""
     iron, steel = w.look("iron"), w.look("chrome")
     high, foot = w.length(0.95, 1.25), w.length(0.28, 0.36)
     w.box((-foot, foot), (-0.04, 0.04), (0.0, 0.06), iron)
@@ -296,24 +297,24 @@ def plate_tree(w: Workbench) -> None:
         z = 0.30 + (high - 0.42) * i / (levels - 1)
         for side in BOTH_SIDES:
             w.rod((0.0, side * 0.02, z), (0.0, side * 0.26, z), 0.024, steel)
-            _plates(w, 0.0, side * 0.05, z, side, (0.225, 0.17, 0.125)[i] * w.length(0.9, 1.0), w.whole(1, 3))
+            _weight_discs(w, 0.0, side * 0.05, z, side, (0.225, 0.17, 0.125)[i] * w.length(0.9, 1.0), w.whole(1, 3))
         if twin:
             reach = 0.03 + (foot - 0.08) * (high - z) / (high - 0.05)
             w.box((-reach, reach), (-0.035, 0.035), (z - 0.03, z + 0.03), iron)
 
 
 def incline_bench(w: Workbench) -> None:
-    """Adjustable bench: seat and raised back pad on a wheeled tube frame, roller legs, dumbbells by its side."""
+    """Builds an adjustable bench with a raised back pad, and sometimes dumbbells beside it."""
     frame, pivot, lean = w.look("iron") if w.chance(0.6) else w.look("appliance"), 0.42, w.length(0.3, 1.3)
     wide, back = w.length(0.25, 0.32), w.length(0.70, 0.85)
     w.box((-0.65, 0.55), (-0.035, 0.035), (0.06, 0.12), frame)
     for x, half in ((-0.62, w.length(0.20, 0.32)), (0.52, w.length(0.18, 0.26))):
         w.box((x - 0.035, x + 0.035), (-half, half), (0.0, 0.07), frame)
     w.bar((0.20, 0.0, 0.10), (0.15, 0.0, pivot), 0.06, 0.06, frame)
-    _pad(w, (0.36, wide, 0.08), (0.22, 0.0, pivot + 0.03), tilt=w.length(-0.25, 0.0))
+    _leather_pad(w, (0.36, wide, 0.08), (0.22, 0.0, pivot + 0.03), tilt=w.length(-0.25, 0.0))
     c, s = math.cos(lean), math.sin(lean)
     middle = (0.02 - 0.5 * back * c, pivot + 0.05 + 0.5 * back * s)
-    _pad(w, (back, wide, 0.08), (middle[0], 0.0, middle[1]), tilt=lean)
+    _leather_pad(w, (back, wide, 0.08), (middle[0], 0.0, middle[1]), tilt=lean)
     w.bar((0.12, 0.0, pivot), (middle[0], 0.0, middle[1] - 0.03), 0.05, 0.05, frame)
     w.bar((-0.45, 0.0, 0.10), (middle[0], 0.0, middle[1]), 0.05, 0.05, frame)
     if w.chance(0.5):
@@ -329,7 +330,7 @@ def incline_bench(w: Workbench) -> None:
 
 
 def trampoline(w: Workbench) -> None:
-    """Small round rebounder on short legs, some with a holding bar."""
+    """Builds a small round trampoline, with or without a bar to hold."""
     r, z, legs = w.length(0.46, 0.68), w.length(0.20, 0.32), w.choice((4, 6, 8))
     w.cylinder((0.0, 0.0), (z - 0.02, z), r - 0.08, w.look("dark"))
     w.mesh(hoop(r, 0.12, 0.045), (0.0, 0.0, z), w.look("bright") if w.chance(0.6) else w.look("rubber"))
@@ -347,7 +348,7 @@ def trampoline(w: Workbench) -> None:
 
 
 def medicine_balls(w: Workbench) -> None:
-    """Tower or sloping rack with medicine balls."""
+    """Builds a tower or a sloping rack with medicine balls."""
     count, r = w.whole(3, 5), w.length(0.105, 0.14)
     iron = w.look("iron") if w.chance(0.6) else w.look("chrome")
     if w.chance(0.5):
@@ -378,7 +379,7 @@ def medicine_balls(w: Workbench) -> None:
 
 
 def floor_kit(w: Workbench) -> None:
-    """Balance half-ball, an ab wheel, push-up grips and a rolled mat set out side by side."""
+    """Builds small equipment side by side: a balance ball, a wheel, grips, a rolled mat, blocks."""
     y, dark = 0.0, w.look("dark")
     kinds = [kind for kind in ("dome", "wheel", "grips", "roll", "blocks") if w.chance(0.65)] or ["dome", "grips"]
     for kind in kinds:

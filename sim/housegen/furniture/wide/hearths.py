@@ -14,8 +14,8 @@ from sim.housegen.furniture.shapes import Ring, frustum, loft, named_mesh
 from sim.housegen.furniture.workbench import Point, Range, Workbench
 
 
-def _arch(x: Range, half: float, spring: float, rise: float, top: float) -> MeshShape:
-    """What lies above an arched opening |y| < half, from the arch that springs at height `spring` up to `top`."""
+def _wall_above_arch(x: Range, half: float, spring: float, rise: float, top: float) -> MeshShape:
+    """Returns the wall above an arched opening |y| < half, from the arch that starts at `spring` up to `top`."""
     n = 12
     angles = np.linspace(0.0, math.pi, n)
     y = half * np.cos(angles)
@@ -36,13 +36,13 @@ def _arch(x: Range, half: float, spring: float, rise: float, top: float) -> Mesh
     return named_mesh("arch", np.vstack(rows), faces)
 
 
-def _prism(profile_yz: list[tuple[float, float]], x: Range) -> MeshShape:
-    """A convex outline in the (y, z) plane made solid from x[0] to x[1]."""
+def _extruded(profile_yz: list[tuple[float, float]], x: Range) -> MeshShape:
+    """Returns a convex outline in the (y, z) plane extruded from x[0] to x[1]."""
     return named_mesh("prism", [(at, y, z) for at in x for y, z in profile_yz])
 
 
 def _logs(w: Workbench, at: Point, half: float, *, burning: float = 0.7) -> None:
-    """A few logs lying across each other, flames on them."""
+    """Adds logs that lie across each other, with flames with the probability `burning`."""
     x, y, z = at
     wood = w.look("wood")
     r = w.length(0.03, 0.05)
@@ -56,15 +56,15 @@ def _logs(w: Workbench, at: Point, half: float, *, burning: float = 0.7) -> None
             w.ellipsoid((x, c, z + 2 * r + 0.8 * high), (0.035, 0.045, high), w.look("fire"), solid=False)
 
 
-def _walls(w: Workbench, x: Range, y: Range, z: Range, thick: float, look: Look) -> None:
-    """Back and cheeks of a fire chamber, open to the front."""
+def _fire_chamber(w: Workbench, x: Range, y: Range, z: Range, thick: float, look: Look) -> None:
+    """Adds the back and the sides of a fire chamber that is open to the front."""
     w.box((x[0], x[0] + thick), y, z, look)
     for low in (y[0], y[1] - thick):
         w.box((x[0] + thick, x[1]), (low, low + thick), z, look)
 
 
 def kiva(w: Workbench) -> None:
-    """Rounded adobe hearth that narrows into a chimney, logs upright in an oval mouth, a ledge beside it."""
+    """Builds a rounded adobe fireplace that narrows into a chimney, with a ledge in front."""
     half, deep, top = 0.5 * w.width(0.85, 1.25), 0.5 * w.length(0.55, 0.75), w.height(2.30, 2.50)
     look = w.look("lacquer") if w.chance(0.7) else w.look("pot")
     belly, ledge = w.length(0.95, 1.25), w.length(0.18, 0.42)
@@ -96,7 +96,7 @@ def kiva(w: Workbench) -> None:
 
 
 def smoke_hood(w: Workbench) -> None:
-    """Open fire on a raised plinth under a tapering hood that two posts or brackets hold up to the ceiling."""
+    """Builds an open fire on a plinth under a tapered hood that reaches the ceiling."""
     half, deep, top = 0.5 * w.width(1.00, 1.60), w.length(0.60, 0.85), w.height(2.35, 2.50)
     plinth, hood = w.length(0.18, 0.42), w.length(1.15, 1.45)
     stone = w.look("masonry") if w.chance(0.5) else w.look("stone")
@@ -129,7 +129,7 @@ def smoke_hood(w: Workbench) -> None:
 
 
 def glass_corner(w: Workbench) -> None:
-    """Modern white or stone block whose fire shows through glass on two or three sides."""
+    """Builds a modern block whose fire is visible through glass on two or three sides."""
     half, deep, top = 0.5 * w.width(1.10, 1.80), w.length(0.45, 0.65), w.height(2.35, 2.50)
     base, high = w.length(0.25, 0.55), w.length(0.42, 0.60)
     look = w.look("lacquer") if w.chance(0.65) else w.look("stone")
@@ -157,11 +157,11 @@ def glass_corner(w: Workbench) -> None:
 
 
 def inglenook(w: Workbench) -> None:
-    """A wide walk-in hearth under a heavy beam, benches inside it, fire on the floor or in an iron basket."""
+    """Builds a wide walk-in fireplace under a heavy beam, sometimes with benches inside."""
     half, deep, high = 0.5 * w.width(1.70, 2.40), w.length(0.60, 0.85), w.length(1.25, 1.55)
     pier, top = w.length(0.18, 0.32), w.height(1.95, 2.50)
     brick = w.look("masonry") if w.chance(0.7) else w.look("lacquer")
-    _walls(w, (0.0, deep), (-half, half), (0.0, high), pier, brick)
+    _fire_chamber(w, (0.0, deep), (-half, half), (0.0, high), pier, brick)
     w.box((0.0, deep), (-half, half), (high, top), brick)
     wood = w.look("wood")
     w.box((deep - 0.12, deep + 0.07), (-half - 0.03, half + 0.03), (high - 0.02, high + w.length(0.18, 0.28)), wood)
@@ -188,7 +188,7 @@ def inglenook(w: Workbench) -> None:
 
 
 def overmantel(w: Workbench) -> None:
-    """Victorian: arched cast-iron insert with tiled cheeks in a surround of columns, a panel or mirror above."""
+    """Builds a Victorian fireplace: an arched iron insert between columns, with a panel or mirror above."""
     half, deep, shelf = 0.5 * w.width(1.25, 1.60), w.length(0.22, 0.32), w.length(1.10, 1.30)
     wood = parts.wood_look(w)
     insert = w.length(0.42, 0.50)
@@ -203,7 +203,7 @@ def overmantel(w: Workbench) -> None:
         w.box((0.03, deep - 0.03), (y[0], y[1]), (0.0, frame_top), iron)
         y = sorted((side * (mouth + 0.06), side * (insert - 0.03)))
         w.box((deep - 0.03, deep - 0.022), (y[0], y[1]), (0.04, frame_top - 0.06), tile, solid=False)
-    w.mesh(_arch((0.03, deep - 0.03), mouth, spring, mouth, frame_top), (0.0, 0.0, 0.0), iron)
+    w.mesh(_wall_above_arch((0.03, deep - 0.03), mouth, spring, mouth, frame_top), (0.0, 0.0, 0.0), iron)
     w.box((0.03, deep), (-insert, insert), (frame_top, shelf), wood)
     w.box((0.0, deep + 0.10), (-half, half), (shelf, shelf + 0.045), wood)
     turned = w.chance(0.5)
@@ -240,7 +240,7 @@ def overmantel(w: Workbench) -> None:
 
 
 def log_wall(w: Workbench) -> None:
-    """Long low bench of concrete or stone carrying a framed fire box, with niches full of stacked logs beside it."""
+    """Builds a long low bench with a framed fire box and niches of stacked logs."""
     half, deep, bench = 0.5 * w.width(1.60, 2.60), w.length(0.40, 0.55), w.length(0.22, 0.45)
     stone, dark = w.look("stone") if w.chance(0.6) else w.look("lacquer"), w.look("dark")
     box, high = w.length(0.35, 0.50), w.length(0.55, 0.85)
@@ -250,7 +250,7 @@ def log_wall(w: Workbench) -> None:
     w.box((0.0, deep + 0.04), (min(c - box, side * half), max(c + box, side * half)), (0.0, bench - 0.08), stone)
     far = sorted((-side * half, -side * (half - 0.08)))
     w.box((0.0, deep + 0.04), (far[0], far[1]), (0.0, bench - 0.08), stone)
-    _walls(w, (0.0, deep), (c - box, c + box), (bench, bench + high), 0.05, dark)
+    _fire_chamber(w, (0.0, deep), (c - box, c + box), (bench, bench + high), 0.05, dark)
     w.box((0.0, deep), (c - box, c + box), (bench + high, bench + high + 0.05), dark)
     w.box((0.05, deep - 0.05), (c - box + 0.05, c + box - 0.05), (bench, bench + 0.03), w.look("char"))
     _logs(w, (0.5 * deep, c, bench + 0.03), 0.22)
@@ -288,7 +288,7 @@ def log_wall(w: Workbench) -> None:
 
 
 def bioethanol(w: Workbench) -> None:
-    """Free-standing ethanol fire: a tray of flames between glass panes on a low base or legs."""
+    """Builds a free-standing ethanol fire: flames between glass panes on a low base or legs."""
     half, deep = 0.5 * w.width(0.70, 1.30), w.depth(0.30, 0.45)
     body = w.choice(("dark", "lacquer", "steel", "stone"))
     look, z = w.look(body), w.length(0.10, 0.45)
@@ -318,7 +318,7 @@ def bioethanol(w: Workbench) -> None:
 
 
 def gas_radiant(w: Workbench) -> None:
-    """Gas heater of the seventies: box with a row of glowing ceramic bars behind wires in a stepped surround."""
+    """Builds a gas heater of the 1970s: a row of glowing bars behind wires in a stepped surround."""
     half, top, deep = 0.5 * w.width(1.10, 1.60), w.length(0.70, 0.95), w.length(0.14, 0.24)
     tiles = w.chance(0.5)
     look = w.look("masonry") if tiles else parts.wood_look(w)
@@ -353,7 +353,7 @@ def gas_radiant(w: Workbench) -> None:
 
 
 def arched_oven(w: Workbench) -> None:
-    """Brick or plastered block with an arched mouth over an arched log store, a gable or chimney on top."""
+    """Builds a brick or plastered block with an arched mouth, often above an arched log store."""
     half, deep = 0.5 * w.width(0.90, 1.40), w.length(0.50, 0.75)
     look = w.look("masonry") if w.chance(0.6) else w.look("lacquer")
     mouth, store = w.length(0.45, 0.62) * half, w.length(0.0, 0.40) if w.chance(0.6) else 0.0
@@ -366,7 +366,7 @@ def arched_oven(w: Workbench) -> None:
         w.box((0.10, deep), (y[0], y[1]), (0.0, top), look)
         c = side * (mouth - 0.004)
         w.box((0.10, deep - 0.03), (c - 0.004, c + 0.004), (0.0, spring), w.look("char"), solid=False)
-    w.mesh(_arch((0.10, deep), mouth, spring, mouth * w.length(0.6, 1.0), top), (0.0, 0.0, 0.0), look)
+    w.mesh(_wall_above_arch((0.10, deep), mouth, spring, mouth * w.length(0.6, 1.0), top), (0.0, 0.0, 0.0), look)
     if store:
         w.box((0.10, deep), (-mouth, mouth), (shelf - 0.08, shelf), look)
         r = 0.055
@@ -384,7 +384,7 @@ def arched_oven(w: Workbench) -> None:
     kind = w.whole(0, 2)
     if kind == 0:
         w.mesh(
-            _prism([(-half, top), (half, top), (-0.25 * half, 2.4), (0.25 * half, 2.4)], (0.0, deep - 0.02)),
+            _extruded([(-half, top), (half, top), (-0.25 * half, 2.4), (0.25 * half, 2.4)], (0.0, deep - 0.02)),
             (0.0, 0.0, 0.0),
             look,
         )

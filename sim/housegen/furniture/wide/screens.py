@@ -11,8 +11,8 @@ from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, na
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
-def _curved(width: float, sag: float, thick: float, high: float) -> MeshShape:
-    """A slab whose ends come forward by `sag`, its middle at x = 0, from z = 0."""
+def _curved_slab(width: float, sag: float, thick: float, high: float) -> MeshShape:
+    """Returns a slab from z = 0 whose ends come forward by `sag`, with its middle at x = 0."""
     front = [(sag * (i / 5 - 1) ** 2, 0.5 * width * (i / 5 - 1)) for i in range(11)]
     outline = [*front, *[(px - thick, py) for px, py in reversed(front)]]
     n = len(outline)
@@ -27,17 +27,17 @@ def _curved(width: float, sag: float, thick: float, high: float) -> MeshShape:
     return named_mesh("curved", vertices, faces)
 
 
-def _screen(
+def _framed_screen(
     w: Workbench, x: float, y: Range, z: Range, shell: Look, bezel: float, thick: float, chin: float = 0.0
 ) -> None:
-    """A flat screen in a frame, its face at x; `chin` is what the frame has more below."""
+    """Adds a flat screen in a frame with its face at x; `chin` is the extra height of the frame below."""
     w.box((x - thick, x), y, z, shell)
     inner = (y[0] + bezel, y[1] - bezel), (z[0] + bezel + chin, z[1] - bezel)
     w.box((x - 0.002, x + 0.003), *inner, w.look("screen"), solid=False)
 
 
 def tv_speakers(w: Workbench) -> None:
-    """Early flat television: a thick bezel, speakers at its sides or below, an oval or square swivel foot."""
+    """Builds an early flat television with a thick bezel, visible speakers and a round or square foot."""
     width = w.width(0.65, 1.25)
     shell = w.look(w.choice(("metal", "dark", "plastic", "dark")))
     beside = w.chance(0.6)
@@ -71,13 +71,13 @@ def tv_speakers(w: Workbench) -> None:
 
 
 def tv_serif(w: Workbench) -> None:
-    """Television in a frame that flares to a ledge above and below, on its own edge or on short splayed legs."""
+    """Builds a television whose frame widens to a ledge above and below, with or without legs."""
     width = w.width(0.70, 1.20)
     shell = w.look(w.choice(("lacquer", "wood", "dark", "plastic")))
     high, ledge = 0.60 * width, w.length(0.06, 0.14)
     legs = w.length(0.10, 0.28) if w.chance(0.6) else 0.0
     y = (-0.5 * width, 0.5 * width)
-    _screen(w, 0.02, y, (legs + 0.02, legs + high), shell, w.length(0.02, 0.035), 0.05)
+    _framed_screen(w, 0.02, y, (legs + 0.02, legs + high), shell, w.length(0.02, 0.035), 0.05)
     for z in (legs, legs + high - 0.01):
         w.box((-0.5 * ledge - 0.02, 0.5 * ledge + 0.02), y, (z, z + 0.02), shell)
     if legs:
@@ -89,16 +89,19 @@ def tv_serif(w: Workbench) -> None:
 
 
 def tv_curved(w: Workbench) -> None:
-    """Television with a curved screen on a wide bowed foot or two blades."""
+    """Builds a television with a curved screen on a wide foot or two blades."""
     width = w.width(0.95, 1.45)
     dark, lift = w.look(w.choice(("dark", "metal"))), w.length(0.05, 0.12)
     high, sag = 0.575 * width, w.length(0.05, 0.12)
-    w.mesh(_curved(width, sag, 0.035, high), (0.0, 0.0, lift), dark)
+    w.mesh(_curved_slab(width, sag, 0.035, high), (0.0, 0.0, lift), dark)
     w.mesh(
-        _curved(width - 0.024, sag * 0.95, 0.01, high - 0.03), (0.004, 0.0, lift + 0.018), w.look("screen"), solid=False
+        _curved_slab(width - 0.024, sag * 0.95, 0.01, high - 0.03),
+        (0.004, 0.0, lift + 0.018),
+        w.look("screen"),
+        solid=False,
     )
     if w.chance(0.5):
-        w.mesh(_curved(0.6 * width, 0.12, 0.05, 0.016), (0.02, 0.0, 0.0), dark)
+        w.mesh(_curved_slab(0.6 * width, 0.12, 0.05, 0.016), (0.02, 0.0, 0.0), dark)
         w.box((-0.035, 0.0), (-0.10, 0.10), (0.005, lift + 0.05), dark)
     else:
         for s in BOTH_SIDES:
@@ -108,7 +111,7 @@ def tv_curved(w: Workbench) -> None:
 
 
 def tv_wall_framed(w: Workbench) -> None:
-    """Television hung like a picture in a wooden or white frame, or tilted on a bracket; perhaps a sound bar below."""
+    """Builds a wall television, framed like a picture or tilted on a bracket, often with a sound bar."""
     width = w.width(0.80, 1.50)
     w.mount_height_m = 0.95
     shell = w.look(w.choice(("wood", "lacquer", "dark", "metal")))
@@ -131,7 +134,7 @@ def tv_wall_framed(w: Workbench) -> None:
         w.box((0.0, x), (-0.15, 0.15), (z0 + 0.4 * high, z0 + 0.6 * high), w.look("iron"))
     else:
         w.box((0.0, 0.02), (-0.4 * width, 0.4 * width), (z0 + 0.1, z0 + high - 0.1), w.look("dark"))
-        _screen(w, 0.045, y, (z0, z0 + high), shell, bezel, 0.03)
+        _framed_screen(w, 0.045, y, (z0, z0 + high), shell, bezel, 0.03)
     if bar:
         half = w.choice((0.25, 0.35, 0.48)) * width
         w.mesh(
@@ -142,12 +145,15 @@ def tv_wall_framed(w: Workbench) -> None:
 
 
 def monitor_curved(w: Workbench) -> None:
-    """Very wide curved monitor on a splayed foot, keyboard and mouse before it, perhaps a speaker at each side."""
+    """Builds a very wide curved monitor with keyboard and mouse, and sometimes speakers."""
     width, dark = w.length(0.70, 1.10), w.look(w.choice(("dark", "dark", "plastic", "metal")))
     lift, high, sag = w.length(0.08, 0.16), w.length(0.32, 0.40), w.length(0.04, 0.10)
-    w.mesh(_curved(width, sag, 0.03, high), (0.0, 0.0, lift), dark)
+    w.mesh(_curved_slab(width, sag, 0.03, high), (0.0, 0.0, lift), dark)
     w.mesh(
-        _curved(width - 0.02, 0.95 * sag, 0.01, high - 0.03), (0.004, 0.0, lift + 0.02), w.look("screen"), solid=False
+        _curved_slab(width - 0.02, 0.95 * sag, 0.01, high - 0.03),
+        (0.004, 0.0, lift + 0.02),
+        w.look("screen"),
+        solid=False,
     )
     w.box((-0.09, -0.05), (-0.03, 0.03), (0.005, lift + 0.65 * high), dark)
     w.box((-0.06, -0.02), (-0.05, 0.05), (lift + 0.4 * high, lift + 0.65 * high), dark)
@@ -162,7 +168,7 @@ def monitor_curved(w: Workbench) -> None:
 
 
 def all_in_one(w: Workbench) -> None:
-    """All-in-one computer: a thin slab with a bright chin on a bent foot, a flat keyboard and mouse."""
+    """Builds an all-in-one computer on a bent foot with keyboard and mouse."""
     width = w.length(0.50, 0.66)
     metal = w.look(w.choice(("metal", "plastic", "steel", "bright")))
     high, chin, lift = 0.66 * width, w.length(0.0, 0.07), w.length(0.08, 0.12)
@@ -188,18 +194,18 @@ def all_in_one(w: Workbench) -> None:
 
 
 def desktop_tower(w: Workbench) -> None:
-    """Monitor of 4:3 or 16:9 on a riser or on a flat desktop case, or beside a tower, with keyboard and mouse."""
+    """Builds a monitor on a riser, on a flat computer case or beside a tower, with keyboard and mouse."""
     shell = w.look(w.choice(("dark", "appliance", "plastic", "metal")))
     wide = w.choice((True, False))
     width = w.length(0.48, 0.60) if wide else w.length(0.36, 0.46)
     high, bezel = (0.60 if wide else 0.80) * width, w.length(0.012, 0.035)
-    way = w.choice(("tower", "case", "riser"))
+    place = w.choice(("tower", "case", "riser"))
     base = 0.0
-    if way == "case":
+    if place == "case":
         base = w.length(0.08, 0.15)
         w.box((-0.2, 0.14), (-0.21, 0.21), (0.0, base), shell)
         w.box((0.139, 0.144), (0.0, 0.17), (0.55 * base, 0.75 * base), w.look("dark"), solid=False)
-    elif way == "riser":
+    elif place == "riser":
         base, wood = w.length(0.08, 0.13), w.look("wood")
         w.box((-0.14, 0.12), (-0.3, 0.3), (base - 0.018, base), wood)
         for s in BOTH_SIDES:
@@ -211,7 +217,7 @@ def desktop_tower(w: Workbench) -> None:
         w.box((-0.24, 0.16), (low, top), (0.0, tall), shell)
         w.box((0.158, 0.164), (low + 0.02, top - 0.02), (0.6 * tall, 0.9 * tall), w.look("dark"), solid=False)
     lift = base + w.length(0.07, 0.13)
-    _screen(
+    _framed_screen(
         w,
         0.03,
         (-0.5 * width, 0.5 * width),
@@ -228,10 +234,10 @@ def desktop_tower(w: Workbench) -> None:
 
 
 def tv_trolley(w: Workbench) -> None:
-    """Screen on a trolley: posts with castors, a tray for the player and perhaps a basket under it."""
+    """Builds a screen on a trolley with castors and one or two shelves."""
     width, metal = w.width(0.85, 1.35), w.look(w.choice(("metal", "dark", "bright", "iron")))
     high, z0, half = 0.575 * width, w.length(0.75, 1.05), w.length(0.28, 0.42)
-    _screen(w, 0.03, (-0.5 * width, 0.5 * width), (z0, z0 + high), w.look("dark"), w.length(0.01, 0.025), 0.04)
+    _framed_screen(w, 0.03, (-0.5 * width, 0.5 * width), (z0, z0 + high), w.look("dark"), w.length(0.01, 0.025), 0.04)
     single = w.chance(0.4)
     tops = z0 + 0.65 * high
     for s in BOTH_SIDES:
@@ -253,11 +259,11 @@ def tv_trolley(w: Workbench) -> None:
 
 
 def tv_column(w: Workbench) -> None:
-    """Screen on a tall board or a single column with a round or square plate as its foot, shelves on the column."""
+    """Builds a screen on a tall board or a column with a foot plate and sometimes shelves."""
     width = w.width(0.90, 1.40)
     wood = w.look(w.choice(("wood", "lacquer", "dark")))
     high, z0 = 0.575 * width, w.length(0.55, 0.90)
-    _screen(w, 0.03, (-0.5 * width, 0.5 * width), (z0, z0 + high), w.look("dark"), w.length(0.008, 0.02), 0.035)
+    _framed_screen(w, 0.03, (-0.5 * width, 0.5 * width), (z0, z0 + high), w.look("dark"), w.length(0.008, 0.02), 0.035)
     top = z0 + w.choice((0.6, 1.12)) * high
     if w.chance(0.5):
         half = w.length(0.12, 0.32)

@@ -13,8 +13,8 @@ from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _ends(w: Workbench, width: float, depth: float, top: float, look: Look, kind: str) -> None:
-    """What carries a bench near both its ends: posts, a metal hoop, a trapezium of tube, a solid panel, a cross."""
+def _bench_supports(w: Workbench, width: float, depth: float, top: float, look: Look, kind: str) -> None:
+    """Adds the support of a bench near its ends: posts, a hoop, a trapezium, a panel or a cross."""
     for side in BOTH_SIDES:
         y, half = side * (0.5 * width - w.length(0.06, 0.14)), 0.5 * depth - 0.03
         if kind == "hoop":
@@ -35,7 +35,7 @@ def _ends(w: Workbench, width: float, depth: float, top: float, look: Look, kind
 
 
 def slat_bench(w: Workbench) -> None:
-    """Long slats with gaps between them on metal or wooden end frames."""
+    """Builds a bench of long slats on metal or wooden end frames."""
     width, depth, seat = w.width(0.95, 1.60), w.depth(0.34, 0.48), w.length(0.36, 0.46)
     wood, slats = parts.wood_look(w, 0.2), w.whole(4, 10)
     legs = wood if w.chance(0.4) else w.look(w.choice(("iron", "chrome", "dark")))
@@ -48,7 +48,7 @@ def slat_bench(w: Workbench) -> None:
         w.box(
             (-0.5 * depth + 0.01, 0.5 * depth - 0.01), (y - 0.07, y + 0.07), (seat - thick - 0.02, seat - thick), legs
         )
-    _ends(w, width, depth, seat - thick - 0.01, legs, w.choice(("hoop", "trapezium", "posts", "panel")))
+    _bench_supports(w, width, depth, seat - thick - 0.01, legs, w.choice(("hoop", "trapezium", "posts", "panel")))
     if w.chance(0.25):
         parts.pad(
             w, (depth - 0.02, 0.45 * width, 0.06), (0.0, 0.24 * width, seat + 0.03), parts.upholstery_look(w), 0.02
@@ -57,7 +57,7 @@ def slat_bench(w: Workbench) -> None:
 
 
 def woven_bench(w: Workbench) -> None:
-    """Turned or square posts at the corners with rails, a seat of cord or straps between them."""
+    """Builds a bench with corner posts, rails and a seat of cord or straps."""
     width, depth, seat = w.width(0.90, 1.40), w.depth(0.36, 0.46), w.length(0.42, 0.48)
     wood, t = parts.wood_look(w, 0.2), w.length(0.035, 0.05)
     x, y = parts.footprint(depth, width)
@@ -93,7 +93,7 @@ def woven_bench(w: Workbench) -> None:
 
 
 def roll_arm_bench(w: Workbench) -> None:
-    """Window bench: a padded seat between two scrolled or boxed arms, no back."""
+    """Builds a window bench: a padded seat between two rolled or square arms, without a back."""
     width, depth, seat = w.width(1.0, 1.45), w.depth(0.40, 0.52), w.length(0.42, 0.48)
     cloth, wood, half = parts.upholstery_look(w, 0.2), w.look(w.choice(("wood", "brass", "lacquer"))), 0.5 * width
     arm = seat + w.length(0.14, 0.26)
@@ -142,7 +142,7 @@ def roll_arm_bench(w: Workbench) -> None:
 
 
 def banquette(w: Workbench) -> None:
-    """Dining-nook bench on a closed plinth: padded seat, tall padded back in channels or panels."""
+    """Builds a dining bench on a closed plinth with a tall padded back."""
     width, depth, seat = w.width(1.0, 1.6), w.depth(0.50, 0.60), w.length(0.44, 0.48)
     height, cloth, body = w.length(0.84, 1.10), parts.upholstery_look(w, 0.4), parts.wood_look(w, 0.5)
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
@@ -163,7 +163,7 @@ def banquette(w: Workbench) -> None:
 
 
 def garden_bench(w: Workbench) -> None:
-    """Slatted park bench: cast or wooden end frames with arms, level slats for seat and back."""
+    """Builds a slatted park bench with arms."""
     width, seat, height = w.width(1.0, 1.5), w.length(0.42, 0.46), w.length(0.76, 0.90)
     wood, half = parts.wood_look(w, 0.25), 0.5 * width
     frame = wood if w.chance(0.4) else w.look("iron")
@@ -189,7 +189,7 @@ def garden_bench(w: Workbench) -> None:
 
 
 def trunk_bench(w: Workbench) -> None:
-    """Lidded chest to sit on: panelled or woven body, a lid with or without a cushion, ring or cut-out handles."""
+    """Builds a chest with a lid, often with a seat cushion."""
     width, depth, seat = w.width(0.80, 1.30), w.depth(0.38, 0.50), w.length(0.40, 0.48)
     body = w.look(w.choice(("wood", "wicker", "lacquer", "leather")))
     x, y = parts.footprint(depth, width)
@@ -225,7 +225,7 @@ def trunk_bench(w: Workbench) -> None:
 
 
 def footstool(w: Workbench) -> None:
-    """Small domed footstool on turned, splayed or curved legs with a wooden rim."""
+    """Builds a small domed footstool with a wooden rim."""
     w.mass_kg = 4.0
     width, depth, height = w.width(0.40, 0.62), w.depth(0.34, 0.46), w.length(0.28, 0.44)
     cloth, wood, power = parts.upholstery_look(w, 0.35), parts.wood_look(w, 0.3), w.choice((2.0, 5.0, 8.0))
@@ -257,7 +257,7 @@ def footstool(w: Workbench) -> None:
 
 
 def storage_cube(w: Workbench) -> None:
-    """Box ottoman to the floor with a lid that overhangs, seams and pull tab, or open shelves at its side."""
+    """Builds a box ottoman with an overhanging lid, and a pull tab, buttons or straps."""
     w.mass_kg = 6.0
     width, depth, height = w.width(0.38, 0.95), w.depth(0.38, 0.50), w.length(0.36, 0.46)
     cover = parts.upholstery_look(w, 0.5)
@@ -281,7 +281,7 @@ def storage_cube(w: Workbench) -> None:
 
 
 def lounge_ottoman(w: Workbench) -> None:
-    """Footrest of a lounge chair: a slanted cushion on a bent-wood, crossed or star base."""
+    """Builds the footrest of a lounge chair: a slanted cushion on a star, sled or crossed base."""
     w.mass_kg = 6.0
     width, height = w.width(0.48, 0.66), w.length(0.36, 0.44)
     cover, half, depth = parts.upholstery_look(w, 0.6), 0.5 * width, w.length(0.42, 0.54)
@@ -323,7 +323,7 @@ def lounge_ottoman(w: Workbench) -> None:
 
 
 def rattan_drum(w: Workbench) -> None:
-    """Waisted or barrel-shaped basket-work seat with a round cushion on top."""
+    """Builds a round wicker seat with a cushion."""
     w.mass_kg = 4.0
     r, height = 0.5 * w.length(0.42, 0.62), w.length(0.36, 0.46)
     waist, cane = w.choice((0.72, 0.85, 1.12)), w.look("wicker")

@@ -10,14 +10,14 @@ from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
-def _cross(w: Workbench, x: Range, y: float, z: Range, thick: float, look: Look) -> None:
-    """Two bars crossing in the plane of this y."""
+def _crossed_bars(w: Workbench, x: Range, y: float, z: Range, thick: float, look: Look) -> None:
+    """Adds two crossed bars in the plane y."""
     w.bar((x[0], y, z[0]), (x[1], y, z[1]), thick, thick, look)
     w.bar((x[1], y + 0.004, z[0]), (x[0], y + 0.004, z[1]), thick, thick, look)
 
 
 def side_c(w: Workbench) -> None:
-    """C-shaped table that reaches over a sofa: a top and a foot joined on one side by two posts or a plate."""
+    """Builds a C-shaped table that reaches over a sofa."""
     width, depth, height = w.width(0.38, 0.55), w.depth(0.28, 0.42), w.length(0.52, 0.68)
     look, top = w.look(w.choice(("iron", "brass", "chrome"))), w.look(w.choice(("wood", "stone", "glass", "lacquer")))
     x, y = parts.slab(w, depth, width, (height - 0.02, height), top)
@@ -35,7 +35,7 @@ def side_c(w: Workbench) -> None:
 
 
 def side_tray(w: Workbench) -> None:
-    """A tray with a rim, square or round, on crossed folding legs."""
+    """Builds a square or round tray on crossed folding legs."""
     width, depth, height = w.width(0.42, 0.60), w.depth(0.36, 0.46), w.length(0.46, 0.62)
     wood, tray = w.look("wood"), w.look(w.choice(("wood", "lacquer", "brass", "wicker")))
     rim = w.length(0.02, 0.06)
@@ -61,7 +61,7 @@ def side_tray(w: Workbench) -> None:
         for c in y:
             w.box(x, parts.centred(0.98 * c, 0.012), (height + 0.01, height + rim), tray)
     for c in (-0.32 * width, 0.32 * width):
-        _cross(w, (-0.42 * depth, 0.42 * depth), c, (0.012, height - 0.008), 0.024, wood)
+        _crossed_bars(w, (-0.42 * depth, 0.42 * depth), c, (0.012, height - 0.008), 0.024, wood)
     for sx in BOTH_SIDES:
         for z in (0.1, height - 0.02):
             px = sx * 0.42 * depth * abs(2 * z / height - 1)
@@ -70,7 +70,7 @@ def side_tray(w: Workbench) -> None:
 
 
 def side_column(w: Workbench) -> None:
-    """Round table on one leg: an hourglass, a garden stool's barrel, a slim tulip, or a stick on a plate."""
+    """Builds a round table on one central support, such as an hourglass, a barrel or a tulip."""
     radius, height = 0.5 * w.width(0.32, 0.52), w.length(0.44, 0.62)
     look = w.look(w.choice(("ceramic", "lacquer", "wood", "stone", "wicker", "brass")))
     profiles = {
@@ -86,7 +86,7 @@ def side_column(w: Workbench) -> None:
 
 
 def bedside_tiers(w: Workbench) -> None:
-    """Closed bedside case on a plinth or short feet: two or three drawers, or a door under an open niche."""
+    """Builds a bedside table of two or three drawers, or of drawers or a door below an open niche."""
     width, depth, height = w.width(0.36, 0.60), w.depth(0.34, 0.48), w.length(0.46, 0.70)
     body, front, foot = parts.wood_look(w), parts.wood_look(w), w.length(0.03, 0.14)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), body)
@@ -118,7 +118,7 @@ def bedside_tiers(w: Workbench) -> None:
 
 
 def bedside_frame(w: Workbench) -> None:
-    """Open bedside rack: four posts or crate sides, two or three slatted shelves, perhaps a basket or a box."""
+    """Builds an open bedside rack with one or two shelves, sometimes with a basket."""
     width, depth, height = w.width(0.36, 0.52), w.depth(0.32, 0.44), w.length(0.46, 0.66)
     wood, slats = w.look("wood") if w.chance(0.6) else w.look("iron"), w.chance(0.5)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), w.look("wood"))
@@ -153,7 +153,7 @@ def bedside_frame(w: Workbench) -> None:
 
 
 def console_cross(w: Workbench) -> None:
-    """Hall table whose ends are crosses or loops of metal or timber; one or two long shelves under the top."""
+    """Builds a hall table with frames or crosses at its ends and one or two long shelves."""
     width, depth, height = w.width(0.85, 1.50), w.depth(0.28, 0.42), w.length(0.74, 0.88)
     frame = w.look(w.choice(("iron", "brass", "wood")))
     top, tube = w.look(w.choice(("wood", "stone", "glass"))), w.length(0.02, 0.045)
@@ -164,7 +164,7 @@ def console_cross(w: Workbench) -> None:
         c = side * (0.5 * width - 0.01 - 0.5 * tube)
         parts.tube_frame(w, inner, c, (0.0, under), tube, frame)
         if not back:
-            _cross(w, (inner[0] + tube, inner[1] - tube), c, (tube, under - tube), 0.7 * tube, frame)
+            _crossed_bars(w, (inner[0] + tube, inner[1] - tube), c, (tube, under - tube), 0.7 * tube, frame)
     if back:
         px = inner[0] + 0.5 * tube
         for sign in BOTH_SIDES:
@@ -181,7 +181,7 @@ def console_cross(w: Workbench) -> None:
 
 
 def console_slabs(w: Workbench) -> None:
-    """Heavy narrow table: a thick top on two slabs, drums or vases set in from its ends, or sides flush with it."""
+    """Builds a heavy narrow table on two slabs, drums, vases or flush sides."""
     width, depth, height = w.width(0.90, 1.60), w.depth(0.30, 0.45), w.length(0.72, 0.88)
     top, kind = w.look(w.choice(("wood", "stone", "lacquer"))), w.choice(("slab", "drum", "vase", "flush"))
     look, thick = w.look(w.choice(("wood", "stone", "lacquer"))), w.length(0.03, 0.08)

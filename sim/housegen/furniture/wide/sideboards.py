@@ -12,14 +12,14 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def sideboard_wine(w: Workbench) -> None:
-    """Buffet with a lattice for bottles between cupboards, a drawer row over them, perhaps a plate rail behind."""
+    """Builds a buffet with a bottle rack between cupboards, below a row of drawers."""
     width, depth, height = w.width(1.00, 1.60), w.depth(0.38, 0.48), w.length(0.82, 0.96)
     look, metal = parts.wood_look(w), w.look(w.choice(("iron", "brass")))
     top, foot = w.look("wood"), w.length(0.06, 0.14)
     x, y = parts.footprint(depth, width)
     third, split = w.length(0.30, 0.42), height - 0.2
     mid = (-0.5 * third, 0.5 * third) if w.chance(0.6) else (y[1] - third - 0.02, y[1] - 0.02)
-    w.box((x[0] - 0.0, x[1] + 0.025), (y[0] - 0.02, y[1] + 0.02), (height - 0.03, height), top)
+    w.box((x[0], x[1] + 0.025), (y[0] - 0.02, y[1] + 0.02), (height - 0.03, height), top)
     w.box(x, y, (split, height - 0.03), look)
     parts.styled_drawers(
         w,
@@ -36,14 +36,11 @@ def sideboard_wine(w: Workbench) -> None:
     w.box(x, y, (foot, foot + 0.02), look)
     front: FrontKind = w.choice(("frame", "raised", "flat"))
     for span in ((y[0], mid[0]), (mid[1], y[1])):
+        w.box(x, span, (foot, split), look)
         if span[1] - span[0] > 0.1:
-            w.box(x, span, (foot, split), look)
             count = 2 if span[1] - span[0] > 0.75 else 1
-            parts.styled_doors(
-                w, x[1], (span[0] + 0.01, span[1] - 0.01), (foot + 0.01, split), count, look, metal, front, "knob"
-            )
-        else:
-            w.box(x, span, (foot, split), look)
+            inner = (span[0] + 0.01, span[1] - 0.01)
+            parts.styled_doors(w, x[1], inner, (foot + 0.01, split), count, look, metal, front, "knob")
     cells, room = w.whole(2, 3), split - foot - 0.02
     for i in range(1, cells):
         z = foot + 0.02 + i * room / cells
@@ -62,7 +59,7 @@ def sideboard_wine(w: Workbench) -> None:
 
 
 def sideboard_altar(w: Workbench) -> None:
-    """East Asian cabinet: legs that lean in, an overhanging top with upturned ends, doors with a round metal plate."""
+    """Builds an East Asian cabinet with an overhanging top and a round metal plate on its doors."""
     width, depth, height = w.width(0.90, 1.60), w.depth(0.36, 0.46), w.length(0.78, 0.95)
     look, brass = w.look(w.choice(("wood", "lacquer", "wood"))), w.look(w.choice(("brass", "iron")))
     foot, over = w.length(0.10, 0.28), w.length(0.04, 0.16)
@@ -109,7 +106,7 @@ def sideboard_altar(w: Workbench) -> None:
 
 
 def sideboard_barn(w: Workbench) -> None:
-    """Sideboard with barn doors that slide on a rail before open shelves, in a timber or steel frame."""
+    """Builds a sideboard with one or two sliding barn doors before open shelves."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.38, 0.46), w.length(0.72, 0.92)
     wood, iron = w.look("wood"), w.look("iron")
     frame = iron if w.chance(0.4) else parts.wood_look(w)
@@ -155,7 +152,7 @@ def sideboard_barn(w: Workbench) -> None:
 
 
 def sideboard_round_ends(w: Workbench) -> None:
-    """Sideboard with a rounded plan: open shelves in half-round ends, doors or drawers between them."""
+    """Builds a sideboard with open half-round ends beside doors or drawers."""
     width, depth, height = w.width(1.10, 1.80), w.depth(0.36, 0.46), w.length(0.70, 0.90)
     look = parts.wood_look(w)
     face = w.look(w.choice(("wood", "lacquer"))) if w.chance(0.5) else look
@@ -176,12 +173,12 @@ def sideboard_round_ends(w: Workbench) -> None:
     for s in BOTH_SIDES:
         for i in range(rows):
             if w.chance(0.6):
-                z, thing = foot + 0.025 + i * step, w.choice(("pot", "ceramic", "book"))
+                z, material = foot + 0.025 + i * step, w.choice(("pot", "ceramic", "book"))
                 w.cylinder(
                     (0.0, s * (inner + 0.5 * reach)),
                     (z, z + w.length(0.08, 0.7 * step)),
                     0.055,
-                    w.new_look(thing),
+                    w.new_look(material),
                     solid=False,
                 )
     metal = w.look(w.choice(("brass", "dark")))
@@ -202,7 +199,7 @@ def sideboard_round_ends(w: Workbench) -> None:
 
 
 def shoe_cabinet(w: Workbench) -> None:
-    """Thin cabinet for shoes: broad flaps over one another, one perhaps tilted out, on the floor or little feet."""
+    """Builds a thin shoe cabinet with broad flaps, one of which may be tilted out."""
     columns = w.choice((1, 2, 2))
     width, depth, rows = (
         w.width(0.50 * columns, 0.80 * columns),

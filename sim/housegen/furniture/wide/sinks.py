@@ -13,7 +13,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def _wall_tap(w: Workbench, x: float, y: float, z: float, reach: float, look: Look) -> None:
-    """A tap out of the wall at x: two heads and a spout."""
+    """Adds a wall-mounted tap at x with two heads and a spout."""
     for side in BOTH_SIDES:
         w.rod((x, y + side * 0.08, z), (x + 0.05, y + side * 0.08, z), 0.02, look, solid=False)
     w.rod((x, y - 0.08, z), (x, y + 0.08, z), 0.012, look, solid=False)
@@ -21,14 +21,14 @@ def _wall_tap(w: Workbench, x: float, y: float, z: float, reach: float, look: Lo
 
 
 def _trap(w: Workbench, x: float, top: float, low: float, look: Look) -> None:
-    """Bottle trap below a basin, its pipe into the wall at x = 0."""
+    """Adds a bottle trap below a basin with its pipe into the wall at x = 0."""
     w.rod((x, 0.0, low + 0.03), (x, 0.0, top), 0.016, look, solid=False)
     w.cylinder((x, 0.0), (low, low + 0.09), 0.034, look, solid=False)
     w.rod((0.0, 0.0, low + 0.07), (x, 0.0, low + 0.07), 0.015, look, solid=False)
 
 
 def half_pedestal(w: Workbench) -> None:
-    """Wall basin whose waste hides behind a half column, or stays open."""
+    """Builds a wall basin with a half pedestal or a visible trap."""
     width, depth = w.width(0.45, 0.75), w.depth(0.38, 0.54)
     white, metal = w.look("ceramic"), parts.fitting_look(w)
     tall, power, high = w.length(0.40, 0.50), w.choice((2.0, 2.6, 4.0, 8.0)), w.length(0.12, 0.20)
@@ -52,7 +52,7 @@ def half_pedestal(w: Workbench) -> None:
 
 
 def totem(w: Workbench) -> None:
-    """Monolith from the floor up with a bowl in its top: cylinder, cone, hourglass or square column."""
+    """Builds a column with a bowl in its top: a cylinder, a cone, an hourglass or a square column."""
     r, rim, power = 0.5 * w.width(0.38, 0.56), w.length(0.82, 0.92), w.choice((2.0, 2.0, 3.5, 12.0))
     look, metal = parts.sanitary_look(w), parts.fitting_look(w)
     foot, waist = w.choice(((1.0, 1.0), (0.55, 0.75), (0.8, 0.5), (0.7, 0.85)))
@@ -71,7 +71,7 @@ def totem(w: Workbench) -> None:
 
 
 def butler(w: Workbench) -> None:
-    """Deep thick-walled box of fireclay or stone on piers, wooden legs with a shelf, or iron brackets."""
+    """Builds a deep thick-walled sink on piers, wooden legs or an iron frame."""
     width, depth, rim = w.width(0.50, 0.90), w.depth(0.42, 0.52), w.length(0.80, 0.92)
     look, deep = w.look(w.choice(("ceramic", "ceramic", "stone"))), w.length(0.20, 0.30)
     x, y = parts.footprint(depth, width)
@@ -103,7 +103,7 @@ def butler(w: Workbench) -> None:
 
 
 def catering(w: Workbench) -> None:
-    """Steel catering sink: one or two bowls, drainer, splashback, tubular legs and a lower shelf."""
+    """Builds a steel catering sink with a drainer, a splashback and tubular legs."""
     width, depth, rim = w.width(0.55, 1.20), w.depth(0.48, 0.62), w.length(0.84, 0.92)
     steel, deep = w.look("steel"), w.length(0.18, 0.30)
     x, y = parts.footprint(depth, width)
@@ -136,7 +136,7 @@ def catering(w: Workbench) -> None:
 
 
 def hand_rinse(w: Workbench) -> None:
-    """Tiny cloakroom basin: half round or a narrow slot with its tap at the side, cabinetless, trap below."""
+    """Builds a very small wall basin with a trap below."""
     width, metal, white = w.width(0.30, 0.46), parts.fitting_look(w), parts.sanitary_look(w)
     tall, high, power = w.length(0.24, 0.34), w.length(0.08, 0.16), w.choice((2.0, 3.0, 14.0))
     depth = w.depth(0.20, 0.30)
@@ -152,7 +152,7 @@ def hand_rinse(w: Workbench) -> None:
 
 
 def slab_wall(w: Workbench) -> None:
-    """Thick slab on the wall with a shallow hollow, a towel bar under its edge or a shelf below."""
+    """Builds a thick wall-mounted slab with a shallow hollow."""
     width, depth, thick = w.width(0.55, 1.10), w.depth(0.40, 0.52), w.length(0.05, 0.16)
     look, metal = parts.sanitary_look(w), parts.fitting_look(w)
     tall = w.length(0.30, 0.45)
@@ -186,7 +186,7 @@ def slab_wall(w: Workbench) -> None:
 
 
 def enamel_stand(w: Workbench) -> None:
-    """Bowl in a ring on three or four thin legs, a jug on the shelf below, perhaps a towel bar."""
+    """Builds a bowl in a ring on three or four thin legs, often with a jug on the shelf below."""
     r, rim = w.length(0.17, 0.23), w.length(0.72, 0.86)
     frame, white = w.look(w.choice(("iron", "wood", "metal"))), w.look(w.choice(("ceramic", "steel", "plastic")))
     count, splay, thick = w.whole(3, 4), w.length(0.0, 0.10), w.length(0.008, 0.018)
@@ -212,7 +212,7 @@ def enamel_stand(w: Workbench) -> None:
 
 
 def vessel_oval(w: Workbench) -> None:
-    """Long low oval dish on the washstand, thin or thick walled."""
+    """Builds a long low oval vessel basin."""
     rx, ry = w.length(0.16, 0.21), w.length(0.22, 0.30)
     look, metal, high = parts.sanitary_look(w), parts.fitting_look(w), w.length(0.09, 0.16)
     power, foot = w.choice((2.0, 2.4)), w.length(0.45, 0.9)
@@ -228,7 +228,7 @@ def vessel_oval(w: Workbench) -> None:
 
 
 def vessel_drum(w: Workbench) -> None:
-    """Straight tall drum or bucket, plain, banded or with a moulded rim."""
+    """Builds a tall vessel basin with straight sides and sometimes bands."""
     r, high = w.length(0.17, 0.22), w.length(0.14, 0.22)
     look, metal, taper = parts.sanitary_look(w), parts.fitting_look(w), w.length(0.75, 1.05)
     rings = [Ring(0.0, taper * r, taper * r), Ring(0.9 * high, 0.99 * r, 0.99 * r)]
@@ -242,7 +242,7 @@ def vessel_drum(w: Workbench) -> None:
 
 
 def vessel_cone(w: Workbench) -> None:
-    """Thin wide cone or saucer of glass, metal or clay on a small foot ring."""
+    """Builds a thin wide conical vessel basin."""
     r, high, metal = w.length(0.19, 0.24), w.length(0.10, 0.16), parts.fitting_look(w)
     look = w.look(w.choice(("glass", "brass", "pot", "ceramic", "steel", "stone")))
     rings = [
@@ -255,7 +255,7 @@ def vessel_cone(w: Workbench) -> None:
 
 
 def _inset_plate(w: Workbench, look: Look, rx: float, ry: float, y: float, power: float, lift: float) -> None:
-    """A plate over the worktop's hole with one bowl in it, 0.18 m deep."""
+    """Adds a plate over the worktop's hole with one bowl of 0.18 m depth."""
     px, py = w.length(0.21, 0.24), w.length(0.25, 0.28)
     rings = [
         Ring(0.0, 0.6 * rx, 0.6 * ry, y_m=y, power=power), Ring(0.15, rx, ry, y_m=y, power=power),
@@ -267,7 +267,7 @@ def _inset_plate(w: Workbench, look: Look, rx: float, ry: float, y: float, power
 
 
 def inset_drainer(w: Workbench) -> None:
-    """One bowl and a ribbed drainer beside it in one plate."""
+    """Builds an inset sink with one bowl beside a ribbed drainer."""
     look = w.look(w.choice(("steel", "steel", "dark", "ceramic", "iron")))
     side, lift = w.choice(BOTH_SIDES), w.length(0.005, 0.02)
     ry = w.length(0.10, 0.13)
@@ -280,7 +280,7 @@ def inset_drainer(w: Workbench) -> None:
 
 
 def inset_round(w: Workbench) -> None:
-    """Round or oval bowl in a plate, or two small round ones side by side."""
+    """Builds an inset sink with a round or oval bowl."""
     look = w.look(w.choice(("steel", "ceramic", "dark", "brass")))
     r, lift = w.length(0.15, 0.175), w.length(0.004, 0.015)
     _inset_plate(w, look, r, w.choice((r, 0.2)), 0.0, 2.0, lift)
@@ -293,7 +293,7 @@ def inset_round(w: Workbench) -> None:
 
 
 def inset_fireclay(w: Workbench) -> None:
-    """Thick-walled box whose broad rim stands a little above the worktop, one bowl or two by a low divider."""
+    """Builds a thick-walled inset sink whose broad rim is above the worktop, sometimes with a divider."""
     look, lift, thick = w.look(w.choice(("ceramic", "ceramic", "plastic"))), w.length(0.01, 0.03), w.length(0.025, 0.04)
     parts.basin(w, (-0.20, 0.22), (-0.25, 0.25), 0.18 + lift, 0.18 + lift, thick, look)
     w.box((-0.26, -0.20), (-0.25, 0.25), (0.15, 0.18 + lift), look)

@@ -13,7 +13,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def _loose_cushions(w: Workbench, face: float, inner: float, seat: float) -> None:
-    """None to three throw cushions whose backs lean at x = face; hint `cushions` fixes how many."""
+    """Adds up to three throw cushions whose backs lean at x = `face`; hint `cushions` sets their number."""
     hinted = w.hints.get("cushions")
     count = int(hinted) if hinted is not None else w.choice((0, 0, 1, 2, 3))
     places = (0.5 * inner - 0.26, -0.5 * inner + 0.26, 0.06)
@@ -23,12 +23,12 @@ def _loose_cushions(w: Workbench, face: float, inner: float, seat: float) -> Non
 
 
 def _sofa_size(w: Workbench, low: float = 1.45, high: float = 2.30) -> tuple[float, float, float]:
-    """Width, depth and seat height."""
+    """Returns width, depth and seat height."""
     return w.width(low, high), w.depth(0.78, 1.0), w.length(0.39, 0.46)
 
 
 def tuxedo(w: Workbench) -> None:
-    """Thin straight arms as high as the thin back, one bench cushion, metal or peg legs, a grid of seams."""
+    """Builds a sofa with thin straight arms as high as its thin back."""
     width, depth, seat = _sofa_size(w)
     cover, high, arm = parts.upholstery_look(w, 0.4), w.length(0.70, 0.82), w.length(0.06, 0.12)
     x0, x1, half, foot = -0.5 * depth, 0.5 * depth, 0.5 * width, w.length(0.10, 0.22)
@@ -57,7 +57,7 @@ def tuxedo(w: Workbench) -> None:
 
 
 def slipcovered(w: Workbench) -> None:
-    """Deep sofa under a loose cover that falls to the floor: soft low arms, big slumping back pillows."""
+    """Builds a deep sofa under a loose cover, with soft low arms and large back pillows."""
     width, depth, seat = _sofa_size(w, 1.5, 2.4)
     cover, arm, top = w.look(w.choice(("linen", "fabric"))), w.length(0.16, 0.26), w.length(0.54, 0.64)
     x0, half, high = -0.5 * depth, 0.5 * width, w.length(0.72, 0.86)
@@ -84,7 +84,7 @@ def slipcovered(w: Workbench) -> None:
 
 
 def theatre_row(w: Workbench) -> None:
-    """Two or three reclining places with puffed backs and headrests, consoles or arms between, footrests."""
+    """Builds two or three reclining seats with padded backs, headrests and footrests."""
     depth, seat, high = w.depth(0.88, 1.0), w.length(0.43, 0.47), w.length(0.96, 1.08)
     wanted = w.width(1.55, 2.35)
     places = 2 if wanted < 1.95 else 3
@@ -123,7 +123,7 @@ def theatre_row(w: Workbench) -> None:
 
 
 def ridged_low(w: Workbench) -> None:
-    """Floor-hugging foam sofa without legs or frame: creased rolls for seat and back, arms or none."""
+    """Builds a low foam sofa of rolls without legs or frame."""
     width, depth, cover = w.width(1.40, 2.30), w.depth(0.88, 1.05), parts.upholstery_look(w, 0.3)
     seat, high, x0 = w.length(0.34, 0.40), w.length(0.66, 0.76), -0.5 * depth
     arms = w.chance(0.4)
@@ -162,14 +162,14 @@ def ridged_low(w: Workbench) -> None:
 
 
 def cage_sofa(w: Workbench) -> None:
-    """Two or three thick cushions a row held in a cage of steel tubes."""
+    """Builds a sofa of two or three thick cushions in a cage of steel tubes."""
     width, depth, seat = _sofa_size(w, 1.30, 2.20)
     face = parts.cage_seat(w, width, min(depth, 0.84), seat, 2 if width < 1.75 else 3)
     _loose_cushions(w, face, width - 0.4, seat)
 
 
 def lattice_settee(w: Workbench) -> None:
-    """Hardwood or cane settee: bare frame with bars or fretwork in back and arms, thin flat pads or none."""
+    """Builds a settee with bars or slats in its bare back and arms, often with thin pads."""
     width, depth, seat = w.width(1.20, 2.0), w.depth(0.58, 0.76), w.length(0.40, 0.45)
     wood, high, arm = (
         w.look(w.choice(("wood", "wood", "wicker", "lacquer"))),
@@ -227,7 +227,7 @@ def lattice_settee(w: Workbench) -> None:
 
 
 def pallet_sofa(w: Workbench) -> None:
-    """Home-made: stacked slatted pallets or block plinth with mattress cushions on them, maybe a plank back."""
+    """Builds a sofa of stacked pallets with mattress cushions."""
     width, depth, cloth = w.width(1.20, 2.10), w.depth(0.80, 0.95), parts.upholstery_look(w, 0.0)
     wood, layers = w.look("wood"), w.whole(1, 2)
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
@@ -267,7 +267,7 @@ def pallet_sofa(w: Workbench) -> None:
 
 
 def modular_corner(w: Workbench) -> None:
-    """Low square blocks pushed into an L, each with its own seat and back pad; one end open, maybe a stool."""
+    """Builds low square blocks in an L, each with a seat pad and a back pad."""
     unit, cover = w.length(0.74, 0.92), parts.upholstery_look(w, 0.2)
     seat, high, back = w.length(0.38, 0.43), w.length(0.62, 0.82), w.length(0.16, 0.26)
     across = 2 if 2.6 * unit > float(w.hints.get("width_m") or 9.0) else w.choice((2, 3))
@@ -306,7 +306,7 @@ def modular_corner(w: Workbench) -> None:
 
 
 def split_back(w: Workbench) -> None:
-    """Armless or drop-arm bench sofa: a split back in two or three flat panels that hinge, slim metal legs."""
+    """Builds a bench sofa with a back of two or three flat panels and slim legs."""
     width, depth, seat = _sofa_size(w, 1.5, 2.1)
     cover, metal, high = (
         parts.upholstery_look(w, 0.45),

@@ -13,8 +13,8 @@ from sim.housegen.furniture.shapes import Ring, frustum, loft, strip
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _round_legs(w: Workbench, count: int, inner: float, outer: float, top: float, r: float, look: Look) -> None:
-    """Legs in a ring that spread from `inner` below the seat to `outer` on the floor."""
+def _legs_in_ring(w: Workbench, count: int, inner: float, outer: float, top: float, r: float, look: Look) -> None:
+    """Adds legs in a ring that spread from `inner` below the seat to `outer` on the floor."""
     for i in range(count):
         a = math.tau * (i + 0.5) / count
         c, s = math.cos(a), math.sin(a)
@@ -22,7 +22,7 @@ def _round_legs(w: Workbench, count: int, inner: float, outer: float, top: float
 
 
 def bar_backed(w: Workbench) -> None:
-    """Bar chair on four straight legs with footrails, a low curved back on posts, padded or bare seat."""
+    """Builds a bar chair on four legs with footrails and a low curved back."""
     w.mass_kg = 7.0
     seat, half, wood = (
         w.length(0.62, 0.78),
@@ -48,7 +48,7 @@ def bar_backed(w: Workbench) -> None:
 
 
 def bar_screw(w: Workbench) -> None:
-    """Workshop stool: threaded spindle in an iron frame of three or four legs, round seat, foot ring."""
+    """Builds a workshop stool with a threaded spindle in an iron frame."""
     w.mass_kg = 9.0
     seat, r, iron = w.length(0.62, 0.78), 0.5 * w.length(0.32, 0.38), w.look("iron")
     w.cylinder((0.0, 0.0), (seat - 0.035, seat), r, w.look(w.choice(("wood", "iron", "leather"))))
@@ -56,7 +56,7 @@ def bar_screw(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.20, seat - 0.04), 0.018, w.look("metal"))
     w.cylinder((0.0, 0.0), (0.40, 0.52), 0.045, iron)
     outer, count, ring = w.length(0.20, 0.26), w.whole(3, 4), w.length(0.18, 0.26)
-    _round_legs(w, count, 0.04, outer, 0.50, 0.013, iron)
+    _legs_in_ring(w, count, 0.04, outer, 0.50, 0.013, iron)
     reach = outer - (outer - 0.04) * ring / 0.50
     sides = 12
     points = [
@@ -69,7 +69,7 @@ def bar_screw(w: Workbench) -> None:
 
 
 def bar_sled(w: Workbench) -> None:
-    """Bar stool of bent tube: two loops for runners with a footbar, a curved seat with a rolled-up low back."""
+    """Builds a bar stool of bent tubes with a curved seat and a low back."""
     w.mass_kg = 6.0
     seat, half, tube = w.length(0.62, 0.78), 0.5 * w.length(0.38, 0.46), parts.tube_look(w)
     r = 0.010
@@ -92,7 +92,7 @@ def bar_sled(w: Workbench) -> None:
 
 
 def bar_block(w: Workbench) -> None:
-    """Bar stool with flat panels for legs and a plinth or a column, seat like a box."""
+    """Builds a bar stool with flat side panels as legs."""
     w.mass_kg = 8.0
     seat, half, look = w.length(0.62, 0.76), 0.5 * w.length(0.32, 0.42), parts.wood_look(w, 0.4)
     pad = w.length(0.03, 0.10)
@@ -109,7 +109,7 @@ def bar_block(w: Workbench) -> None:
 
 
 def plastic_stool(w: Workbench) -> None:
-    """Street-food stool: square or round moulded top, flared plastic legs with a skirt, often stacked in pairs."""
+    """Builds a moulded plastic stool with flared legs, or two stacked ones."""
     w.mass_kg = 1.5
     seat, top, foot = w.length(0.42, 0.47), w.length(0.26, 0.32), w.length(0.32, 0.40)
     plastic = w.look("plastic")
@@ -132,7 +132,7 @@ def plastic_stool(w: Workbench) -> None:
 
 
 def butterfly_stool(w: Workbench) -> None:
-    """Two bent boards set back to back with a rod between them, or one board bent into an arch."""
+    """Builds a stool of two bent boards back to back, or of one board bent into an arch."""
     w.mass_kg = 3.0
     seat, width, wood = w.length(0.40, 0.46), w.length(0.30, 0.38), w.look("wood")
     if w.chance(0.6):
@@ -155,18 +155,18 @@ def butterfly_stool(w: Workbench) -> None:
 
 
 def curule(w: Workbench) -> None:
-    """Low stool on crossed curved or straight legs with a cushioned or slung seat and a stretcher."""
+    """Builds a low stool on crossed curved legs."""
     w.mass_kg = 5.0
     seat, half, depth = w.length(0.42, 0.47), 0.5 * w.length(0.44, 0.56), w.length(0.34, 0.42)
     frame = w.look(w.choice(("wood", "brass", "chrome", "lacquer")))
     for side in BOTH_SIDES:
         x = side * (0.5 * depth - 0.03)
-        for way in BOTH_SIDES:
+        for sign in BOTH_SIDES:
             ends = [
-                (x, way * (half - 0.03), 0.0),
-                (x, way * 0.10, 0.38 * seat),
-                (x, -way * 0.10, 0.55 * seat),
-                (x, -way * (half - 0.03), seat - 0.05),
+                (x, sign * (half - 0.03), 0.0),
+                (x, sign * 0.10, 0.38 * seat),
+                (x, -sign * 0.10, 0.55 * seat),
+                (x, -sign * (half - 0.03), seat - 0.05),
             ]
             for a, b in itertools.pairwise(ends):
                 w.bar(a, b, 0.035, 0.025, frame)
@@ -175,7 +175,7 @@ def curule(w: Workbench) -> None:
 
 
 def rush_stool(w: Workbench) -> None:
-    """Square stool: four posts, double stretchers, seat of woven cord or a loose pad."""
+    """Builds a square stool with four posts, stretchers and a seat of woven cord."""
     w.mass_kg = 3.5
     seat, half, wood = w.length(0.42, 0.47), 0.5 * w.length(0.32, 0.42), parts.wood_look(w, 0.25)
     t = w.length(0.03, 0.045)
@@ -193,7 +193,7 @@ def rush_stool(w: Workbench) -> None:
 
 
 def swivel_low(w: Workbench) -> None:
-    """Round padded work stool that rolls on a five-armed star."""
+    """Builds a round padded work stool on a star base."""
     w.mass_kg = 6.0
     seat, r = w.length(0.43, 0.47), 0.5 * w.length(0.32, 0.40)
     parts.star_base(

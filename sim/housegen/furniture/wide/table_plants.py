@@ -12,11 +12,11 @@ from sim.housegen.furniture.workbench import Point, Workbench
 
 
 def trailing(w: Workbench) -> None:
-    """Vines that spill over the edge of a raised or tall pot and hang down its sides."""
+    """Builds vines that hang down from a raised or tall pot."""
     r, high = w.length(0.06, 0.10), w.length(0.14, 0.26)
     look, kind = w.look(w.choice(("pot", "ceramic", "wicker"))), w.whole(0, 2)
     if kind == 0:
-        greenery.round(w, [(0.0, 0.7 * r), (high, r)], look)
+        greenery.round_pot(w, [(0.0, 0.7 * r), (high, r)], look)
     elif kind == 1:
         foot = w.look(w.choice(("wood", "brass", "dark")))
         w.cylinder((0.0, 0.0), (0.0, 0.012), 0.8 * r, foot)
@@ -57,16 +57,16 @@ def trailing(w: Workbench) -> None:
                 0.01,
             )
         )
-    greenery.leaves(w, leaves, w.look("foliage"))
+    greenery.add_leaves(w, leaves, w.look("foliage"))
 
 
 def succulents(w: Workbench) -> None:
-    """Low bowl or tray with one to four fleshy rosettes."""
+    """Builds a low bowl or tray with one to four fleshy rosettes."""
     count = w.whole(1, 4)
     r, high = w.length(0.05, 0.075) * (1.0 + 0.35 * (count > 1)), w.length(0.04, 0.09)
     look, long = w.look(w.choice(("pot", "ceramic", "masonry", "glass"))), 1.0
     if w.chance(0.5):
-        greenery.round(w, [(0.0, 0.6 * r), (0.4 * high, 0.95 * r), (high, r)], look)
+        greenery.round_pot(w, [(0.0, 0.6 * r), (0.4 * high, 0.95 * r), (high, r)], look)
         greenery.soil(w, high, 0.9 * r)
     else:
         long = 1.0 if count == 1 else w.length(1.2, 2.0)
@@ -84,21 +84,21 @@ def succulents(w: Workbench) -> None:
             rise = size * (0.9 - 0.55 * t)
             out = size * (0.12 + 0.85 * t)
             blades.append((greenery.curve(c, 2.4 * k, out, 0.3 * rise, rise), 0.34 * size + 0.004))
-        greenery.blades(w, blades, w.new_look("foliage"))
+        greenery.add_blades(w, blades, w.new_look("foliage"))
 
 
 def orchid(w: Workbench) -> None:
-    """Orchid: a few strap leaves at the pot and arching sprays of flat blooms on bare stems."""
+    """Builds an orchid: a few wide leaves and arching sprays of flat flowers."""
     r, high = w.length(0.055, 0.075), w.length(0.09, 0.14)
     look = w.look(w.choice(("pot", "ceramic", "glass")))
     if w.chance(0.5):
-        greenery.round(w, [(0.0, 0.75 * r), (high, r)], look)
+        greenery.round_pot(w, [(0.0, 0.75 * r), (high, r)], look)
     else:
         w.box((-r, r), (-r, r), (0.0, high), look)
     greenery.soil(w, high, 0.8 * r)
     green, bloom, heart = w.look("foliage"), w.look("flower"), w.new_look("flower")
     base = (0.0, 0.0, high - 0.004)
-    greenery.blades(
+    greenery.add_blades(
         w,
         [(greenery.curve(base, 1.2 * i, w.length(0.12, 0.20), 0.10, 0.03), 0.05) for i in range(w.whole(4, 6))],
         green,
@@ -125,7 +125,7 @@ def orchid(w: Workbench) -> None:
 
 
 def herb_box(w: Workbench) -> None:
-    """Wooden or tin box, or a tray of three pots, with different herbs side by side."""
+    """Builds a box or a tray of pots with different herbs."""
     count, each = w.whole(2, 4), w.length(0.09, 0.13)
     high, x, y = w.length(0.08, 0.13), 0.5 * each, 0.5 * count * each
     case = w.look(w.choice(("wood", "metal", "ceramic", "dark")))
@@ -147,7 +147,7 @@ def herb_box(w: Workbench) -> None:
                 (greenery.curve(c, 2.4 * k, w.length(0.02, 0.07), tall, tall * w.length(0.6, 1.0)), 0.008)
                 for k in range(24)
             ]
-            greenery.blades(w, blades, green)
+            greenery.add_blades(w, blades, green)
             continue
         leaves, size = [], (0.05 if kind == 1 else 0.022)
         for k in range(42):
@@ -156,11 +156,11 @@ def herb_box(w: Workbench) -> None:
             leaves.append(Leaf(at, greenery.shifted(at, greenery.polar(0.045, 2.4 * k, 0.02)), size, 0.008))
             if k < 5:
                 leaves.append(Leaf(c, greenery.shifted(c, (0.5 * stem[0], 0.5 * stem[1], tall)), 0.006))
-        greenery.leaves(w, leaves, green)
+        greenery.add_leaves(w, leaves, green)
 
 
 def cut_flowers(w: Workbench) -> None:
-    """Bunch of cut flowers in a vase or a jug."""
+    """Builds a bunch of cut flowers in a vase."""
     high, r = w.length(0.14, 0.28), w.length(0.04, 0.075)
     shape = w.choice(((0.9, 0.9, 0.9, 0.95), (0.6, 1.1, 0.6, 0.8), (0.5, 0.7, 0.9, 1.1), (0.9, 1.1, 0.7, 0.45)))
     vase = w.look(w.choice(("glass", "glass", "ceramic", "pot", "metal")))
@@ -197,11 +197,11 @@ def cut_flowers(w: Workbench) -> None:
                 at = greenery.shifted(top, (0.0, 0.0, 0.009 * k - 0.03))
                 spike.append(Leaf(at, greenery.shifted(at, greenery.polar(0.030 - 0.0015 * k, 2.4 * k, 0.012)), 0.020))
             w.mesh(foliage(spike), (0.0, 0.0, 0.0), colour, solid=False)
-    greenery.leaves(w, leaves, green)
+    greenery.add_leaves(w, leaves, green)
 
 
 def spider_plant(w: Workbench) -> None:
-    """Dense fountain of narrow arching blades, sometimes with plantlets on runners."""
+    """Builds a dense tuft of narrow arching leaves, sometimes with plantlets on runners."""
     z = greenery.planter(w, w.length(0.06, 0.09), w.length(0.08, 0.14))
     reach, width, green = w.length(0.14, 0.26), w.length(0.010, 0.022), w.look("foliage")
     upright, blades = w.chance(0.25), []
@@ -216,11 +216,11 @@ def spider_plant(w: Workbench) -> None:
         path = greenery.curve((0.0, 0.0, z), 2.0 * i, 1.2 * reach, 0.9 * reach, max(-0.3 * reach, 0.03 - z))
         blades.append((path, 0.006))
         blades += [(greenery.curve(path[-1], 1.3 * k, 0.05, 0.03, -0.01), 0.010) for k in range(5)]
-    greenery.blades(w, blades, green)
+    greenery.add_blades(w, blades, green)
 
 
 def lucky_bamboo(w: Workbench) -> None:
-    """Curled or straight green stalks bound in a glass of pebbles, leaf tufts at their tops."""
+    """Builds curled or straight green stalks in a glass."""
     r, high = w.length(0.04, 0.06), w.length(0.08, 0.16)
     w.cylinder((0.0, 0.0), (0.0, high), r, w.look(w.choice(("glass", "ceramic"))))
     greenery.soil(w, high, 0.85 * r)
@@ -246,7 +246,7 @@ def lucky_bamboo(w: Workbench) -> None:
         for k in range(6):
             long = w.length(0.08, 0.15)
             blades.append((greenery.curve(path[-1], 2.4 * k + i, 0.7 * long, 0.8 * long, 0.4 * long), 0.018))
-    greenery.blades(w, blades, green)
+    greenery.add_blades(w, blades, green)
 
 
 STYLES = (

@@ -14,7 +14,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def coffee_nest(w: Workbench) -> None:
-    """Two tables of one kind, the lower one half pushed under the higher one: round, square or rounded tops."""
+    """Builds two coffee tables, the lower one half under the higher one."""
     radius, height = 0.5 * w.width(0.80, 1.10) * 0.66, w.length(0.40, 0.48)
     look, top, power = w.look(w.choice(("iron", "brass", "wood"))), w.look("wood"), w.choice((2.0, 4.0, 8.0))
     if w.chance(0.35):
@@ -31,7 +31,7 @@ def coffee_nest(w: Workbench) -> None:
 
 
 def coffee_trunk(w: Workbench) -> None:
-    """A travelling trunk: lid, straps or corner irons, a lock, handles at its ends; some on castors."""
+    """Builds a travelling trunk with a lid, a lock, handles and straps or corner irons."""
     width, depth, height = w.width(0.80, 1.20), w.depth(0.45, 0.65), w.length(0.38, 0.50)
     body = w.look(w.choice(("wood", "leather", "lacquer", "wicker")))
     metal = w.look("brass") if w.chance(0.5) else w.look("iron")
@@ -63,7 +63,7 @@ def coffee_trunk(w: Workbench) -> None:
 
 
 def coffee_pebble(w: Workbench) -> None:
-    """An organic top, longer than deep, on three or four fat round legs or cones; maybe a smaller disc below."""
+    """Builds a coffee table with an organic top on three or four thick legs."""
     width, depth, height = w.width(0.85, 1.30), w.depth(0.50, 0.80), w.length(0.32, 0.44)
     top, legs = w.look(w.choice(("wood", "stone", "lacquer"))), w.look(w.choice(("wood", "lacquer")))
     thick, angles = w.length(0.025, 0.06), np.arange(24) * math.tau / 24
@@ -82,19 +82,19 @@ def coffee_pebble(w: Workbench) -> None:
 
 
 def coffee_drawer(w: Workbench) -> None:
-    """Low chest with an open through-shelf over or beside drawers, on sled, short legs or castors."""
+    """Builds a low table with an open shelf above drawers."""
     width, depth, height = w.width(0.85, 1.25), w.depth(0.50, 0.70), w.length(0.36, 0.48)
     body, front, foot = w.look("wood"), parts.wood_look(w), w.length(0.03, 0.16)
     x, y = parts.slab(w, depth, width, (height - 0.03, height), body)
     split = height - 0.03 - w.length(0.09, 0.15) if height - foot > 0.3 else foot + 0.02
-    drawn = (foot, split) if split > foot + 0.08 else (foot, foot + 0.025)
-    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), drawn, body)
-    if drawn[1] - drawn[0] > 0.06:
+    closed = (foot, split) if split > foot + 0.08 else (foot, foot + 0.025)
+    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), closed, body)
+    if closed[1] - closed[0] > 0.06:
         parts.plain_drawers(
-            w, x[1] - 0.02, (y[0] + 0.02, y[1] - 0.02), drawn, 1, w.whole(1, 3), front, w.look("brass"), "knob"
+            w, x[1] - 0.02, (y[0] + 0.02, y[1] - 0.02), closed, 1, w.whole(1, 3), front, w.look("brass"), "knob"
         )
     for c in (y[0] + 0.035, y[1] - 0.035, *((0.0,) if w.chance(0.4) else ())):
-        w.box((x[0] + 0.02, x[1] - 0.02), parts.centred(c, 0.03), (drawn[1], height - 0.03), body)
+        w.box((x[0] + 0.02, x[1] - 0.02), parts.centred(c, 0.03), (closed[1], height - 0.03), body)
     if foot < 0.08:
         w.legs((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), (0.0, foot), 0.05, w.look("dark"), round_=True)
     else:
@@ -102,7 +102,7 @@ def coffee_drawer(w: Workbench) -> None:
 
 
 def drop_leaf(w: Workbench) -> None:
-    """Gateleg table: fixed middle, leaves up on swung-out gates or hanging at the sides, turned or square legs."""
+    """Builds a gateleg table with one or both leaves up, or hanging at the side."""
     width, depth, height = w.width(1.00, 1.60), w.depth(0.75, 0.95), w.length(0.72, 0.76)
     wood, leg = w.look("wood"), w.length(0.035, 0.055)
     up = w.choice(((True, True), (True, False), (True, True)))
@@ -145,7 +145,7 @@ def drop_leaf(w: Workbench) -> None:
 
 
 def twin_pedestal(w: Workbench) -> None:
-    """Long oval or boat-shaped top on two columns: turned with claw feet, or fat drums, or wedges of lacquer."""
+    """Builds a long table on two columns with claw feet, drums or wedges."""
     width, depth, height = w.width(1.60, 2.40), w.depth(0.90, 1.10), w.length(0.73, 0.77)
     top, look, power = (
         w.look("wood") if w.chance(0.7) else w.look("stone"),
@@ -174,7 +174,7 @@ def twin_pedestal(w: Workbench) -> None:
 
 
 def cafe_cross(w: Workbench) -> None:
-    """Bistro table: round or square top, one slim column, four flat arms or a plate for a foot."""
+    """Builds a bistro table on one slim column with four flat feet or a foot plate."""
     side, height = w.width(0.60, 0.95), w.length(0.71, 0.76)
     metal, thick = w.look("iron") if w.chance(0.6) else w.look("steel"), w.length(0.015, 0.035)
     top = w.look(w.choice(("wood", "stone", "lacquer", "steel")))
@@ -197,7 +197,7 @@ def cafe_cross(w: Workbench) -> None:
 
 
 def parsons(w: Workbench) -> None:
-    """Table of one thickness: corner legs flush with the top, or a plastic one with rounded corners and cone legs."""
+    """Builds a table with corner legs flush with its top, or a plastic one with tapered legs."""
     width, depth, height = w.width(1.00, 2.00), w.depth(0.75, 1.00), w.length(0.71, 0.76)
     if w.chance(0.5):
         look, thick = parts.wood_look(w), w.length(0.04, 0.10)

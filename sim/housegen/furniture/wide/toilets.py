@@ -13,7 +13,7 @@ from sim.housegen.furniture.workbench import Workbench
 def _bowl_and_seat(
     w: Workbench, x0: float, x1: float, half: float, seat: float, look: Look, *, low: float = 0.0
 ) -> None:
-    """A pan from x0 to its nose x1 of drawn outline, on a foot or hung at `low`; seat and lid shut or open."""
+    """Adds a pan from x0 to its front end x1, on a foot or hung at the height `low`, with its seat and lid."""
     middle, r, power = 0.5 * (x0 + x1), 0.5 * (x1 - x0), w.choice((2.0, 2.3, 3.2))
     base, waist = w.choice(((0.62, 0.55), (0.9, 0.85), (0.75, 0.5), (0.95, 0.97)))
     if low:
@@ -47,7 +47,7 @@ def _bowl_and_seat(
 
 
 def bidet(w: Workbench) -> None:
-    """Low pan without seat or cistern, its hollow open, a small tap at the back."""
+    """Builds a bidet: a low pan without seat or cistern, with a small tap."""
     half, depth, rim = 0.5 * w.length(0.34, 0.40), w.length(0.50, 0.60), w.length(0.36, 0.42)
     white, power, r = w.look("ceramic"), w.choice((2.2, 3.0, 6.0)), 0.5 * depth
     base = w.choice((0.55, 0.75, 0.96))
@@ -64,7 +64,7 @@ def bidet(w: Workbench) -> None:
 
 
 def squat(w: Workbench) -> None:
-    """Squat pan in a raised step: long hollow with a hood and ribbed footrests, cistern and pipe or a bucket."""
+    """Builds a squat toilet in a raised step, with a cistern and pipe or a bucket."""
     width, depth, step = w.length(0.60, 0.90), w.length(0.75, 1.0), w.length(0.12, 0.28)
     white, base = w.look("ceramic"), w.look(w.choice(("stone", "masonry", "ceramic")))
     x, y = parts.footprint(depth, width)
@@ -96,7 +96,7 @@ def squat(w: Workbench) -> None:
 
 
 def smart(w: Workbench) -> None:
-    """Tankless block with a thick sloping lid, wide rear housing and a control arm or remote beside the seat."""
+    """Builds a tankless toilet with a thick lid, a wide rear housing and often a control arm."""
     half, depth, seat = 0.5 * w.length(0.38, 0.43), w.length(0.64, 0.74), w.length(0.40, 0.46)
     white = w.look(w.choice(("ceramic", "ceramic", "appliance")))
     r, power = 0.5 * depth, w.choice((2.6, 3.4))
@@ -124,7 +124,7 @@ def smart(w: Workbench) -> None:
 
 
 def earth_closet(w: Workbench) -> None:
-    """Boxed bench of boards with a round seat and a lid, shut or leaning back: dry or composting toilet."""
+    """Builds a dry or composting toilet: a boxed bench of boards with a round seat and a lid."""
     width, depth, seat = w.length(0.48, 1.00), w.length(0.50, 0.65), w.length(0.40, 0.48)
     wood, x = w.look(w.choice(("wood", "wood", "lacquer"))), 0.5 * depth
     y = 0.5 * width
@@ -151,7 +151,7 @@ def earth_closet(w: Workbench) -> None:
 
 
 def accessible(w: Workbench) -> None:
-    """High pan with a slim cistern between grab rails: a tubular frame over it or arms that fold from the back."""
+    """Builds a high toilet between grab rails, a tubular frame or fold-down arms."""
     half, depth, seat = 0.5 * w.length(0.36, 0.40), w.length(0.66, 0.76), w.length(0.45, 0.52)
     white, metal = w.look("ceramic"), w.look(w.choice(("chrome", "plastic", "metal")))
     x0, x1 = -0.5 * depth, 0.5 * depth
@@ -180,7 +180,7 @@ def accessible(w: Workbench) -> None:
 
 
 def hand_basin_tank(w: Workbench) -> None:
-    """Pan with a tall tapered or round-shouldered cistern that carries a small basin and spout on its lid."""
+    """Builds a toilet whose tall cistern has a small basin and a spout in its lid."""
     half, depth, seat = 0.5 * w.length(0.36, 0.42), w.length(0.66, 0.78), w.length(0.37, 0.43)
     white, tall, deep = w.look("ceramic"), w.length(0.34, 0.50), w.length(0.18, 0.22)
     x0 = -0.5 * depth
@@ -205,7 +205,7 @@ def hand_basin_tank(w: Workbench) -> None:
 
 
 def slim_panel(w: Workbench) -> None:
-    """Hung pan on a narrow tall glass or stone panel that holds the cistern; no foot touches the floor."""
+    """Builds a wall-hung toilet on a narrow tall panel that contains the cistern."""
     half, seat, reach = 0.5 * w.length(0.34, 0.38), w.length(0.40, 0.47), w.length(0.48, 0.58)
     wide, high, thick = 0.5 * w.length(0.46, 0.62), w.length(0.95, 1.25), w.length(0.08, 0.14)
     front = w.look(w.choice(("dark", "ceramic", "stone", "lacquer", "wood")))
@@ -223,7 +223,7 @@ def slim_panel(w: Workbench) -> None:
 
 
 def corner_tank(w: Workbench) -> None:
-    """Pan before a wedge-shaped or drum cistern, round pedestal foot; hoses and a brush holder at its side."""
+    """Builds a toilet with a wedge-shaped or round cistern, and sometimes a brush holder."""
     half, seat, white = 0.5 * w.length(0.35, 0.40), w.length(0.38, 0.43), w.look("ceramic")
     depth, tall = w.length(0.66, 0.76), w.length(0.30, 0.40)
     x0, top = -0.5 * depth, seat + tall
@@ -244,7 +244,7 @@ def corner_tank(w: Workbench) -> None:
 
 
 def portable(w: Workbench) -> None:
-    """Camping or commode toilet: tapered plastic box in two halves, or a seat in a tubular frame with a pail."""
+    """Builds a camping toilet of two plastic halves, or a commode with a pail in a tubular frame."""
     body, seat = w.look(w.choice(("ceramic", "ceramic", "plastic"))), w.length(0.34, 0.46)
     half, r = w.length(0.18, 0.22), w.length(0.19, 0.23)
     dark = w.look("dark")

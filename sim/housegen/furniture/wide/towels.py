@@ -10,12 +10,13 @@ from sim.housegen.furniture.shapes import chamfered_box, drape
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _towel(w: Workbench) -> Look:
+def _towel_look(w: Workbench) -> Look:
+    """Returns a new look for a towel."""
     return w.new_look("towel") if w.chance(0.8) else w.new_look("linen")
 
 
 def hotel_rack(w: Workbench) -> None:
-    """Shelf of thin bars high on the wall with folded towels on it and towels over the rail below."""
+    """Builds a high wall rack with folded towels on it and a towel over the rail below."""
     width, deep, metal = w.width(0.45, 0.75), w.length(0.20, 0.26), parts.fitting_look(w)
     tall = w.length(0.45, 0.75)
     w.mount_height_m = 1.65 - tall
@@ -29,18 +30,27 @@ def hotel_rack(w: Workbench) -> None:
         w.rod((0.0, y, tall - 0.09), (0.6 * deep, y, tall - 0.09), 0.007, metal)
     w.rod((0.6 * deep, -0.5 * width, tall - 0.09), (0.6 * deep, 0.5 * width, tall - 0.09), 0.008, metal)
     parts.towel_over_bar(
-        w, 0.6 * deep, 0.0, tall - 0.09, w.length(0.5, 0.85) * width, tall - 0.11, w.length(0.5, 0.8) * tall, _towel(w)
+        w,
+        0.6 * deep,
+        0.0,
+        tall - 0.09,
+        w.length(0.5, 0.85) * width,
+        tall - 0.11,
+        w.length(0.5, 0.8) * tall,
+        _towel_look(w),
     )
-    z, cloth = tall + 0.004, _towel(w)
+    z, cloth = tall + 0.004, _towel_look(w)
     for i in range(w.whole(1, 4)):
         thick = w.length(0.04, 0.07)
         size = (0.9 * deep, width * w.length(0.5, 0.85), thick)
-        w.mesh(chamfered_box(size, 0.02), (0.03 + 0.45 * deep, 0.0, z + 0.5 * thick), cloth if i % 2 else _towel(w))
+        w.mesh(
+            chamfered_box(size, 0.02), (0.03 + 0.45 * deep, 0.0, z + 0.5 * thick), cloth if i % 2 else _towel_look(w)
+        )
         z += thick - 0.004
 
 
 def hanging_rungs(w: Workbench) -> None:
-    """Dowels hung on two cords or straps below each other from a wall hook rail, a towel over each."""
+    """Builds wooden bars on two cords below a wall rail, with towels over them."""
     width, wood, cord = w.width(0.40, 0.70), w.look("wood"), w.look(w.choice(("leather", "fabric", "metal")))
     count, gap = w.whole(2, 3), w.length(0.34, 0.42)
     tall = count * gap + 0.12
@@ -56,12 +66,12 @@ def hanging_rungs(w: Workbench) -> None:
         if i == 0 or w.chance(0.75):
             wide = w.length(0.4, 0.75) * width
             parts.towel_over_bar(
-                w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel(w)
+                w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel_look(w)
             )
 
 
 def panel_radiator(w: Workbench) -> None:
-    """Flat, ribbed or columned upright radiator with a bar across it and a bath towel over the bar."""
+    """Builds a flat, ribbed or columned upright radiator with one or two bars for towels."""
     width, high = w.width(0.35, 0.60), w.length(1.10, 1.75)
     look, metal = w.look(w.choice(("ceramic", "dark", "lacquer", "glass"))), w.look("chrome")
     w.mount_height_m = w.length(0.15, 0.35)
@@ -86,11 +96,13 @@ def panel_radiator(w: Workbench) -> None:
         for side in BOTH_SIDES:
             w.rod((0.045, side * (y - 0.03), z), (0.11, side * (y - 0.03), z), 0.008, metal)
         drop = w.length(0.24, 0.32) * high
-        parts.towel_over_bar(w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel(w))
+        parts.towel_over_bar(
+            w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel_look(w)
+        )
 
 
 def towel_line(w: Workbench) -> None:
-    """Cord between two wall arms with towels pegged to it by their corners."""
+    """Builds a cord between two wall arms with one to three towels pegged to it."""
     width, metal, count = w.width(0.60, 1.10), w.look("metal"), w.whole(1, 3)
     tall, out = w.length(0.55, 0.85), w.length(0.12, 0.25)
     w.mount_height_m = 1.65 - tall
@@ -105,14 +117,16 @@ def towel_line(w: Workbench) -> None:
     for i in range(count):
         y, drop = -0.5 * width + 0.04 + (i + 0.5) * each, z if i == low else w.length(0.45, 0.95) * z
         wide = min(each - 0.03, w.length(0.3, 0.7))
-        w.mesh(drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), _towel(w))
+        w.mesh(
+            drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), _towel_look(w)
+        )
         for side in BOTH_SIDES:
             c = y + side * (0.5 * wide - 0.02)
             w.box((out - 0.012, out + 0.03), (c - 0.006, c + 0.006), (z - 0.04, z + 0.03), w.look("wood"), solid=False)
 
 
 def towel_tiers(w: Workbench) -> None:
-    """Two or three bars in front of each other and stepped in height between two side plates."""
+    """Builds two or three stepped bars between side plates, with a towel over each."""
     width, metal, count = w.width(0.45, 0.75), parts.fitting_look(w), w.whole(2, 3)
     tall, step = w.length(0.55, 0.80), w.length(0.06, 0.14)
     w.mount_height_m = 1.35 - tall
@@ -129,31 +143,31 @@ def towel_tiers(w: Workbench) -> None:
         wide = w.length(0.35, 0.85) * width
         drop = z if i == count - 1 else w.length(0.5, 0.95) * z
         shift = w.length(-0.5, 0.5) * (width - wide - 0.04)
-        parts.towel_over_bar(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel(w))
+        parts.towel_over_bar(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel_look(w))
     w.box((0.0, last), (-0.5 * width, -0.5 * width + 0.01), (top - 0.01, top + 0.01), metal)
 
 
 def towel_airer(w: Workbench) -> None:
-    """Folding drying rack with crossed legs, a bed of wires and perhaps wings, towels hung over the wires."""
+    """Builds a folding drying rack with towels over its wires."""
     width, high, metal = w.width(0.55, 0.95), w.length(0.85, 1.05), w.look(w.choice(("plastic", "steel", "ceramic")))
     y, half, spread = 0.5 * width, w.length(0.24, 0.32), w.length(0.22, 0.30)
     for side in BOTH_SIDES:
-        for way in BOTH_SIDES:
-            w.rod((-way * spread, side * (y - 0.02), 0.0), (way * half, side * (y - 0.02), high), 0.011, metal)
-    for way in BOTH_SIDES:
-        w.rod((way * spread, -y, 0.012), (way * spread, y, 0.012), 0.011, metal)
-        w.rod((way * half, -y, high), (way * half, y, high), 0.011, metal)
+        for sign in BOTH_SIDES:
+            w.rod((-sign * spread, side * (y - 0.02), 0.0), (sign * half, side * (y - 0.02), high), 0.011, metal)
+    for sign in BOTH_SIDES:
+        w.rod((sign * spread, -y, 0.012), (sign * spread, y, 0.012), 0.011, metal)
+        w.rod((sign * half, -y, high), (sign * half, y, high), 0.011, metal)
     for side in BOTH_SIDES:
         w.rod((-half, side * (y - 0.02), high), (half, side * (y - 0.02), high), 0.010, metal)
     wires = [(-half + (i + 1) * 2 * half / 6, high) for i in range(5)]
     lift = w.length(0.0, 0.22)
     if w.chance(0.6):
-        for way in BOTH_SIDES:
-            end = (way * (half + 0.32), high + lift)
+        for sign in BOTH_SIDES:
+            end = (sign * (half + 0.32), high + lift)
             for side in BOTH_SIDES:
-                w.rod((way * half, side * (y - 0.03), high), (end[0], side * (y - 0.03), end[1]), 0.009, metal)
+                w.rod((sign * half, side * (y - 0.03), high), (end[0], side * (y - 0.03), end[1]), 0.009, metal)
             w.rod((end[0], -y, end[1]), (end[0], y, end[1]), 0.009, metal)
-            wires.append((way * (half + 0.16), high + 0.5 * lift))
+            wires.append((sign * (half + 0.16), high + 0.5 * lift))
             wires.append(end)
     for x, z in wires:
         w.rod((x, -y + 0.02, z), (x, y - 0.02, z), 0.004, metal)
@@ -161,12 +175,12 @@ def towel_airer(w: Workbench) -> None:
         x, z = wires[int(i)]
         wide = w.length(0.4, 0.9) * width
         parts.towel_over_bar(
-            w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), _towel(w)
+            w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), _towel_look(w)
         )
 
 
 def towel_cart(w: Workbench) -> None:
-    """Narrow open shelf or trolley on feet or castors with folded towels on every tier."""
+    """Builds a narrow open shelf on feet or castors with folded towels on every tier."""
     width, depth, high = w.width(0.35, 0.60), w.depth(0.28, 0.40), w.length(0.65, 1.30)
     frame, tiers = w.look(w.choice(("wood", "metal", "lacquer", "steel"))), w.whole(2, 4)
     x, y = parts.footprint(depth, width)
@@ -190,29 +204,32 @@ def towel_cart(w: Workbench) -> None:
                 if base + thick > z + room - 0.02:
                     break
                 size = (depth - w.length(0.04, 0.08), width * (0.80 if stacks == 1 else 0.42), thick)
-                w.mesh(chamfered_box(size, 0.022), (0.0, c, base + 0.5 * thick), _towel(w))
+                w.mesh(chamfered_box(size, 0.022), (0.0, c, base + 0.5 * thick), _towel_look(w))
                 base += thick - 0.003
     w.rod((x[1] - 0.01, y[0], high - 0.012), (x[1] - 0.01, y[1], high - 0.012), 0.01, frame)
     w.rod((x[0] + 0.01, y[0], high - 0.012), (x[0] + 0.01, y[1], high - 0.012), 0.01, frame)
 
 
 def towel_dropped(w: Workbench) -> None:
-    """Towels thrown on the floor: one or two rumpled sheets across each other, perhaps a flat folded one below."""
+    """Builds one to three crumpled towels on the floor, sometimes on a folded one."""
     z = 0.0
     if w.chance(0.4):
         w.mesh(
-            chamfered_box((w.length(0.4, 0.6), 0.34, 0.04), 0.015), (0.0, 0.0, 0.02), _towel(w), turn=w.length(0.0, 1.5)
+            chamfered_box((w.length(0.4, 0.6), 0.34, 0.04), 0.015),
+            (0.0, 0.0, 0.02),
+            _towel_look(w),
+            turn=w.length(0.0, 1.5),
         )
         z = 0.03
     for i in range(w.whole(1, 3)):
         shape = parts.crumpled_cloth(w, w.length(0.35, 0.85), w.length(0.3, 0.55), w.length(0.06, 0.22))
         at = (w.length(-0.1, 0.1), w.length(-0.1, 0.1), z)
-        w.mesh(shape, at, _towel(w), turn=w.length(0.0, 3.0), solid=i == 0)
+        w.mesh(shape, at, _towel_look(w), turn=w.length(0.0, 3.0), solid=i == 0)
         z += 0.02
 
 
 def towel_tray(w: Workbench) -> None:
-    """Towels set upright side by side in a low box or wire basket, or laid folded on a tray with a flannel."""
+    """Builds towels in a low box, upright side by side or folded in a pile."""
     wide, deep, rim = w.length(0.26, 0.42), w.length(0.20, 0.28), w.length(0.06, 0.14)
     box = w.look(w.choice(("wicker", "wood", "metal", "plastic")))
     x, y = (-0.5 * deep, 0.5 * deep), (-0.5 * wide, 0.5 * wide)
@@ -224,13 +241,15 @@ def towel_tray(w: Workbench) -> None:
         for i in range(count):
             c, tall = y[0] + 0.015 + (i + 0.5) * each, w.length(0.15, 0.24)
             size = (deep - 0.03, each - 0.003, tall)
-            w.mesh(chamfered_box(size, 0.025), (0.0, c, 0.012 + 0.5 * tall), _towel(w))
+            w.mesh(chamfered_box(size, 0.025), (0.0, c, 0.012 + 0.5 * tall), _towel_look(w))
         return
     z = 0.012
     for i in range(w.whole(2, 4)):
         thick, s = w.length(0.04, 0.07), 1.0 - 0.1 * i
         w.mesh(
-            chamfered_box((s * (deep - 0.03), s * (wide - 0.03), thick), 0.02), (0.0, 0.0, z + 0.5 * thick), _towel(w)
+            chamfered_box((s * (deep - 0.03), s * (wide - 0.03), thick), 0.02),
+            (0.0, 0.0, z + 0.5 * thick),
+            _towel_look(w),
         )
         z += thick - 0.004
 

@@ -10,7 +10,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def vanity_frame(w: Workbench) -> None:
-    """Washstand of legs and rails: a top with the basin, an open or slatted shelf with towels below, a towel bar."""
+    """Builds a washstand of legs and rails with a shelf for towels below its top."""
     width, depth, height = w.width(0.65, 1.30), w.depth(0.44, 0.54), w.length(0.76, 0.86)
     frame = w.look(w.choice(("wood", "iron", "brass", "lacquer")))
     top = w.look(w.choice(("wood", "stone")))
@@ -56,7 +56,7 @@ def vanity_frame(w: Workbench) -> None:
 
 
 def _basins(w: Workbench, width: float, depth: float, height: float) -> None:
-    """One basin in the middle or to one side, or two, with room beside."""
+    """Adds one basin in the middle or to one side, or two, and declares the free surface beside them."""
     spots = (-0.25 * width, 0.25 * width) if width > 1.2 and w.chance(0.6) else (0.0,)
     if len(spots) == 1 and width > 0.95 and w.chance(0.4):
         spots = (w.choice(BOTH_SIDES) * (0.5 * width - 0.32),)
@@ -71,7 +71,7 @@ def _basins(w: Workbench, width: float, depth: float, height: float) -> None:
 
 
 def vanity_drawers(w: Workbench) -> None:
-    """Washstand with a column of drawers beside doors, a stone top that overhangs and a splashback."""
+    """Builds a washstand with a column of drawers beside doors, and a top that overhangs."""
     width, depth, height = w.width(0.75, 1.60), w.depth(0.46, 0.56), w.length(0.76, 0.86)
     look, metal = parts.wood_look(w), w.look(w.choice(("brass", "metal", "dark")))
     kind: FeetKind = w.choice(("bun", "taper", "block", "plinth", "cabriole"))

@@ -9,7 +9,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def wall_unit_open(w: Workbench) -> None:
-    """Kitchen wall cupboard, part doors, part open shelves with crockery, hooks with cups under it."""
+    """Builds a kitchen wall unit, partly with doors and partly open, sometimes with cups on hooks below it."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.26, 0.36), w.height(0.50, 0.80)
     w.mount_height_m = 1.42
     look, metal = parts.wood_look(w), w.look(w.choice(("metal", "dark", "brass")))
@@ -58,7 +58,7 @@ def wall_unit_open(w: Workbench) -> None:
 
 
 def wall_unit_tiers(w: Workbench) -> None:
-    """Kitchen wall cupboards in two tiers: doors below, low lift-up flaps above, perhaps set back, a cornice."""
+    """Builds a kitchen wall unit of two tiers: doors below and low flaps above."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.32, 0.38), w.height(0.75, 0.95)
     w.mount_height_m = 1.42
     look, metal = parts.wood_look(w), w.look(w.choice(("metal", "dark", "brass")))

@@ -10,7 +10,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def wardrobe_combi(w: Workbench) -> None:
-    """Asymmetric wardrobe: tall doors on one side, a lower stack of drawers, open shelves or a mirror on the other."""
+    """Builds an asymmetric wardrobe with tall doors on one side and drawers with open shelves on the other."""
     width, depth, height = w.width(1.10, 1.90), w.depth(0.50, 0.62), w.height(1.80, 2.20)
     look, side = parts.wood_look(w), w.choice(BOTH_SIDES)
     face = w.look(w.choice(("wood", "lacquer", "lacquer")))
@@ -41,7 +41,7 @@ def wardrobe_combi(w: Workbench) -> None:
 
 
 def wardrobe_cloth(w: Workbench) -> None:
-    """Cheap wardrobe of cloth over a frame of tubes, zipped or rolled up before shelves, roof flat or pitched."""
+    """Builds a wardrobe of cloth over a frame of tubes, closed or open before its shelves."""
     width, depth, height = w.width(0.75, 1.40), w.depth(0.44, 0.52), w.height(1.55, 1.80)
     cloth, tube = w.look(w.choice(("fabric", "linen", "curtain"))), w.look(w.choice(("metal", "dark", "bright")))
     pitch = w.length(0.06, 0.16) if w.chance(0.5) else 0.0
@@ -83,7 +83,7 @@ def wardrobe_cloth(w: Workbench) -> None:
 
 
 def wardrobe_lockers(w: Workbench) -> None:
-    """Row of narrow steel lockers with vent slots, one or two doors high."""
+    """Builds a row of narrow steel lockers with vent slots, one or two doors high."""
     columns, rows = w.whole(2, 4), w.choice((1, 1, 2))
     width, depth = w.width(0.32 * columns, 0.46 * columns), w.depth(0.42, 0.55)
     height, foot = w.height(1.65, 1.95), w.length(0.03, 0.16)
@@ -116,7 +116,7 @@ def wardrobe_lockers(w: Workbench) -> None:
 
 
 def wardrobe_ceiling(w: Workbench) -> None:
-    """Built-in wardrobe up to the ceiling: tall doors, a row of top boxes over them, louvred, framed or mirrored."""
+    """Builds a ceiling-high wardrobe with tall doors and a row of small doors above them."""
     width, depth, height = w.width(1.20, 2.30), w.depth(0.55, 0.65), w.height(2.25, 2.45)
     count = max(2, round(width / w.choice((0.42, 0.55))))
     look = parts.wood_look(w)
@@ -159,7 +159,7 @@ def wardrobe_ceiling(w: Workbench) -> None:
 
 
 def wardrobe_cane(w: Workbench) -> None:
-    """Slender wardrobe on legs with rounded corners and doors of cane, mesh or framed panels."""
+    """Builds a slender wardrobe on legs with rounded corners and cane or framed doors."""
     width, depth, height = w.width(0.80, 1.30), w.depth(0.48, 0.60), w.height(1.65, 1.95)
     look, metal = parts.wood_look(w), w.look(w.choice(("brass", "dark")))
     kind: FeetKind = w.choice(("splay", "taper", "sled"))
