@@ -28,8 +28,8 @@ from sim.episodes.splits import Episode, write_split
 from sim.errors import EpisodeError
 from sim.evaluation.parallel import ordered_map
 from sim.geometry.pose import Pose
-from sim.housegen.recipes import has_house_list, read_house_list
-from sim.housegen.shipped import SPLIT_VERSION
+from sim.housegen.house_list import has_house_list, read_house_list
+from sim.housegen.split_recipes import SPLIT_VERSION
 from sim.houses.load import load_house
 from sim.interface import ConfigError
 from sim.task.objectnav import Task
