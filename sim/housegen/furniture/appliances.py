@@ -8,12 +8,11 @@ from __future__ import annotations
 import itertools
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def fridge(w: Workbench) -> None:
@@ -24,7 +23,7 @@ def fridge(w: Workbench) -> None:
     split = height * w.choice((0.36, 0.68))
     w.box((x[0], x[1] - 0.06), y, (0.04, height), look)
     w.box((x[0] + 0.03, x[1] - 0.08), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.04), w.look("dark"))
-    side = w.choice(_BOTH)
+    side = w.choice(BOTH_SIDES)
     for low, high in ((0.05, split - 0.004), (split + 0.004, height)):
         w.mesh(chamfered_box((0.06, width, round(high - low, 3)), 0.008), (x[1] - 0.03, 0.0, 0.5 * (low + high)), look)
         grip = (max(low + 0.10, high - 0.5), high - 0.08) if low < 0.1 else (low + 0.08, min(high - 0.10, low + 0.5))
@@ -85,7 +84,7 @@ def stove(w: Workbench) -> None:
     w.box((x[0] + 0.03, x[1] - 0.06), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.05), w.look("dark"))
     w.box((x[0], x[1]), y, (height - 0.012, height), dark)
     for sx in (-0.13, 0.13):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.cylinder(
                 (sx, side * 0.14),
                 (height, height + 0.012),
@@ -98,7 +97,7 @@ def stove(w: Workbench) -> None:
     w.rod(
         (x[1] + 0.03, y[0] + 0.06, height - 0.18), (x[1] + 0.03, y[1] - 0.06, height - 0.18), 0.010, metal, solid=False
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (x[1] - 0.01, side * (0.5 * width - 0.08), height - 0.18),
             (x[1] + 0.03, side * (0.5 * width - 0.08), height - 0.18),
@@ -124,7 +123,7 @@ def range_cooker(w: Workbench) -> None:
     w.box((x[0], x[1] - 0.02), y, (0.08, height), look)
     w.legs((x[0] + 0.03, x[1] - 0.05), (y[0] + 0.03, y[1] - 0.03), (0.0, 0.08), 0.04, iron)
     w.box((x[0], x[0] + 0.02), y, (height, height + 0.10), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * 0.25 * width
         w.box((x[1] - 0.02, x[1]), (c - 0.23 * width, c + 0.23 * width), (0.14, 0.70), look, solid=False)
         w.box((x[1], x[1] + 0.006), (c - 0.12 * width, c + 0.12 * width), (0.40, 0.58), w.look("screen"), solid=False)
@@ -139,7 +138,7 @@ def range_cooker(w: Workbench) -> None:
             brass,
             solid=False,
         )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (x[1] - 0.02, side * (0.5 * width - 0.05), 0.75),
             (x[1] + 0.03, side * (0.5 * width - 0.05), 0.75),
@@ -251,7 +250,7 @@ def dishwasher(w: Workbench) -> None:
     w.box((x - 0.02, x), (-0.296, 0.296), (0.10, height - 0.13), look, solid=False)
     w.box((x - 0.02, x - 0.003), (-0.296, 0.296), (height - 0.12, height - 0.005), w.look("dark"), solid=False)
     w.rod((x + 0.025, -0.25, height - 0.18), (x + 0.025, 0.25, height - 0.18), 0.010, w.look("chrome"), solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (x - 0.005, side * 0.23, height - 0.18),
             (x + 0.025, side * 0.23, height - 0.18),

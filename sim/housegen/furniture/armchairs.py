@@ -9,6 +9,7 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     arc_wall,
@@ -16,8 +17,6 @@ from sim.housegen.furniture.shapes import (
     loft,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def club(w: Workbench) -> None:
@@ -33,7 +32,7 @@ def club(w: Workbench) -> None:
         cover,
     )
     top = w.length(0.56, 0.64)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.mesh(
             chamfered_box((depth, arm, top - 0.09), 0.035), (0.0, side * 0.5 * (width - arm), 0.5 * (top + 0.09)), cover
         )
@@ -55,7 +54,7 @@ def wingback(w: Workbench) -> None:
         cloth,
         tilt=-0.10,
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.06)
         w.box((x0 + 0.12, x1 - 0.06), (y - 0.045, y + 0.045), (0.20, 0.58), cloth)
         w.rod((x0 + 0.14, y, 0.60), (x1 - 0.05, y, 0.60), 0.06, cloth)
@@ -74,7 +73,7 @@ def lounge(w: Workbench) -> None:
     width, depth, height = w.width(0.66, 0.76), w.depth(0.72, 0.82), w.length(0.76, 0.84)
     seat, wood, cloth = w.length(0.38, 0.42), w.look("wood"), w.look("fabric")
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.02)
         w.bar((x1 - 0.06, y, 0.0), (x1 - 0.10, y, 0.56), 0.04, 0.045, wood)
         w.bar((x0 + 0.06, y, 0.0), (x0 + 0.14, y, 0.52), 0.04, 0.045, wood)
@@ -98,7 +97,7 @@ def rocker(w: Workbench) -> None:
     half, seat, height = 0.5 * w.length(0.56, 0.64), w.length(0.41, 0.45), w.length(1.0, 1.10)
     wood, cloth = w.look("wood"), w.look("fabric")
     curve = [(-0.46, 0.10), (-0.28, 0.035), (-0.05, 0.013), (0.18, 0.02), (0.38, 0.07)]
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.02)
         for a, b in itertools.pairwise(curve):
             w.rod((a[0], y, a[1]), (b[0], y, b[1]), 0.013, wood, round_ends=True)

@@ -12,6 +12,7 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
@@ -21,8 +22,6 @@ from sim.housegen.furniture.shapes import (
     named_mesh,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def _shower_set(w: Workbench, x: float, y: float, tray: float, metal: Look, *, rain: bool) -> None:
@@ -133,7 +132,7 @@ def cubicle(w: Workbench) -> None:
     white, metal, glass = w.look("ceramic"), w.look("metal"), w.look("glass")
     w.box((-half, half), (-half, half), (0.0, 0.15), white)
     w.box((-half, -half + 0.02), (-half, half), (0.15, high), white)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (half - 0.01)
         w.box((-half + 0.02, half), (edge - 0.01, edge + 0.01), (0.15, high), white if side < 0 else glass)
     w.box((-half, half), (-half, half), (high - 0.02, high + 0.05), white)
@@ -194,8 +193,8 @@ def clawfoot(w: Workbench) -> None:
     ]
     w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), white)
     w.ellipsoid((0.0, -ry + 0.05, high), (0.50 * rx, 0.05, 0.09), white, solid=False)
-    for sx in _BOTH:
-        for sy in _BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             w.rod(
                 (sx * 0.40 * rx, sy * 0.55 * ry, 0.20),
                 (sx * 0.72 * rx, sy * 0.70 * ry, 0.03),
@@ -252,7 +251,7 @@ def corner_cabin(w: Workbench) -> None:
     w.box((-half, half), (-half, half), (0.0, 0.07), w.look("ceramic"))
     w.cylinder((0.0, 0.0), (0.07, 0.074), 0.045, metal, solid=False)
     w.box((half - 0.010, half - 0.002), (-half, half), (0.09, high), glass)
-    for sy in _BOTH:
+    for sy in BOTH_SIDES:
         low, top = sorted((sy * (half - 0.010), sy * (half - 0.002)))
         w.box((-half, half), (low, top), (0.09, high), glass)
         for x in (-half + 0.012, half - 0.012):

@@ -9,10 +9,10 @@ from __future__ import annotations
 import itertools
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import chamfered_box, pillow
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
 _MATTRESS = 0.22
 
 
@@ -59,7 +59,7 @@ def panel(w: Workbench) -> None:
     half, x1 = 0.5 * width + 0.03, length + 0.02
     w.box((-0.05, 0.0), (-half, half), (0.18, head), wood)
     w.box((-0.065, 0.015), (-half - 0.02, half + 0.02), (head - 0.02, head + 0.03), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.06, 0.01), (side * half - 0.035, side * half + 0.035), (0.0, head), wood)
         w.box((0.0, x1), (side * half - 0.015, side * half + 0.015), (0.20, top - 0.12), wood)
         w.box((x1 - 0.02, x1 + 0.05), (side * half - 0.035, side * half + 0.035), (0.0, top + 0.04), wood)
@@ -103,7 +103,7 @@ def metal_frame(w: Workbench) -> None:
     iron, top, head = w.look("iron"), w.length(0.50, 0.58), w.length(0.95, 1.15)
     half = 0.5 * width + 0.02
     for x, high in ((-0.02, head), (length + 0.02, top + 0.12)):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.rod((x, side * half, 0.0), (x, side * half, high - 0.08), 0.017, iron)
             w.ball((x, side * half, high - 0.07), 0.026, w.look("brass"))
             w.rod((x, side * half, high - 0.09), (x, side * 0.4 * half, high - 0.015), 0.013, iron, round_ends=True)
@@ -112,7 +112,7 @@ def metal_frame(w: Workbench) -> None:
         for i in range(3):
             y = (i - 1) * 0.38 * half
             w.rod((x, y, top - 0.10), (x, y, high - 0.02), 0.008, iron)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((0.0, length), (side * half - 0.02, side * half + 0.02), (top - _MATTRESS - 0.06, top - _MATTRESS), iron)
     w.box((0.0, length), (-half, half), (top - _MATTRESS - 0.03, top - _MATTRESS + 0.005), iron)
     _bedding(w, 0.0, length, width, top)
@@ -125,7 +125,7 @@ def storage(w: Workbench) -> None:
     half = 0.5 * width + 0.02
     w.box((0.0, length + 0.02), (-half, half), (0.05, top - _MATTRESS + 0.02), look)
     w.box((0.04, length - 0.04), (-half + 0.05, half - 0.05), (0.0, 0.05), w.look("dark"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         for i in range(2):
             x = 0.06 + i * 0.48 * length
             y = side * half
@@ -148,7 +148,7 @@ def storage(w: Workbench) -> None:
     w.box((-0.25, 0.0), (-half, half), (0.0, 0.55), look)
     w.box((-0.25, -0.23), (-half, half), (0.55, head), look)
     w.box((-0.25, 0.0), (-half, half), (head - 0.02, head), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.01)
         w.box((-0.23, 0.0), (y - 0.01, y + 0.01), (0.55, head - 0.02), look)
     w.top((-0.21, -0.02), (-half + 0.05, half - 0.05), 0.55)
@@ -161,10 +161,10 @@ def four_poster(w: Workbench) -> None:
     wood, top, high = w.look("wood"), w.length(0.54, 0.62), w.length(1.95, 2.10)
     half, x0, x1 = 0.5 * width + 0.035, -0.035, length + 0.035
     for x in (x0, x1):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.box((x - 0.035, x + 0.035), (side * half - 0.035, side * half + 0.035), (0.0, high), wood)
         w.box((x - 0.02, x + 0.02), (-half, half), (high - 0.05, high), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((x0, x1), (side * half - 0.02, side * half + 0.02), (high - 0.05, high), wood)
         w.box((x0, x1), (side * half - 0.02, side * half + 0.02), (top - 0.30, top - 0.12), wood)
     w.box((x0 - 0.02, x0 + 0.02), (-half, half), (0.30, w.length(1.0, 1.2)), wood)
@@ -184,7 +184,7 @@ def sleigh(w: Workbench) -> None:
             w.bar((a[0], 0.0, a[1]), (b[0], 0.0, b[1] + 0.01), 2 * half, 0.05, wood)
         w.rod((x + out * 0.16, -half, high - 0.04), (x + out * 0.16, half, high - 0.04), 0.045, wood)
         w.box((x - 0.04, x + 0.04), (-half, half), (0.0, 0.08), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((0.0, length + 0.02), (side * half - 0.02, side * half + 0.02), (0.14, top - 0.12), wood)
     w.box((0.0, length), (-half, half), (0.2, top - _MATTRESS + 0.01), wood)
     _bedding(w, 0.01, length, width, top)
@@ -195,7 +195,7 @@ def futon(w: Workbench) -> None:
     length, width = _mattress_size(w)
     wood, top = w.look("wood"), 0.40
     half = 0.5 * width + 0.08
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((-0.10, side * (half - 0.05), 0.10), (length + 0.10, side * (half - 0.05), 0.10), 0.05, wood)
     for i in range(6):
         x = 0.05 + i * (length - 0.1) / 5

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def wardrobe_doors(w: Workbench) -> None:
@@ -55,12 +54,12 @@ def armoire(w: Workbench) -> None:
     w.box((x[0], x[1] + 0.08), (y[0] - 0.08, y[1] + 0.08), (height - 0.03, height), wood)
     w.box((x[0], x[1] + 0.03), (y[0] - 0.03, y[1] + 0.03), (0.10, 0.15), wood)
     for sx in (x[0] + 0.07, x[1] - 0.05):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.ellipsoid((sx, side * (0.5 * width - 0.06), 0.055), (0.055, 0.055, 0.055), wood)
     parts.plain_drawers(w, x[1], y, (0.16, 0.40), 1, 1, wood, w.look("brass"), "cup")
     parts.plain_doors(w, x[1], y, (0.40, height - 0.09), 2, wood, w.look("brass"), "knob")
     panel = wood if wood.texture is None else w.look("wood")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * 0.25 * width
         for z in ((0.50, 0.95), (1.10, height - 0.20)):
             w.mesh(
@@ -97,7 +96,7 @@ def display(w: Workbench) -> None:
     w.box((x[0], x[1] + 0.025), y, (base, base + 0.025), look)
     front = x[1] - 0.10
     w.box((x[0], x[0] + 0.012), y, (base + 0.025, height), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.011)
         w.box((x[0], front), (edge - 0.011, edge + 0.011), (base + 0.025, height), look)
     for z in (base + 0.40, base + 0.72):
@@ -130,10 +129,10 @@ def tambour(w: Workbench) -> None:
             wood,
             solid=False,
         )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.15)
         w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (c - 0.01, c + 0.01), (0.0, 0.02), metal)
-        for sx in _BOTH:
+        for sx in BOTH_SIDES:
             cx = sx * (0.5 * depth - 0.04)
             w.box((cx - 0.01, cx + 0.01), (c - 0.01, c + 0.01), (0.02, 0.16), metal)
 
@@ -148,7 +147,7 @@ def media_low(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.012), y, (0.085, height - 0.03), body)
     w.box((x[0] + 0.03, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), (0.0, 0.06), w.look("dark"))
     third = width / 3
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - third)))
         w.box((x[0], x[1] - parts.FRONT_M), (low, high), (0.085, height - 0.03), body)
         parts.plain_drawers(
@@ -167,7 +166,7 @@ def media_legs(w: Workbench) -> None:
     w.box(x, y, (height - 0.035, height), wood)
     w.box((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.15, 0.175), wood)
     w.legs((x[0] + 0.005, x[1] - 0.005), (y[0] + 0.005, y[1] - 0.005), (0.0, height - 0.035), 0.025, iron)
-    side = w.choice(_BOTH)
+    side = w.choice(BOTH_SIDES)
     low, high = sorted((side * 0.47 * width, side * 0.10 * width))
     w.box((x[0] + 0.02, x[1] - 0.03), (low, high), (0.175, height - 0.035), wood)
     parts.plain_doors(w, x[1] - 0.03, (low, high), (0.175, height - 0.035), 1, wood, w.look("brass"), "knob")
@@ -230,7 +229,7 @@ def vanity_doors(w: Workbench) -> None:
         "bar",
     )
     w.put(w.make("sink", use="vessel"), (0.02, 0.0, height))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         if 0.5 * width > 0.45:
             low, high = sorted((side * 0.32, side * (0.5 * width - 0.03)))
             w.top((x[0] + 0.05, x[1] - 0.05), (low, high), height)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
@@ -20,7 +21,6 @@ from sim.housegen.furniture.shapes import (
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
 DINING_KG = 5.0
 
 
@@ -52,7 +52,7 @@ def _dining_frame(w: Workbench, low: float = 0.80, high: float = 0.96) -> _Frame
 def _wooden_frame(w: Workbench, f: _Frame, wood: Look, thick: float) -> None:
     """Front legs, raked back posts and four seat rails."""
     inset = 0.5 * thick
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (f.half - inset)
         w.box((f.front - thick, f.front), (y - inset, y + inset), (0.0, f.seat - 0.02), wood)
         w.bar((f.back + inset - 0.03, y, 0.0), (f.back + inset, y, f.seat), thick, thick, wood)
@@ -94,7 +94,7 @@ def slat_back(w: Workbench) -> None:
 def ladder_back(w: Workbench) -> None:
     """Country chair: three or four rungs across the back, woven seat, stretchers near the floor."""
     f, wood, thick = _dining_frame(w, 0.92, 1.02), w.look("wood"), 0.034
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (f.half - 0.5 * thick)
         w.rod((f.front - 0.02, y, 0.0), (f.front - 0.02, y, f.seat), 0.5 * thick, wood)
         w.rod((f.back + 0.02, y, 0.0), (f.back + 0.02, y, f.seat), 0.5 * thick, wood)
@@ -124,7 +124,7 @@ def shell(w: Workbench) -> None:
         (f.back_x(f.height) - 0.01, f.height),
     ]
     w.mesh(strip(path[::-1], 0.012, 2 * f.half), (0.0, 0.0, 0.0), colour)
-    for side in _BOTH:  # turned-up rims stiffen the seat
+    for side in BOTH_SIDES:  # turned-up rims stiffen the seat
         y = side * (f.half - 0.004)
         w.bar((f.front - 0.02, y, f.seat + 0.004), (f.back + 0.04, y, f.seat + 0.02), 0.012, 0.035, colour, solid=False)
     legs = w.look("wood") if w.chance(0.6) else w.look("iron")
@@ -148,7 +148,7 @@ def cantilever(w: Workbench) -> None:
     f, tube = _dining_frame(w, 0.78, 0.86), w.look("chrome")
     cover = w.look("leather") if w.chance(0.5) else w.look("wicker")
     r = 0.0125
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (f.half - r)
         corners = [
             (f.back - 0.02, y, r),
@@ -172,7 +172,7 @@ def cafe_metal(w: Workbench) -> None:
         (f.back + 0.04, f.front - 0.03), (-f.half + 0.04, f.half - 0.04), (0.0, f.seat - 0.01), 0.03, steel, splay=0.04
     )
     top = f.height - 0.012
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (f.back + 0.02, side * (f.half - 0.03), f.seat - 0.01),
             (f.back_x(top), side * (f.half - 0.05), top),
@@ -192,7 +192,7 @@ def windsor(w: Workbench) -> None:
     w.mesh(loft(rim, 14, hull=True), (0.0, 0.0, 0.0), wood)
     w.legs((-0.11, 0.12), (-0.13, 0.13), (0.0, f.seat - 0.02), 0.036, wood, splay=0.075)
     w.rod((0.0, -0.17, 0.17), (0.0, 0.17, 0.17), 0.010, wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((-0.15, side * 0.173, 0.17), (0.16, side * 0.173, 0.17), 0.010, wood)
     bow = []
     for i in range(7):
@@ -211,7 +211,7 @@ def cross_back(w: Workbench) -> None:
     f, wood = _dining_frame(w, 0.86, 0.92), w.look("wood")
     w.cylinder((0.0, 0.0), (f.seat - 0.035, f.seat), f.half, w.look("wicker"))
     w.cylinder((0.0, 0.0), (f.seat - 0.06, f.seat - 0.008), f.half - 0.012, wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (0.6 * f.half, side * 0.62 * f.half, f.seat - 0.02), (0.72 * f.half, side * 0.75 * f.half, 0.0), 0.016, wood
         )

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def dresser(w: Workbench) -> None:
@@ -96,7 +95,7 @@ def campaign(w: Workbench) -> None:
         (0.25 * width, 0.80 * height),
     ):
         w.box((x + 0.016, x + 0.022), (c - 0.05, c + 0.05), (z - 0.025, z + 0.025), brass, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         for z in (0.09, height - 0.06):
             edge = side * (0.5 * width - 0.028)
             w.box((x - 0.05, x + 0.021), (edge - 0.03, edge + 0.03), (z, z + 0.06), brass, solid=False)

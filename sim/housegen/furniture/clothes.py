@@ -10,6 +10,7 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import MeshShape
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
     drape,
@@ -19,14 +20,12 @@ from sim.housegen.furniture.shapes import (
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
-
 
 def _jacket(w: Workbench, x: float, y: float, top: float, high: float, wide: float) -> None:
     """A coat hung by its collar: shoulders, body in folds, sleeves."""
     cloth = w.new_look("bright") if w.chance(0.5) else w.new_look("denim")
     w.mesh(drape(0.5 * wide, high, 0.14, 2, gather=1.7), (x - 0.005, y, top - high), cloth, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (x + 0.05, y + side * 0.22 * wide, top - 0.07),
             (x + 0.05, y + side * 0.40 * wide, top - 0.75 * high),
@@ -71,7 +70,7 @@ def clothes_rack(w: Workbench) -> None:
     """Steel rail on two posts with hanging garments."""
     width, height = w.width(0.9, 1.3), w.length(1.5, 1.7)
     metal = w.look("metal")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.5 * width
         w.rod((0.0, y, 0.02), (0.0, y, height), 0.013, metal)
         w.rod((-0.22, y, 0.013), (0.22, y, 0.013), 0.013, metal)
@@ -110,7 +109,7 @@ def valet(w: Workbench) -> None:
     """Valet stand: jacket over shaped shoulders, trousers over a bar, shoes below."""
     wood, high = w.look("wood"), w.length(1.10, 1.25)
     w.box((-0.19, 0.19), (-0.22, 0.22), (0.10, 0.13), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((0.0, side * 0.15, 0.0), (0.0, side * 0.15, high - 0.16), 0.016, wood)
         w.rod((-0.18, side * 0.15, 0.013), (0.18, side * 0.15, 0.013), 0.013, wood)
         w.ellipsoid((0.05, side * 0.07, 0.175), (0.13, 0.045, 0.05), w.look("book"), solid=False)
@@ -120,7 +119,7 @@ def valet(w: Workbench) -> None:
     jacket = w.new_look("denim")
     w.mesh(drape(0.40, 0.60, 0.14, 4), (-0.07, 0.0, high - 0.68), jacket, solid=False)
     w.rod((0.0, -0.21, high - 0.09), (0.0, 0.21, high - 0.09), 0.055, jacket, solid=False, round_ends=True)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (0.0, side * 0.24, high - 0.12),
             (0.02, side * 0.25, high - 0.55),
@@ -176,7 +175,7 @@ def laundry_basket(w: Workbench) -> None:
 def open_wardrobe(w: Workbench) -> None:
     """Wooden clothes stand: rail between two A-frames, shelf with shoes, garments in a row."""
     width, high, wood = w.width(0.90, 1.25), w.length(1.45, 1.60), w.look("wood")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.02)
         w.bar((-0.24, y, 0.0), (0.015, y, high), 0.03, 0.035, wood)
         w.bar((0.24, y, 0.0), (-0.015, y, high), 0.03, 0.035, wood)
@@ -220,7 +219,7 @@ def wall_pegs_dress(w: Workbench) -> None:
     """A dress and a shirt on hangers from two pegs."""
     wood = w.look("wood")
     w.mount_height_m = 0.70
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.30
         high = 1.05 if side < 0 else 0.75
         w.rod((0.0, y, 1.22), (0.07, y, 1.23), 0.012, wood)
@@ -232,7 +231,7 @@ def sweater(w: Workbench) -> None:
     """Folded sweater, its sleeves across, a cap on it."""
     cloth = w.new_look("bright")
     w.mesh(pillow((0.36, 0.32, 0.09), 6.0), (0.0, 0.0, 0.045), cloth)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((-0.12, side * 0.11, 0.085), (0.10, side * 0.05, 0.095), 0.028, cloth, solid=False, round_ends=True)
     w.ellipsoid((0.04, 0.03, 0.12), (0.09, 0.09, 0.05), w.new_look("denim"), solid=False)
     w.ellipsoid((0.12, 0.03, 0.105), (0.08, 0.07, 0.010), w.look("dark"), solid=False)
@@ -245,7 +244,7 @@ def clothes_heap(w: Workbench) -> None:
         w.mesh(_garment(high), at, w.new_look("bright"), tilt=-0.5 * math.pi, turn=turn, solid=z < 0.05)
     trousers = w.new_look("denim")
     leg = pillow((0.62, 0.17, 0.07), 5.0)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.mesh(leg, (0.10, 0.02 + side * 0.10, 0.105), trousers, solid=False, turn=1.2 + side * 0.22)
     w.mesh(
         pillow((0.30, 0.34, 0.16), 2.6), (-0.06, -0.07, 0.13), w.new_look("bright"), solid=False, tilt=0.25, turn=0.7

@@ -9,13 +9,13 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
     drape,
 )
 from sim.housegen.furniture.workbench import Range, Workbench
 
-_BOTH = (-1, 1)
 _TOP = 0.035
 """Thickness of a worktop."""
 
@@ -199,7 +199,7 @@ def waterfall(w: Workbench) -> None:
     width, depth, height, stone = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.90, 0.94), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (height - 0.06, height), stone)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - 0.06)))
         w.box(x, (low, high), (0.0, height - 0.06), stone)
     body = w.look("lacquer")

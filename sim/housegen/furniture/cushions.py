@@ -16,8 +16,6 @@ from sim.housegen.furniture.shapes import (
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
-
 
 def square_cushion(w: Workbench) -> None:
     """Throw cushion leaning backwards."""

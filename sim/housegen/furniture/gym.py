@@ -7,12 +7,11 @@ Usual retail dimensions: treadmills 1.70-2.10 m long, 0.75-0.90 m wide, 1.30-1.5
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def treadmill(w: Workbench) -> None:
@@ -20,7 +19,7 @@ def treadmill(w: Workbench) -> None:
     length, half, dark, metal = w.depth(1.60, 1.85), 0.5 * w.length(0.74, 0.84), w.look("dark"), w.look("metal")
     x0, x1 = -0.5 * length, 0.5 * length
     w.box((x0 + 0.1, x1), (-half + 0.10, half - 0.10), (0.05, 0.14), w.look("rubber"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.06)
         w.box((x0 + 0.1, x1), (y - 0.045, y + 0.045), (0.03, 0.17), metal)
         w.bar((x0 + 0.16, side * (half - 0.03), 0.0), (x0 + 0.06, side * (half - 0.03), 1.20), 0.05, 0.07, metal)
@@ -46,7 +45,7 @@ def bench_barbell(w: Workbench) -> None:
         w.box((x - 0.03, x + 0.03), (-0.03, 0.03), (0.04, 0.36), metal)
         w.box((x - 0.03, x + 0.03), (-0.25, 0.25), (0.0, 0.05), metal)
     half, high = 0.5 * w.width(1.60, 1.90), w.length(0.95, 1.05)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.40, -0.34), (side * 0.42 - 0.03, side * 0.42 + 0.03), (0.0, high + 0.04), metal)
         w.box((-0.62, -0.12), (side * 0.42 - 0.03, side * 0.42 + 0.03), (0.0, 0.05), metal)
         w.box((-0.35, -0.28), (side * 0.42 - 0.02, side * 0.42 + 0.02), (high - 0.04, high - 0.012), metal)
@@ -69,10 +68,10 @@ def exercise_bike(w: Workbench) -> None:
     w.mesh(chamfered_box((0.27, 0.17, 0.06), 0.028), (-0.21, 0.0, 0.91), w.look("leather"))
     w.rod((0.40, 0.0, 0.58), (0.34, 0.0, 1.04), 0.026, w.look("chrome"))
     w.rod((0.36, -0.22, 1.06), (0.36, 0.22, 1.06), 0.016, dark)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((0.36, side * 0.22, 1.06), (0.20, side * 0.22, 1.12), 0.016, dark, round_ends=True)
     w.rod((0.02, -0.09, 0.34), (0.02, 0.09, 0.34), 0.10, dark)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.bar(
             (0.02, side * 0.085, 0.34),
             (0.02 + side * 0.12, side * 0.085, 0.34 - side * 0.12),
@@ -93,7 +92,7 @@ def exercise_bike(w: Workbench) -> None:
 def dumbbell_rack(w: Workbench) -> None:
     """Sloped rack with two rows of hexagonal dumbbells."""
     half, metal, rubber = 0.5 * w.width(0.95, 1.25), w.look("iron"), w.look("rubber")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.03)
         w.box((-0.25, 0.28), (y - 0.03, y + 0.03), (0.0, 0.06), metal)
         w.bar((0.20, y, 0.04), (-0.16, y, 0.82), 0.05, 0.07, metal)
@@ -135,12 +134,12 @@ def kettlebells(w: Workbench) -> None:
     rubber, iron = w.look("rubber"), w.look("iron")
     half = 0.5 * 0.24 * count + 0.04
     w.box((-0.15, 0.15), (-half, half), (0.14, 0.17), iron)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.15, 0.15), (side * (half - 0.03) - 0.02, side * (half - 0.03) + 0.02), (0.0, 0.14), iron)
     for i in range(count):
         y, r = (i + 0.5) * 0.24 - 0.12 * count, 0.07 + 0.008 * i
         w.ball((0.0, y, 0.17 + 0.95 * r), r, rubber if i % 2 else w.look("paint"))
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.rod(
                 (0.0, y + side * 0.045, 0.17 + 1.7 * r),
                 (0.0, y + side * 0.055, 0.17 + 1.85 * r + 0.06),
@@ -173,7 +172,7 @@ def multi_gym(w: Workbench) -> None:
     """Weight tower: stack of plates behind a seat, pull-down bar, cable column."""
     iron, chrome, leather = w.look("iron"), w.look("chrome"), w.look("leather")
     high = w.length(1.95, 2.10)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.62, -0.54), (side * 0.20 - 0.03, side * 0.20 + 0.03), (0.0, high), iron)
     w.box((-0.62, -0.54), (-0.23, 0.23), (high - 0.07, high), iron)
     w.box((-0.66, 0.55), (-0.04, 0.04), (0.0, 0.06), iron)
@@ -205,7 +204,7 @@ def rower(w: Workbench) -> None:
     w.box((x1 - 0.09, x1 - 0.02), (-0.20, 0.20), (0.0, 0.05), dark)
     w.bar((x1 - 0.055, 0.0, 0.03), (x1 - 0.055, 0.0, 0.34), 0.05, 0.05, metal)
     w.mesh(chamfered_box((0.24, 0.30, 0.06), 0.025), (0.35, 0.0, 0.38), w.look("leather"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((x0 + 0.56, x0 + 0.80), (side * 0.14 - 0.055, side * 0.14 + 0.055), (0.30, 0.33), dark, tilt=-0.6)
     w.rod((x0 + 0.66, -0.13, 0.31), (x0 + 0.66, 0.13, 0.31), 0.014, metal)
     w.rod((x0 + 0.56, -0.25, 0.50), (x0 + 0.56, 0.25, 0.50), 0.014, dark, solid=False)
@@ -218,7 +217,7 @@ def step_and_roller(w: Workbench) -> None:
     """Aerobic step, foam roller, medicine ball and two plates leaning."""
     dark, bright = w.look("rubber"), w.look("bright")
     w.mesh(chamfered_box((0.36, 0.90, 0.08), 0.02), (0.0, 0.0, 0.14), dark)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.18, 0.18), (side * 0.34 - 0.09, side * 0.34 + 0.09), (0.0, 0.11), bright)
     w.rod((0.33, -0.40, 0.075), (0.33, 0.20, 0.075), 0.075, w.new_look("bright"))
     w.ball((0.35, 0.40, 0.14), 0.14, w.new_look("paint"))
@@ -227,7 +226,7 @@ def step_and_roller(w: Workbench) -> None:
 def pull_up_tower(w: Workbench) -> None:
     """Pull-up and dip station."""
     iron, dark, high = w.look("iron"), w.look("leather"), w.length(2.0, 2.15)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.40
         w.box((-0.50, 0.45), (y - 0.03, y + 0.03), (0.0, 0.06), iron)
         w.bar((-0.40, y, 0.04), (-0.28, y, high), 0.06, 0.06, iron)

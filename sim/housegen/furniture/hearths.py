@@ -10,26 +10,25 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     loft,
 )
 from sim.housegen.furniture.workbench import Range, Workbench
 
-_BOTH = (-1, 1)
-
 
 def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: float, look: Look) -> None:
     """A block from x[0] to x[1] with a dark recess |y| < half between heights z; outer half width, total height."""
     char = w.look("char")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         low, high = sorted((side * half, side * outer))
         w.box(x, (low, high), (0.0, top), look)
     w.box(x, (-half, half), (z[1], top), look)
     w.box((x[0], x[0] + 0.04), (-half, half), (0.0, z[1]), char)
     if z[0] > 0:
         w.box((x[0] + 0.04, x[1]), (-half, half), (0.0, z[0]), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (half - 0.004)
         w.box((x[0] + 0.04, x[1] - 0.02), (edge - 0.004, edge + 0.004), z, char, solid=False)
 
@@ -52,7 +51,7 @@ def mantel(w: Workbench) -> None:
     _opening(w, (0.0, depth), half, (0.0, high), outer, top - 0.05, look)
     w.box((0.0, depth + 0.08), (-outer - 0.07, outer + 0.07), (top - 0.05, top), look)
     w.box((0.0, depth + 0.03), (-outer - 0.02, outer + 0.02), (top - 0.09, top - 0.05), look, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (half + 0.5 * (outer - half))
         w.box((depth, depth + 0.025), (c - 0.06, c + 0.06), (0.0, top - 0.09), look, solid=False)
     w.box((depth, depth + 0.32), (-outer, outer), (0.0, 0.04), w.look("stone"))
@@ -135,7 +134,7 @@ def rustic_stone(w: Workbench) -> None:
     _opening(w, (0.0, depth), half, (0.0, high), outer, top - 0.09, stone)
     w.box((0.0, 0.8 * depth), (-0.72 * outer, 0.72 * outer), (top, top + 0.55), stone)
     w.box((0.0, depth + 0.14), (-outer - 0.08, outer + 0.08), (top - 0.09, top), w.look("wood"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (outer - 0.16)
         w.box((depth, depth + 0.09), (c - 0.06, c + 0.06), (top - 0.22, top - 0.09), stone, solid=False)
     w.box((depth, depth + 0.38), (-outer, outer), (0.0, 0.06), w.look("stone"))
@@ -161,7 +160,7 @@ def electric(w: Workbench) -> None:
             (depth - 0.03, (i - 1.5) * 0.15, 0.24), (0.008, 0.06, 0.10 + 0.04 * (i % 2)), w.look("fire"), solid=False
         )
     w.rod((depth - 0.03, -0.28, 0.13), (depth - 0.03, 0.28, 0.13), 0.028, w.look("wood"), solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         low, high_ = sorted((side * (half + 0.025), side * (outer - 0.025)))
         w.box((0.015, depth - 0.01), (low, high_), (0.46, 0.48), wood)
     w.top((0.04, depth - 0.04), (-outer + 0.05, outer - 0.05), top)

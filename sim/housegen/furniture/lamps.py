@@ -15,8 +15,6 @@ from sim.housegen.furniture.shapes import (
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
-
 
 def pendant(w: Workbench) -> None:
     """Shade on a cord."""

@@ -11,9 +11,8 @@ import math
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def coffee_shelf(w: Workbench) -> None:
@@ -40,7 +39,7 @@ def coffee_glass(w: Workbench) -> None:
     x, y = parts.slab(w, depth, width, (height - 0.012, height), w.look("glass"))
     w.legs(x, y, (0.0, height - 0.012), 0.02, metal)
     for z in (height - 0.022, 0.12):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.box(
                 x,
                 (side * 0.5 * width - 0.01 - 0.01 * side, side * 0.5 * width + 0.01 - 0.01 * side),
@@ -73,7 +72,7 @@ def coffee_blocks(w: Workbench) -> None:
     """Stone slab on two stone blocks."""
     width, depth, height, stone = w.width(0.95, 1.25), w.depth(0.55, 0.70), w.length(0.32, 0.38), w.look("stone")
     parts.slab(w, depth, width, (height - 0.05, height), stone)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.28 * width
         w.box((-0.36 * depth, 0.36 * depth), (y - 0.07, y + 0.07), (0.0, height - 0.05), stone)
 
@@ -99,7 +98,7 @@ def side_cube(w: Workbench) -> None:
     width, height, wood = w.width(0.38, 0.50), w.length(0.45, 0.58), w.look("wood")
     depth = w.depth(0.35, 0.45)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box(x, (side * (0.5 * width - 0.01) - 0.01, side * (0.5 * width - 0.01) + 0.01), (0.0, height - 0.02), wood)
     w.box((x[0], x[1] - 0.01), (y[0] + 0.02, y[1] - 0.02), (0.16, 0.18), wood)
     w.box((x[0], x[0] + 0.01), (y[0] + 0.02, y[1] - 0.02), (0.18, height - 0.02), wood)
@@ -157,7 +156,7 @@ def console_arc(w: Workbench) -> None:
     """Narrow hall table: stone shelf on two hoops of metal."""
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.30, 0.38), w.length(0.76, 0.82), w.look("brass")
     parts.slab(w, depth, width, (height - 0.03, height), w.look("stone"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.10)
         w.box((-0.5 * depth + 0.02, 0.5 * depth - 0.02), (y - 0.012, y + 0.012), (0.0, 0.025), metal)
         for x in (-0.5 * depth + 0.03, 0.5 * depth - 0.03):

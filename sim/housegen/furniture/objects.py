@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
@@ -15,8 +16,6 @@ from sim.housegen.furniture.shapes import (
     loft,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def book_stack(w: Workbench) -> None:
@@ -123,7 +122,7 @@ def basket(w: Workbench) -> None:
     w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
     w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
     w.ellipsoid((0.02, 0.0, high), (0.75 * r, 0.8 * r, 0.06), w.look("bright"), solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (0.0, side * (r + 0.012), high - 0.05),
             (0.0, side * (r + 0.012), high + 0.06),
@@ -193,8 +192,8 @@ def suitcase(w: Workbench) -> None:
     for i in range(4):
         y = (i - 1.5) * 0.09
         w.box((0.12, 0.132), (y - 0.018, y + 0.018), (0.12, high - 0.02), look, solid=False)
-    for sx in _BOTH:
-        for sy in _BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             w.ball((sx * 0.09, sy * 0.16, 0.03), 0.03, dark)
     for y in (-0.08, 0.08):
         w.rod((-0.08, y, high + 0.03), (-0.08, y, high + 0.38), 0.008, w.look("chrome"))

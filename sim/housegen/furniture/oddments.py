@@ -8,12 +8,11 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def digital_piano(w: Workbench) -> None:
@@ -23,7 +22,7 @@ def digital_piano(w: Workbench) -> None:
     w.box((0.0, 0.145), (-half + 0.06, half - 0.06), (0.795, 0.806), w.look("ceramic"), solid=False)
     w.box((0.0, 0.08), (-half + 0.08, half - 0.08), (0.80, 0.814), w.look("char"), solid=False)
     w.box((-0.10, -0.08), (-0.28, 0.28), (0.79, 1.0), dark, tilt=-0.25, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.22)
         w.bar((-0.02, y - side * 0.28, 0.02), (-0.02, y + side * 0.10, 0.69), 0.04, 0.04, metal)
         w.bar((0.03, y + side * 0.10, 0.02), (0.03, y - side * 0.28, 0.69), 0.04, 0.04, metal)
@@ -41,7 +40,7 @@ def upright_piano(w: Workbench) -> None:
     w.box((-0.30, 0.02), (-half, half), (0.05, high), look)
     w.box((-0.31, 0.05), (-half - 0.01, half + 0.01), (high, high + 0.025), look)
     w.box((0.02, 0.28), (-half, half), (0.58, 0.72), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (half - 0.03)
         w.box((-0.30, 0.30), (c - 0.03, c + 0.03), (0.0, 0.06), look)
         w.box((0.22, 0.28), (c - 0.03, c + 0.03), (0.05, 0.60), look)

@@ -11,13 +11,13 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
     strip,
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
 OFFICE_KG = 12.0
 
 
@@ -46,7 +46,7 @@ def task_chair(w: Workbench) -> None:
     back = height - seat - 0.12
     w.mesh(chamfered_box((0.045, 2 * half - 0.04, back), 0.02), (-0.255, 0.0, height - 0.5 * back), cloth, tilt=-0.1)
     if w.chance(0.6):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             y = side * (half + 0.025)
             w.box((-0.02, 0.02), (y - 0.012, y + 0.012), (seat - 0.08, seat + 0.19), dark)
             w.bar((0.0, y, seat - 0.075), (0.0, side * 0.09, seat - 0.075), 0.03, 0.014, dark)
@@ -68,7 +68,7 @@ def conference_chair(w: Workbench) -> None:
         (-0.33, height),
     ]
     w.mesh(strip(path[::-1], 0.018, 2 * half - 0.03), (0.0, 0.0, 0.0), cover)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.012)
         for a, b in itertools.pairwise(path[1:]):
             w.rod((a[0], y, a[1] - 0.008), (b[0], y, b[1] - 0.008), 0.012, chrome, round_ends=True)
@@ -93,7 +93,7 @@ def executive(w: Workbench) -> None:
             leather,
             tilt=-0.16,
         )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * half
         w.mesh(chamfered_box((0.32, 0.07, 0.05), 0.02), (0.0, y, seat + 0.21), leather)
         w.bar((0.12, y, seat + 0.20), (0.06, y * 0.9, seat - 0.06), 0.03, 0.04, dark)

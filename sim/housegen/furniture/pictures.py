@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     named_mesh,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def frame(w: Workbench, width: float, height: float, border: float, thick: float, look: Look) -> None:
@@ -20,7 +19,7 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
     w.box((0.0, thick), (-y, y), (height - border, height), look)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (y - 0.5 * border)
         w.box((0.0, thick), (c - 0.5 * border, c + 0.5 * border), (border, height - border), look)
 

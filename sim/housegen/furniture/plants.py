@@ -16,8 +16,6 @@ from sim.housegen.furniture.shapes import (
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
-
 
 def _pot(w: Workbench, r: float, high: float) -> None:
     look = w.look("pot")

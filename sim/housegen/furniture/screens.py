@@ -6,12 +6,11 @@ Usual retail dimensions by diagonal: 24 in is 0.53 m wide, 32 in 0.72 m, 43 in 0
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
 )
 from sim.housegen.furniture.workbench import Range, Workbench
-
-_BOTH = (-1, 1)
 
 
 def _panel(w: Workbench, x: float, width: float, z: Range) -> None:
@@ -29,7 +28,7 @@ def tv_stand(w: Workbench) -> None:
     """Television on two feet, to stand on a bench."""
     width = w.width(0.80, 1.40)
     _panel(w, 0.0, width, (0.07, 0.07 + 0.575 * width))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.34 * width
         w.bar((-0.11, y, 0.008), (0.11, y, 0.008), 0.03, 0.016, w.look("dark"))
         w.box((-0.015, 0.005), (y - 0.012, y + 0.012), (0.01, 0.08), w.look("dark"))
@@ -57,7 +56,7 @@ def tv_easel(w: Workbench) -> None:
     width, wood = w.width(0.95, 1.25), w.look("wood")
     z0 = w.length(0.62, 0.72)
     _panel(w, 0.0, width, (z0, z0 + 0.575 * width))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((0.16, side * 0.36, 0.0), (-0.03, side * 0.05, z0 + 0.5), 0.018, wood)
     w.rod((-0.34, 0.0, 0.0), (-0.035, 0.0, z0 + 0.5), 0.018, wood)
     w.box((-0.06, -0.02), (-0.14, 0.14), (z0 + 0.15, z0 + 0.40), w.look("dark"))
@@ -83,7 +82,7 @@ def crt(w: Workbench) -> None:
             w.look("brass"),
             solid=False,
         )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((0.0, 0.0, height), (-0.05, side * 0.2, height + 0.30), 0.004, w.look("chrome"), solid=False)
 
 
@@ -112,7 +111,7 @@ def tv_pole(w: Workbench) -> None:
     z0 = w.length(0.55, 0.70)
     _panel(w, 0.0, width, (z0, z0 + high))
     w.box((-0.24, 0.20), (-0.34, 0.34), (0.0, 0.02), w.look("dark"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod((-0.06, side * 0.12, 0.015), (-0.06, side * 0.12, z0 + 0.6 * high), 0.022, metal)
     w.box((-0.20, 0.12), (-0.26, 0.26), (0.34, 0.36), w.look("dark"))
     w.box((-0.12, 0.08), (-0.18, 0.18), (0.36, 0.41), metal, solid=False)
@@ -144,7 +143,7 @@ def dual_monitor(w: Workbench) -> None:
     high = 0.58 * width
     w.box((-0.12, 0.0), (-0.10, 0.10), (0.0, 0.02), dark)
     w.rod((-0.07, 0.0, 0.01), (-0.07, 0.0, 0.34), 0.02, dark)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c, turn = side * 0.5 * width, -side * 0.18
         w.bar((-0.07, 0.0, 0.27), (-0.03, c, 0.27), 0.03, 0.03, dark)
         w.box((-0.02, 0.01), (c - 0.49 * width, c + 0.49 * width), (0.12, 0.12 + high), dark, turn=turn)

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
     loft,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def bench_wood(w: Workbench) -> None:
@@ -26,7 +25,7 @@ def bench_wood(w: Workbench) -> None:
     w.mesh(chamfered_box((depth - 0.03, width - 0.06, 0.05), 0.015), (0.0, 0.0, seat + 0.02), w.look("fabric"))
     w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.05, y[1] - 0.05), (0.0, seat - 0.04), 0.05, wood)
     w.box((-0.02, 0.02), (y[0] + 0.08, y[1] - 0.08), (0.16, 0.20), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.075)
         w.box((x[0] + 0.04, x[1] - 0.04), (edge - 0.015, edge + 0.015), (0.16, 0.20), wood)
     w.top(x, (y[0] + 0.1, y[1] - 0.1), seat + 0.045, "seat")
@@ -124,7 +123,7 @@ def tufted_bench(w: Workbench) -> None:
         (seat - 0.15, seat - 0.11),
         w.look("dark"),
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.16)
         w.bar((-0.17, y, 0.0), (0.17, y, seat - 0.14), 0.025, 0.015, metal)
         w.bar((0.17, y, 0.0), (-0.17, y, seat - 0.14), 0.025, 0.015, metal)
@@ -145,7 +144,7 @@ def settle(w: Workbench) -> None:
     w.box((x[0], x[0] + 0.03), y, (seat - 0.04, high), wood)
     w.box((x[0] - 0.005, x[0] + 0.045), y, (high - 0.06, high), wood)
     w.box(x, y, (seat - 0.035, seat), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.02)
         w.box((x[0], x[1]), (c - 0.02, c + 0.02), (0.0, seat), wood)
         w.box((x[1] - 0.05, x[1] - 0.01), (c - 0.02, c + 0.02), (seat, 0.64), wood)
@@ -166,7 +165,7 @@ def slab_bench(w: Workbench) -> None:
     """Bench of stone or plank on two blocks."""
     width, depth, seat = w.width(0.95, 1.40), w.depth(0.36, 0.42), w.length(0.42, 0.46)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (seat - 0.07, seat), w.look("wood"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.22)
         w.box((-0.5 * depth + 0.03, 0.5 * depth - 0.03), (y - 0.06, y + 0.06), (0.0, seat - 0.07), w.look("stone"))
     w.top((-0.4 * depth, 0.4 * depth), (-0.4 * width, 0.4 * width), seat, "seat")

@@ -8,14 +8,13 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
     loft,
 )
 from sim.housegen.furniture.workbench import Range, Workbench
-
-_BOTH = (-1, 1)
 
 
 def _books(w: Workbench, x: Range, y: Range, z: float, room: float) -> None:
@@ -43,7 +42,7 @@ def bookcase(w: Workbench) -> None:
     width, depth, height = w.width(0.70, 1.00), w.depth(0.28, 0.34), w.height(1.80, 2.05)
     look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.011)
         w.box(x, (edge - 0.011, edge + 0.011), (0.0, height), look)
     w.box((x[0], x[0] + 0.008), (y[0] + 0.022, y[1] - 0.022), (0.04, height), look)
@@ -61,7 +60,7 @@ def ladder_shelf(w: Workbench) -> None:
     width, height, depth = w.width(0.55, 0.75), w.height(1.70, 1.90), w.depth(0.40, 0.48)
     wood = w.look("wood")
     x0, x1, y = -0.5 * depth, 0.5 * depth, (-0.5 * width, 0.5 * width)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.015)
         w.bar((x1 - 0.02, edge, 0.0), (x0 + 0.02, edge, height), 0.03, 0.03, wood)
     for i in range(4):
@@ -82,7 +81,7 @@ def wall_boards(w: Workbench) -> None:
     for i in range(count):
         z = 0.14 + 0.36 * i
         w.box((0.0, depth), y, (z, z + 0.025), look)
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             edge = side * 0.36 * width
             w.bar((0.006, edge, z - 0.12), (depth - 0.05, edge, z), 0.012, 0.012, metal, solid=False)
         _books(w, (0.0, depth), (y[0] + 0.06, y[1] - 0.20), z + 0.025, 0.30)

@@ -9,13 +9,12 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     loft,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def _bowl(
@@ -113,7 +112,7 @@ def console_sink(w: Workbench) -> None:
     parts.basin(w, (x[0] + 0.09, x[1]), y, rim, 0.12, 0.05, white)
     w.box((x[0], x[0] + 0.09), y, (rim - 0.06, rim), white)
     w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, rim - 0.06), 0.025, metal, round_=True)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.rod(
             (x[0] + 0.03, side * (0.5 * width - 0.03), 0.28),
             (x[1] - 0.03, side * (0.5 * width - 0.03), 0.28),
@@ -138,7 +137,7 @@ def utility(w: Workbench) -> None:
     x = (-0.5 * depth, 0.5 * depth)
     parts.basin(w, x, (-half, half), rim, 0.34, 0.03, white)
     w.legs((x[0] + 0.02, x[1] - 0.02), (-half + 0.02, half - 0.02), (0.0, rim - 0.33), 0.03, metal)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box(
             (x[0] + 0.03, x[1] - 0.03),
             (side * (half - 0.035) - 0.01, side * (half - 0.035) + 0.01),
@@ -156,7 +155,7 @@ def trough(w: Workbench) -> None:
     w.mount_height_m = 0.62
     stone, brass = w.look("stone"), w.look("brass")
     parts.basin(w, (0.0, depth), (-0.5 * width, 0.5 * width), 0.22, 0.14, 0.04, stone)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.36 * width
         w.box((0.0, 0.03), (y - 0.02, y + 0.02), (0.0, 0.08), w.look("iron"))
         w.bar((0.015, y, 0.02), (depth - 0.10, y, 0.08), 0.03, 0.02, w.look("iron"))
@@ -174,7 +173,7 @@ def double_steel(w: Workbench) -> None:
     parts.basin(w, (-0.20, 0.20), (0.05, 0.24), 0.18, 0.14, 0.012, steel)
     w.box((-0.215, -0.195), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
     w.box((0.195, 0.215), (-0.255, 0.255), (0.178, 0.185), steel, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.215, 0.215), (side * 0.246 - 0.009, side * 0.246 + 0.009), (0.178, 0.185), steel, solid=False)
     parts.mixer_tap(w, (-0.205, 0.05, 0.18), 0.20, 0.24, w.look("chrome"))
 

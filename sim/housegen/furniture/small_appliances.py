@@ -6,20 +6,19 @@ Usual retail dimensions (hobs 0.58 x 0.51 m, microwaves 0.46-0.52 m wide, hoods 
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
     named_mesh,
 )
 from sim.housegen.furniture.workbench import Workbench
 
-_BOTH = (-1, 1)
-
 
 def hob(w: Workbench) -> None:
     """Glass plate with four zones, lying on a worktop."""
     w.box((-0.25, 0.25), (-0.29, 0.29), (0.0, 0.008), w.look("screen"))
     for x in (-0.11, 0.11):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.cylinder((x, side * 0.14), (0.008, 0.011), 0.09 if x * side < 0 else 0.07, w.look("iron"), solid=False)
 
 
@@ -28,9 +27,9 @@ def gas_hob(w: Workbench) -> None:
     steel, iron = w.look("steel"), w.look("iron")
     w.box((-0.25, 0.25), (-0.29, 0.29), (0.0, 0.010), steel)
     for x in (-0.14, 0.08):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.cylinder((x, side * 0.14), (0.010, 0.025), 0.045, iron, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((-0.23, 0.17), (side * 0.14 - 0.006, side * 0.14 + 0.006), (0.010, 0.045), iron, solid=False)
         w.cylinder((0.21, side * 0.10), (0.010, 0.035), 0.018, w.look("chrome"), solid=False)
     for x in (-0.14, 0.08):

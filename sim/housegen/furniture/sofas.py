@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
@@ -18,8 +19,6 @@ from sim.housegen.furniture.shapes import (
     named_mesh,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ def block_arm(w: Workbench) -> None:
         cloth,
     )
     top = w.length(0.54, 0.64)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.mesh(
             chamfered_box((s.depth, s.arm, top - 0.10), 0.025),
             (0.0, side * 0.5 * (s.width - s.arm), 0.5 * (top + 0.10)),
@@ -127,14 +126,14 @@ def rolled_arm(w: Workbench) -> None:
         tilt=-0.08,
     )
     r = 0.5 * s.arm
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * s.width - r)
         w.box((-0.5 * s.depth + 0.04, 0.5 * s.depth - 0.03), (y - 0.7 * r, y + 0.7 * r), (0.10, 0.60), cloth)
         w.rod((-0.5 * s.depth + 0.03, y, 0.60), (0.5 * s.depth, y, 0.60), r, cloth)
         w.rod((0.5 * s.depth, y, 0.60), (0.5 * s.depth + 0.01, y, 0.60), 0.7 * r, wood, solid=False)
     _seat_cushions(w, s, cloth, 0.16)
     for sx in (-0.5 * s.depth + 0.08, 0.5 * s.depth - 0.07):
-        for side in _BOTH:
+        for side in BOTH_SIDES:
             w.cylinder((sx, side * (0.5 * s.width - 0.09)), (0.0, 0.11), 0.028, wood)
     _loose_cushions(w, s, s.back + 0.05)
 
@@ -143,7 +142,7 @@ def wooden_frame(w: Workbench) -> None:
     """Slim Scandinavian sofa: open wooden arms and legs, loose cushions."""
     s, cloth, wood = _measure(w, (0.06, 0.08), (0.76, 0.84)), w.look("fabric"), w.look("wood")
     half = 0.5 * s.width - 0.025
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * half
         w.bar((0.5 * s.depth - 0.06, y, 0.0), (0.5 * s.depth - 0.10, y, 0.58), 0.04, 0.04, wood)
         w.bar((-0.5 * s.depth + 0.08, y, 0.0), (-0.5 * s.depth + 0.14, y, 0.58), 0.04, 0.04, wood)
@@ -187,7 +186,7 @@ def chesterfield(w: Workbench) -> None:
         r,
         hide,
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * s.width - r)
         w.rod((-0.5 * s.depth + r, y, s.height - r), (0.5 * s.depth - 0.02, y, s.height - r), r, hide)
         w.ball((-0.5 * s.depth + r, y, s.height - r), r, hide)
@@ -214,7 +213,7 @@ def corner(w: Workbench) -> None:
     """L-shaped sofa with a long seat (chaise) at one end."""
     width, depth, chaise = w.width(2.20, 2.80), 0.92, w.depth(1.45, 1.65)
     s = _Sofa(width, depth, w.length(0.78, 0.86), w.length(0.41, 0.44), w.length(0.14, 0.20), 0.18)
-    cloth, side = w.look("fabric"), w.choice(_BOTH)
+    cloth, side = w.look("fabric"), w.choice(BOTH_SIDES)
     far = side * 0.5 * width  # the chaise's outer edge
     wide = 0.80
     x0 = -0.5 * depth
@@ -269,7 +268,7 @@ def daybed(w: Workbench) -> None:
     w.box((x0 + 0.02, x1 - 0.02), (-half + 0.02, half - 0.02), (seat - 0.22, seat - 0.16), metal)
     w.mesh(chamfered_box((depth - 0.05, width - 0.06, 0.17), 0.04), (0.0, 0.0, seat - 0.085), cloth)
     top = w.length(0.74, 0.86)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.015)
         for x in (x0 + 0.015, x1 - 0.015):
             w.rod((x, y, 0.0), (x, y, top), 0.015, metal)
@@ -300,7 +299,7 @@ def camelback(w: Workbench) -> None:
     w.mesh(named_mesh("crest", back), (x0, 0.0, 0.0), cloth)
     for a, b in itertools.pairwise(crest):
         w.rod((x0 + 0.06, *a), (x0 + 0.06, *b), 0.03, wood, round_ends=True)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.5 * s.arm)
         w.box((x0 + 0.06, 0.5 * s.depth - 0.12), (y - 0.05, y + 0.05), (s.seat - 0.1, 0.62), cloth)
         w.bar((x0 + 0.08, y, 0.64), (0.5 * s.depth - 0.08, y, 0.62), 0.06, 0.035, wood)

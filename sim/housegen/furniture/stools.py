@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     chamfered_box,
@@ -17,8 +18,6 @@ from sim.housegen.furniture.shapes import (
     strip,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def bar_wood(w: Workbench) -> None:
@@ -30,8 +29,8 @@ def bar_wood(w: Workbench) -> None:
         (0.0, 0.0, seat - 0.025),
         w.look("leather") if w.chance(0.4) else wood,
     )
-    for sx in _BOTH:
-        for sy in _BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             w.bar(
                 (sx * (half + 0.02), sy * (half + 0.02), 0.0),
                 (sx * (half - 0.03), sy * (half - 0.03), seat - 0.05),
@@ -39,7 +38,7 @@ def bar_wood(w: Workbench) -> None:
                 0.036,
                 wood,
             )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         edge = half + 0.002
         w.box((side * edge - 0.012, side * edge + 0.012), (-edge, edge), (0.24, 0.27), wood)
         w.box((-edge, edge), (side * edge - 0.012, side * edge + 0.012), (0.30, 0.33), wood)
@@ -76,7 +75,7 @@ def saddle(w: Workbench) -> None:
         (0.0, 0.0, seat - 0.03),
         w.look("wood"),
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.02)
         for x0, x1 in ((-0.19, -0.10), (0.19, 0.10)):
             w.rod((x0, y, 0.009), (x1, y * 0.8, seat - 0.05), 0.009, iron, round_ends=True)
@@ -106,7 +105,7 @@ def step_stool(w: Workbench) -> None:
         0.5 * w.length(0.36, 0.42),
         w.look("lacquer") if w.chance(0.5) else w.look("wood"),
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.012)
         w.box((-0.20, 0.0), (y - 0.012, y + 0.012), (0.0, high - 0.025), look)
         w.box((0.0, 0.20), (y - 0.012, y + 0.012), (0.0, 0.5 * high - 0.025), look)
@@ -145,14 +144,14 @@ def bar_steel(w: Workbench) -> None:
     w.mass_kg = 5.5
     seat, steel = w.length(0.64, 0.76), w.look("lacquer") if w.chance(0.5) else w.look("metal")
     w.mesh(chamfered_box((0.31, 0.31, 0.03), 0.012), (0.0, 0.0, seat - 0.015), steel)
-    for sx in _BOTH:
-        for sy in _BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             w.mesh(
                 frustum((0.03, 0.03), (0.07, 0.07), seat - 0.02, (-sx * 0.075, -sy * 0.075)),
                 (sx * 0.195, sy * 0.195, 0.0),
                 steel,
             )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box((side * 0.172 - 0.006, side * 0.172 + 0.006), (-0.17, 0.17), (0.26, 0.30), steel)
         w.box((-0.17, 0.17), (side * 0.172 - 0.006, side * 0.172 + 0.006), (0.26, 0.30), steel)
 
@@ -180,7 +179,7 @@ def folding_stool(w: Workbench) -> None:
     """Camp stool: crossed legs under a sling of cloth."""
     w.mass_kg = 3.0
     seat, half, wood = w.length(0.42, 0.46), 0.5 * w.length(0.36, 0.42), w.look("wood")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (half - 0.015)
         w.bar((-0.20, y, 0.0), (0.20, y, seat), 0.022, 0.03, wood)
         w.bar((0.20, y * 0.88, 0.0), (-0.20, y * 0.88, seat), 0.022, 0.03, wood)

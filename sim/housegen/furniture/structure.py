@@ -6,9 +6,8 @@ Ranges after Neufert, Architects' Data: railings 0.90-1.10 m high, balusters at 
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def baluster_railing(w: Workbench) -> None:
@@ -16,7 +15,7 @@ def baluster_railing(w: Workbench) -> None:
     width, high, wood, white = w.width(1.0, 2.4), w.length(0.90, 1.05), w.look("wood"), w.look("lacquer")
     w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (high - 0.05, high), wood)
     w.box((-0.02, 0.02), (-0.5 * width, 0.5 * width), (0.06, 0.10), white)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.04)
         w.box((-0.045, 0.045), (c - 0.045, c + 0.045), (0.0, high + 0.06), wood)
     count = max(3, round(width / 0.14))
@@ -29,7 +28,7 @@ def glass_railing(w: Workbench) -> None:
     width, high, metal = w.width(1.0, 2.4), w.length(0.95, 1.10), w.look("chrome")
     w.rod((0.0, -0.5 * width, high - 0.022), (0.0, 0.5 * width, high - 0.022), 0.022, metal)
     w.box((-0.006, 0.006), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.05, high - 0.03), w.look("glass"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         c = side * (0.5 * width - 0.02)
         w.box((-0.02, 0.02), (c - 0.02, c + 0.02), (0.0, high - 0.02), metal)
     w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (0.0, 0.06), metal)
@@ -55,7 +54,7 @@ def square_column(w: Workbench) -> None:
     high, half, wood = w.height(2.5, 2.7), 0.5 * w.length(0.15, 0.22), w.look("wood")
     w.box((-half, half), (-half, half), (0.0, high), wood)
     w.box((-half, half), (-0.45, 0.45), (high - 0.14, high), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.bar((0.0, side * half, high - 0.55), (0.0, side * 0.40, high - 0.12), 0.10, 0.10, wood)
 
 

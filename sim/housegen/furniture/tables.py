@@ -9,14 +9,13 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     Ring,
     frustum,
     loft,
 )
 from sim.housegen.furniture.workbench import Range, Workbench
-
-_BOTH = (-1, 1)
 
 
 def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
@@ -50,8 +49,8 @@ def splayed(w: Workbench) -> None:
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.4) else wood)
     w.box((x[0] + 0.12, x[1] - 0.12), (y[0] + 0.15, y[1] - 0.15), (height - 0.075, height - 0.025), wood)
-    for sx in _BOTH:
-        for sy in _BOTH:
+    for sx in BOTH_SIDES:
+        for sy in BOTH_SIDES:
             leg = frustum((0.030, 0.030), (0.055, 0.055), height - 0.025, (-sx * 0.07, -sy * 0.07))
             w.mesh(leg, (sx * (0.5 * depth - 0.09), sy * (0.5 * width - 0.11), 0.0), wood)
 
@@ -78,7 +77,7 @@ def industrial(w: Workbench) -> None:
     width, depth, height = w.width(1.40, 2.20), w.depth(0.80, 0.95), w.length(0.74, 0.76)
     steel = w.look("iron")
     parts.slab(w, depth, width, (height - 0.045, height), w.look("wood"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.22)
         for x in (-0.5 * depth + 0.06, 0.5 * depth - 0.06):
             w.box((x - 0.03, x + 0.03), (y - 0.03, y + 0.03), (0.0, height - 0.045), steel)
@@ -91,7 +90,7 @@ def trestle(w: Workbench) -> None:
     width, depth, height = w.width(1.50, 2.20), w.depth(0.85, 1.00), w.length(0.74, 0.77)
     wood = w.look("wood")
     parts.slab(w, depth, width, (height - 0.05, height), wood)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * 0.32 * width
         w.box((-0.22, 0.22), (y - 0.03, y + 0.03), (0.06, height - 0.10), wood)
         w.box((-0.36, 0.36), (y - 0.045, y + 0.045), (0.0, 0.07), wood)
@@ -104,7 +103,7 @@ def glass_dining(w: Workbench) -> None:
     width, depth, height = w.width(1.30, 1.80), w.depth(0.85, 0.95), w.length(0.73, 0.75)
     parts.slab(w, depth, width, (height - 0.015, height), w.look("glass"))
     metal = w.look("brass")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         foot, head = (side * 0.30, -0.30 * width), (-side * 0.30, 0.30 * width)
         w.bar((*foot, 0.02), (*head, height - 0.03), 0.05, 0.025, metal)
         w.bar((foot[0], -foot[1], 0.02), (head[0], -head[1], height - 0.03), 0.05, 0.025, metal)
@@ -128,7 +127,7 @@ def desk_pedestal(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 1.60), w.depth(0.60, 0.75), w.length(0.72, 0.75)
     wood, front = w.look("wood"), w.look("lacquer")
     x, _ = parts.slab(w, depth, width, (height - 0.03, height), wood)
-    side = w.choice(_BOTH)
+    side = w.choice(BOTH_SIDES)
     near, far = side * (0.5 * width - 0.02), side * (0.5 * width - 0.42)
     low, high = min(near, far), max(near, far)
     w.box((x[0] + 0.02, x[1] - 0.05), (low, high), (0.05, height - 0.03), wood)
@@ -144,7 +143,7 @@ def desk_frame(w: Workbench) -> None:
     width, depth, height = w.width(1.20, 1.80), w.depth(0.65, 0.80), w.length(0.70, 0.76)
     steel = w.look("metal")
     parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.5) else w.look("wood"))
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.16)
         w.box((-0.03, 0.03), (y - 0.04, y + 0.04), (0.03, height - 0.06), steel)
         w.box((-0.45 * depth, 0.45 * depth), (y - 0.035, y + 0.035), (0.0, 0.035), steel)

@@ -9,13 +9,12 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     chamfered_box,
     drape,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def towel_rail(w: Workbench) -> None:
@@ -35,7 +34,7 @@ def towel_radiator(w: Workbench) -> None:
     width, high = w.width(0.45, 0.60), w.length(1.00, 1.40)
     w.mount_height_m = 0.45
     white = w.look("ceramic") if w.chance(0.5) else w.look("chrome")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.015)
         w.box((0.05, 0.08), (y - 0.015, y + 0.015), (0.0, high), white)
         for z in (0.08, high - 0.08):
@@ -68,7 +67,7 @@ def towel_ladder(w: Workbench) -> None:
     """Wooden ladder leaning at the wall with towels over its rungs."""
     half, high, wood = 0.5 * w.width(0.45, 0.58), w.length(1.55, 1.80), w.look("wood")
     depth = 0.34
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.bar(
             (0.5 * depth - 0.02, side * (half - 0.02), 0.0),
             (-0.5 * depth + 0.02, side * (half - 0.02), high),
@@ -143,7 +142,7 @@ def swing_rail(w: Workbench) -> None:
 def towel_stand(w: Workbench) -> None:
     """Free-standing rack of two bars with towels."""
     half, high, metal = 0.5 * w.width(0.50, 0.65), w.length(0.85, 1.0), w.look("iron")
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         y = side * half
         w.rod((0.0, y, 0.0), (0.0, y, high), 0.011, metal)
         w.rod((-0.13, y, 0.011), (0.13, y, 0.011), 0.011, metal)

@@ -6,10 +6,9 @@ Usual retail dimensions: wall mirrors 0.45-0.80 m wide, full-length ones 1.50-1.
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.pictures import frame
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def wall_mirror(w: Workbench) -> None:
@@ -33,7 +32,7 @@ def standing_mirror(w: Workbench) -> None:
     width, height, wood = w.width(0.42, 0.60), w.height(1.50, 1.75), w.look("wood")
     y = 0.5 * width
     lean = 0.12
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.bar((0.14, side * (y - 0.02), 0.0), (0.14 - lean, side * (y - 0.02), height), 0.04, 0.03, wood)
     for z in (0.12, height - 0.03):
         x = 0.14 - lean * z / height

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import (
     drape,
 )
 from sim.housegen.furniture.workbench import Workbench
-
-_BOTH = (-1, 1)
 
 
 def single_curtain(w: Workbench) -> None:
@@ -36,7 +35,7 @@ def roller_blind(w: Workbench) -> None:
         w.look("metal"),
         solid=False,
     )
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box(
             (0.0, 0.06),
             (side * 0.5 * width - 0.006, side * 0.5 * width + 0.006),
@@ -55,7 +54,7 @@ def slatted_blind(w: Workbench) -> None:
     for i in range(count):
         z = height - 0.08 - 0.065 * i
         w.box((0.005, 0.055), (-0.49 * width, 0.49 * width), (z - 0.003, z + 0.003), look, tilt=0.5, solid=False)
-    for side in _BOTH:
+    for side in BOTH_SIDES:
         w.box(
             (0.028, 0.032),
             (side * 0.35 * width - 0.008, side * 0.35 * width + 0.008),
