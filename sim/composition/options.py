@@ -9,7 +9,7 @@ from pathlib import Path
 from sim.composition.agents import find_agent
 from sim.composition.segmenters import check_semantics
 from sim.errors import ConfigError
-from sim.evaluation.parallel import Share
+from sim.evaluation.parallel import Shard
 from sim.geometry.pose import Pose
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
@@ -62,7 +62,7 @@ class RunOptions:
     noise: str = "none"
     """Noise of sensors and drive: none, realsense or harsh."""
     config: tuple[str, ...] = ()
-    """FIELD=VALUE ...: set fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
+    """FIELD=VALUE ...: fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
     config_file: Path | None = None
     """A TOML or JSON file of such fields; --config is applied after it."""
     out: Path | None = None
@@ -91,7 +91,7 @@ def check_options(options: RunOptions) -> None:
         raise ConfigError("--labels and --start-deg need --house.")
     selection.check(options)
     if options.shard is not None:
-        Share.parse(options.shard)
+        Shard.parse(options.shard)
         if options.out is None:
             raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
     get_profile(options.profile)

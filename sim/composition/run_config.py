@@ -39,9 +39,7 @@ class VerificationConfig:
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.least_probability < 1.0:
-            raise ConfigError(
-                f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}."
-            )
+            raise ConfigError(f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,13 +60,17 @@ class RunConfig:
     task: TaskConfig
 
 
-def configuration_of(options: RunOptions) -> RunConfig:
+def configuration_of(options: RunOptions, spec: AgentSpec | None = None) -> RunConfig:
     """Returns the configuration tree of a run: presets by name, then the settings file, then `--config`.
+
+    Args:
+        options: of the run.
+        spec: the agent's specification; that of `options.agent` when None.
 
     Raises:
         ConfigError: an unknown name, or a value that is not allowed.
     """
-    spec = find_agent(options.agent)
+    spec = spec or find_agent(options.agent)
     robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
     tree = RunConfig(
         agent=spec.config,

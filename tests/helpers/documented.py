@@ -116,7 +116,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 20 --workers 2 --record --out runs/mine": (
         f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
-    f"{PYTHON} -m sim.analysis.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.analysis.report {{tmp}}/mine"),
+    f"{PYTHON} -m sim.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
     f"{_RUN} --agent examples.my_agent:make --video": (
         f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
@@ -152,6 +152,20 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
         f"{PYTHON} tools/compare_runs.py {{tmp}}/before {{tmp}}/after",
     ),
+    # docs/configuration.md
+    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300 --episodes 5": (
+        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=30 --episodes 1 {_SMALL}"
+        " --out {tmp}/run",
+    ),
+    f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 5": (
+        f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 1"
+        f" {_SMALL} --semantics gt --out {{tmp}}/run",
+    ),
+    f"{_RUN} --config-file my_settings.toml --episodes 5": (
+        f"{PYTHON} -c 'from pathlib import Path; "
+        'Path("{tmp}/my.toml").write_text("[agent.planning]\\ndilation_m = 0.10\\n[task]\\nmax_steps = 30\\n")\'',
+        f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
+    ),
     # docs/gymnasium.md
     f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
     # docs/houses.md
@@ -181,11 +195,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
         " --out {tmp}/harsh",
     ),
-    f"{PYTHON} -m sim.analysis.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.analysis.report {{tmp}}/mine"),
-    f"{PYTHON} -m sim.analysis.report runs/before runs/after": (
+    f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    f"{PYTHON} -m sim.report runs/before runs/after": (
         f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
         _RECORDED,
-        f"{PYTHON} -m sim.analysis.report {{tmp}}/before {{tmp}}/mine",
+        f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
     ),
     # docs/performance.md
     f"{PYTHON} tools/bench.py --out runs/bench.json": (
@@ -317,7 +331,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
-    f"{PYTHON} -m sim.analysis.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.analysis.report {{tmp}}/run"),
+    f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
@@ -328,5 +342,5 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 `{tmp}` is a scratch folder. Commands with `--help` need no line.
 """
 
-STAND_INS = ("my_house.xml", "flat.xml", "labels.json", "carrier.xml", "rednet_semmap_mp3d_40.pth")
+STAND_INS = ("my_house.xml", "my_settings.toml", "flat.xml", "labels.json", "carrier.xml", "rednet_semmap_mp3d_40.pth")
 """Files of the reader's that the docs speak of and that are not there."""

@@ -1,4 +1,4 @@
-"""The player of a worker process: one environment and one agent that run episode after episode."""
+"""The episode runner of a worker process: one environment and one agent that run episode after episode."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES
 
 
-class EpisodePlayer:
+class EpisodeRunner:
     """Runs episodes in one process; see `sim.evaluation.workers`."""
 
     def __init__(self, options: RunOptions) -> None:
         self._options = options
         self._spec = spec = find_agent(options.agent)
         config = configuration_of(options)
-        truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * selection.any_asked(options)
+        truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * selection.any_selected(options)
         self._env = make_env(options, config, sensors=config.sensors, truth=truth)
-        segmenter = (
-            make_segmenter(options.semantics, self._env, config.detector) if spec.uses_segmentation else NoSegmentation()
-        )
+        segmenter: Segmenter = NoSegmentation()
+        if spec.uses_segmentation:
+            segmenter = make_segmenter(options.semantics, self._env, config.detector)
         verifier = verifier_of(options, config.verification)
         self._agent = build_agent(
             options.agent, spec, self._env, segmenter=segmenter, verifier=verifier, config=config.agent
@@ -43,20 +43,20 @@ class EpisodePlayer:
             "versions": versions(),
         }
 
-    def play(self, episode: Episode) -> dict[str, Any]:
+    def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode and returns its result line."""
         seed = episode_seed(self._options.seed, episode.episode_id)
         try:
             metrics = play_episode(self._env, self._agent, episode, seed=seed, viewers=self._viewers)
         except EpisodeError as error:
             return error_line(self._options, episode, str(error))
-        line = _identity(self._options, self._spec, episode) | metrics
+        line = identity_of(self._options, self._spec, episode) | metrics
         if self._options.record and self._options.out is not None:
             record_episode(self._env, self._options.out, line, self._about)
         return line
 
     def close(self) -> None:
-        """Frees the renderers; viewers drop an unfinished episode."""
+        """Frees the renderers; viewers discard an unfinished recording."""
         for viewer in self._viewers:
             viewer.close()
         self._env.close()
@@ -89,13 +89,13 @@ def make_env(
     )
 
 
-def plan_episodes(options: RunOptions) -> tuple[list[Episode], dict[str, Any]]:
+def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[list[Episode], dict[str, Any]]:
     """Returns the episodes of a run, and what identifies the split or house they come from.
 
     Raises:
         ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
     """
-    env = make_env(options, configuration_of(options), sensors=())
+    env = make_env(options, configuration_of(options, spec), sensors=())
     try:
         split = env.split
         if options.house is None:
@@ -108,9 +108,7 @@ def plan_episodes(options: RunOptions) -> tuple[list[Episode], dict[str, Any]]:
             episodes = episodes[: options.episodes]
         else:
             episodes = [
-                env.draw_episode(
-                    np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}"
-                )
+                env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}")
                 for i in range(options.episodes)
             ]
     finally:
@@ -122,11 +120,12 @@ def error_line(options: RunOptions, episode: Episode, error: str) -> dict[str, A
     """Returns the result line of an episode that could not be run to its end."""
     nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
     counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "gt_explored": None, "wall_time_s": 0.0}
-    identity = _identity(options, find_agent(options.agent), episode)
+    identity = identity_of(options, find_agent(options.agent), episode)
     return identity | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
 
 
-def _identity(options: RunOptions, spec: AgentSpec, episode: Episode) -> dict[str, Any]:
+def identity_of(options: RunOptions, spec: AgentSpec, episode: Episode) -> dict[str, Any]:
+    """Returns the part of a result line that names episode, agent and segmentation."""
     return {
         "episode_id": episode.episode_id,
         "house": episode.house,

@@ -1,0 +1,51 @@
+"""Agents as a user would declare them, for tests of the composition root."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sim.interface import Action, AgentSpec, Observation
+
+SEEN: list[set[str]] = []
+"""Keys of each observation that a `Spy` got in this process."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpyConfig:
+    """An option of the agent's own."""
+
+    forwards: int = 2
+
+
+class Spy:
+    """Notes the keys of its observations, drives forward a few times and stops."""
+
+    def __init__(self, config: SpyConfig | None = None, **given: object) -> None:
+        self.config = config or SpyConfig()
+        self.given = given
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.step = 0
+
+    def act(self, observation: Observation) -> Action:
+        SEEN.append(set(observation))
+        assert all(isinstance(value, np.ndarray) for value in observation.values())
+        self.step += 1
+        return Action.MOVE_FORWARD if self.step <= self.config.forwards else Action.STOP
+
+
+def make_spy(**given: object) -> Spy:
+    """A plain factory, which declares nothing."""
+    return Spy(**given)  # type: ignore[arg-type]
+
+
+def make_narrow(*, camera: object, robot: object) -> Spy:
+    """A factory that takes too few arguments."""
+    return Spy()
+
+
+SPY = AgentSpec(make=make_spy, description="notes what it sees", config=SpyConfig(), sensors=("depth",))
+CHEAT = AgentSpec(make=make_spy, sensors=("semantic",), uses_ground_truth=True, uses_segmentation=False)
+NUMBER = 3

@@ -1,0 +1,93 @@
+"""Agents declare what they need: no true image reaches one that does not declare ground truth, and results say so."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from sim.composition.agents import SPECS, find_agent
+from sim.errors import ConfigError
+from sim.interface import POSE_SENSORS, AgentSpec
+from sim.run import entry
+from tests.helpers import agents
+from tests.helpers.worlds import room, with_box
+
+SMALL = ("camera.width_px=160", "camera.height_px=120")
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    file.write_text(furnished.spec.to_xml())
+    return file
+
+
+def played(house: Path, out: Path, agent: str, semantics: str, *config: str) -> tuple[dict, set[str]]:
+    """The result line of one episode and the keys of the observations."""
+    agents.SEEN.clear()
+    options = ["--agent", agent, "--semantics", semantics, "--house", str(house), "--episodes", "1", "--out", str(out)]
+    assert entry([*options, "--config", *SMALL, *config]) == 0
+    (keys,) = {frozenset(keys) for keys in agents.SEEN}
+    return json.loads((out / "results.jsonl").read_text()), set(keys)
+
+
+@pytest.mark.parametrize("semantics", ["gt", "noisy"])
+@pytest.mark.parametrize(
+    ("agent", "sensors"),
+    [("tests.helpers.agents:make_spy", {"rgb", "depth"}), ("tests.helpers.agents:SPY", {"depth"})],
+)
+def test_no_true_image_reaches_an_agent_that_does_not_declare_it(
+    house: Path, tmp_path: Path, agent: str, sensors: set[str], semantics: str
+) -> None:
+    line, keys = played(house, tmp_path, agent, semantics)
+    assert keys == sensors | set(POSE_SENSORS)
+    assert line["uses_ground_truth"] is False
+    assert line["semantics"] == semantics
+
+
+def test_an_agent_that_declares_ground_truth_gets_it_and_its_results_say_so(house: Path, tmp_path: Path) -> None:
+    line, keys = played(house, tmp_path, "tests.helpers.agents:CHEAT", "gt")
+    assert keys == {"semantic", *POSE_SENSORS}
+    assert line["uses_ground_truth"] is True
+
+
+def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
+    with pytest.raises(ConfigError, match="declare uses_ground_truth=True"):
+        AgentSpec(make=agents.make_spy, sensors=("semantic",))
+
+
+def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path: Path) -> None:
+    line, _ = played(house, tmp_path, "tests.helpers.agents:SPY", "gt", "agent.forwards=4")
+    assert line["num_steps"] == 5
+    assert json.loads((tmp_path / "config.json").read_text())["config"]["agent"] == {"forwards": 4}
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("stuborn", "Did you mean 'stubborn'"),
+        ("no.such_module:make", "no module 'no'"),
+        ("tests.helpers.agents:none", "has no 'none'"),
+        ("tests.helpers.agents:NUMBER", "must be an AgentSpec or a factory, got int"),
+    ],
+)
+def test_an_agent_that_does_not_exist_is_refused(name: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        find_agent(name)
+
+
+def test_a_factory_with_other_arguments_is_refused_in_one_sentence(
+    house: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    options = ["--agent", "tests.helpers.agents:make_narrow", "--semantics", "gt", "--house", str(house)]
+    assert entry([*options, "--episodes", "1", "--out", str(tmp_path)]) == 2
+    assert "its factory is called with the arguments camera, robot, success" in capsys.readouterr().err
+
+
+def test_every_agent_has_a_description_of_one_line() -> None:
+    for name, spec in SPECS.items():
+        assert 10 < len(spec.description) < 90, name
+        assert "\n" not in spec.description

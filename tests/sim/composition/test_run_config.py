@@ -1,0 +1,88 @@
+"""One tree of settings: every field can be set, config.json holds all of it, and a run with another tree is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from sim.composition.options import RunOptions
+from sim.composition.run_config import configuration_of, record_of
+from sim.configuration import as_json, field_paths, with_fields
+from sim.errors import ConfigError
+from sim.run import entry
+
+SPLIT = {"name": "val", "version": "1", "sha256": "0"}
+
+
+def test_presets_then_the_file_then_the_command_line(tmp_path: Path) -> None:
+    file = tmp_path / "settings.toml"
+    file.write_text("[task]\nmax_steps = 300\n[task.success]\ndistance_m = 0.5\n[camera]\nwidth_px = 320\n")
+    options = RunOptions(semantics="gt", noise="harsh", config_file=file, config=("camera.width_px=160",))
+    config = configuration_of(options)
+    assert (config.task.max_steps, config.task.success.distance_m) == (300, 0.5)
+    assert config.camera.width_px == 160
+    assert config.noise.depth.axial_m == 0.003
+    assert with_fields(config, {"noise.depth.axial_m": 0.0}).noise.depth.axial_1_m == config.noise.depth.axial_1_m
+
+
+@pytest.mark.parametrize("agent", ["stubborn", "stubborn-plus", "frontier", "random", "oracle"])
+@pytest.mark.parametrize("semantics", ["gt", "noisy", "rednet"])
+def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semantics: str) -> None:
+    config = configuration_of(RunOptions(agent=agent, semantics=semantics))
+    content = as_json(config)
+    json.dumps(content, allow_nan=False)
+
+    def value(path: str) -> object:
+        node = content
+        for name in path.split("."):
+            node = node[name]
+        return node
+
+    paths = [path for path in field_paths(config) if path != "robot.file" and not path.startswith("robot.file.")]
+    assert len(paths) > 40
+    assert with_fields(config, {path: value(path) for path in paths}) == config
+
+
+@pytest.mark.parametrize(
+    ("assignment", "message"),
+    [
+        ("agent.planing.dilation_m=0.1", "Did you mean 'planning'"),
+        ("agent.planning.dilation_m=wide", "'agent.planning.dilation_m' cannot be 'wide'"),
+        ("task.max_steps=0", "max_steps"),
+        ("task.success.distance_m=-1", "distance_m"),
+        ("sensors=[]", "needs depth"),
+        ('sensors=["depth", "semantic"]', "'semantic' is ground truth"),
+        ("detector.weights=none", "'detector.weights'"),
+    ],
+)
+def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
+    assignment: str, message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert entry(["--semantics", "gt", "--config", assignment, "--out", str(tmp_path / "run")]) == 2
+    complaint = capsys.readouterr().err
+    assert message in complaint
+    assert complaint.count("\n") == 1
+    assert not (tmp_path / "run").exists()
+
+
+def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
+    options = RunOptions(semantics="rednet", config=("agent.planning.dilation_m=0.1",))
+    record = record_of(options, configuration_of(options), SPLIT)
+    assert set(record["config"]) == {
+        "agent", "detector", "verification", "robot", "camera", "sensors", "profile", "noise", "task",
+    }  # fmt: skip
+    assert record["config"]["agent"]["planning"]["dilation_m"] == 0.1
+    assert len(record["files_sha256"]["weights"]) == 64
+    assert record["split_identity"] == SPLIT
+
+
+def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--agent", "random", "--semantics", "gt", "--episodes", "1", "--out", str(tmp_path)]
+    settings = ["--config", "task.max_steps=3", "camera.width_px=160", "camera.height_px=120"]
+    assert entry([*options, *settings]) == 0
+    assert entry([*options, *settings]) == 0
+    capsys.readouterr()
+    assert entry([*options, "--config", "task.max_steps=4", *settings[2:]]) == 2
+    assert "config.task.max_steps = 3, this one has 4" in capsys.readouterr().err
