@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
-import skfmm
 from numpy.typing import NDArray
 
 from sim.geometry.convex import ConvexPolygon
+from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import Room
@@ -122,19 +122,7 @@ class FreeSpace:
         Returns:
             (rows, cols) metres; inf for cells without a path, and everywhere without a free source.
         """
-        distance = np.full(self.frame.shape, np.inf, dtype=np.float32)
-        begin = sources & self.free
-        if not begin.any():
-            return distance
-        reached = _connected_to(self.free, begin)
-        distance[begin] = 0.0
-        if np.array_equal(begin, reached):
-            return distance
-        window = _window_of(reached)
-        front = np.ma.MaskedArray(np.where(begin[window], 0.0, 1.0), mask=~reached[window])
-        computed = np.ma.filled(skfmm.distance(front, dx=self.frame.cell_m), np.inf)
-        distance[window][reached[window]] = computed[reached[window]]
-        return distance
+        return distances(sources, self.free, self.frame.cell_m)
 
     def distance_at(self, field: NDArray[np.float32], x_m: float, y_m: float) -> float:
         """Returns the value of a geodesic field at an exact position, bilinear where all four cells are finite.
@@ -213,9 +201,3 @@ def _frame_around(extent: list[ConvexPolygon]) -> GridFrame:
     return GridFrame(
         origin_xy_m=(float(low[0] * CELL_M), float(low[1] * CELL_M)), shape=(rows, cols), cell_m=CELL_M
     )
-
-
-def _window_of(mask: NDArray[np.bool_]) -> tuple[slice, slice]:
-    """Returns the smallest window that holds all True cells of a mask, which must have some."""
-    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(cols[0]), int(cols[-1]) + 1)
