@@ -20,7 +20,7 @@ from types import ModuleType
 from sim.housegen.furniture import wide
 from sim.housegen.furniture.catalogue import Catalogue, Style
 
-_WIDE_FIRST = ("chairs", "tables", "desks", "wardrobes", "sideboards", "displays", "wall_units")
+_WIDE_FIRST = ("chairs", "office_chairs", "tables", "desks", "wardrobes", "sideboards", "displays", "wall_units")
 """Modules of `wide` that come before the others. Random draws depend on the order; a new module needs no entry."""
 
 

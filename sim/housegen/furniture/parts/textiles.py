@@ -20,6 +20,11 @@ def pad(
     w.mesh(chamfered_box(rounded, chamfer), at, look, tilt=tilt, turn=turn)
 
 
+def leather_pad(w: Workbench, size: Point, at: Point, *, tilt: float = 0.0) -> None:
+    """Adds a leather pad with its middle at `at`, chamfered by a quarter of its smallest side."""
+    pad(w, size, at, w.look("leather"), 0.25 * min(size), tilt=tilt)
+
+
 def towel_over_bar(
     w: Workbench, x: float, y: float, z: float, width: float, front: float, back: float, cloth: Look
 ) -> None:
