@@ -1,7 +1,8 @@
-"""Styles that no split shows: houses of the pool `wide` have them beside train's, to train perception on more shapes.
+"""Styles of the pool `wide`, which no split of episodes shows: they add variety to the training of perception.
 
-They were designed without a look at the held-out ones, which stay what a network has never seen.
+Houses of this pool also show the styles of `train`. The styles were designed without looking at the held-out ones, so
+that a network trained on them has not seen those.
 
-Sizes follow, as train's, Neufert, Architects' Data, Panero & Zelnik, Human Dimension and Interior Space, the European
-kitchen grid (EN 1116), usual mattress sizes (EN 1334) and retail ranges, but with a wider spread.
+Like those of `train`, sizes follow Neufert, Architects' Data, Panero & Zelnik, Human Dimension and Interior Space, the
+European kitchen grid (EN 1116), common mattress sizes (EN 1334) and retail ranges, but vary more.
 """
