@@ -161,12 +161,12 @@ def _draw(folder: Path, seed: int, digits: int, work: tuple[str, list[Turn]]) ->
 
 def _draw_start(task: Task, goal: str, rng: np.random.Generator) -> tuple[Pose, float | None]:
     """A start and its distance to the goal; drawn again where the way from within the cell is too short or too long."""
-    start = draw_start(task.world, task, goal, rng)
+    start = draw_start(task, goal, rng)
     for _ in range(MAX_REDRAWS):
         distance_m = task.distance_from(goal, start)
         if distance_m is not None and MIN_DISTANCE_M <= distance_m <= MAX_DISTANCE_M:
             break
-        start = draw_start(task.world, task, goal, rng)
+        start = draw_start(task, goal, rng)
     return start, task.distance_from(goal, start)
 
 

@@ -1,9 +1,9 @@
-"""What a segmentation network takes for what: the table behind `--semantics noisy`.
+"""Confusions of categories by a segmentation network: the table of `--semantics noisy`.
 
-Rows are true categories, entries what a mistake makes of them and in what share of the mistakes. A row that sums to
-less than 1 belongs to a category that is mistaken less often by that factor; a category without a row never is. The
-groups are those that indoor networks mix up: seats with seats, fronts with fronts, what hangs flat on a wall, cloth,
-ceramics. The shares are ours, set by hand; they are no measurement of a network.
+A row is a true category; its entries are the wrong categories with their shares of the errors. A row that sums to less
+than 1 reduces the error rate of its category by that factor; a category without a row has no errors. The groups are
+those that indoor networks confuse: seats, fronts of furniture, flat objects on a wall, cloth, ceramics. The shares are
+our choice, not a measurement of a network.
 """
 
 from __future__ import annotations
@@ -53,4 +53,4 @@ CONFUSIONS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "objects": {"plant": 0.25, "cushion": 0.25, "towel": 0.15, "sink": 0.1, "gym_equipment": 0.1},
     }
 )
-"""True category to what it is taken for; see the module."""
+"""Shares of the wrong categories for each true category; see the module."""

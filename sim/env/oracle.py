@@ -1,8 +1,8 @@
-"""The agent that knows everything: follows the true shortest path with the same four actions and the same body.
+"""The oracle: an agent that follows the true shortest path with the same four actions and the same body.
 
-It says what is possible: an oracle that fails means that the task, the free space or the robot is wrong. A plan is
-found by weighted A* over steps of "turn, then go 0.25 m" on the 12 headings, the geodesic distance as heuristic. It
-is made again when the robot is not where the plan has it; a step that was blocked is not tried again.
+It is an upper bound: if it fails, the task, the free space or the robot is wrong. It plans by weighted A* over steps of
+"turn, then drive 0.25 m" on the 12 headings, with the geodesic distance as heuristic. It plans again when the robot is
+not where the plan expects it; a step that was blocked is not tried again.
 """
 
 from __future__ import annotations
@@ -18,52 +18,61 @@ import cv2
 import numpy as np
 
 from sim.interface import FORWARD_M, TURN_RAD, Action, Observation
-from sim.task.objectnav import Stage
+from sim.task.objectnav import Task
 from sim.world.freespace import CELL_M
 
 HEADINGS = round(math.tau / TURN_RAD)
-GREED = 1.5
-"""Weight of the heuristic: a little longer than the best plan, found many times sooner."""
+HEURISTIC_WEIGHT = 1.5
+"""Weight of the heuristic: plans are slightly longer than the shortest and found many times faster."""
 TURN_COST_M = 0.02
-"""What a turn costs in metres of way."""
+"""Cost of a turn, in metres of path."""
 MARGIN_M = 0.05
-"""Room beside the disc below which a step costs more ..."""
+"""A step that passes an obstacle with less clearance than this beside the disc costs more."""
 TIGHT_COST_M = 0.25
-"""... by this much."""
+"""Additional cost of such a step, in metres of path."""
 NODE_M = 0.05
-"""How near two places are that a plan does not tell apart."""
+"""Nodes with one heading and the same multiple of this in x and y are one node of a plan."""
 DRIFT_M = 0.03
-"""A plan is made again when the robot is farther than this from where the plan has it."""
+"""The oracle plans again when the robot is farther than this from the position in the plan."""
 MAX_EXPANSIONS = 30_000
 
 Node = tuple[float, float, int]
-"""x, y and heading, in turns from the start's."""
+"""x and y in metres, and heading in turns from that of the start."""
 Key = tuple[int, int, int]
-"""Nodes within 5 cm and with one heading count as one."""
+"""x and y of a node in units of `NODE_M`, and its heading."""
 
 
-class HasStage(Protocol):
-    """The environment, as far as the oracle looks into it."""
+class HasTask(Protocol):
+    """The part of a `sim.env.scene.Scene` that the oracle reads."""
 
     @property
-    def scene(self) -> Stage:
-        """World and task of the running episode."""
+    def task(self) -> Task:
+        """The running episode, with its world."""
+        ...
+
+
+class HasScene(Protocol):
+    """The part of an `ObjectNavEnv` that the oracle reads."""
+
+    @property
+    def scene(self) -> HasTask:
+        """The scene of the running episode."""
         ...
 
 
 class Oracle:
-    """An `Agent` that reads the truth from the environment it acts in, and ignores its observations."""
+    """An `Agent` that reads the ground truth from its environment and ignores its observations."""
 
-    def __init__(self, env: HasStage) -> None:
+    def __init__(self, env: HasScene) -> None:
         self._env = env
 
     def reset(self, goal: str, seed: int) -> None:
-        """Start a new episode: chart where to go."""
+        """Starts a new episode."""
         task = self._env.scene.task
         floor_z_m = task.start.floor_z_m
         space, target = task.truth.space(floor_z_m), task.truth.target(goal, floor_z_m)
         self._frame, self._region, self._distance_m = space.frame, target.region, target.distance_m
-        self._room_m = cv2.distanceTransform(space.free.astype(np.uint8), cv2.DIST_L2, 5) * CELL_M  # 0: not free
+        self._clearance_m = cv2.distanceTransform(space.free.astype(np.uint8), cv2.DIST_L2, 5) * CELL_M  # 0: not free
         inner = cv2.erode(target.reached.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.bool_)
         self._goal_cells = inner if inner.any() else target.reached
         yaws = task.start.yaw_rad + np.arange(HEADINGS) * TURN_RAD
@@ -74,7 +83,7 @@ class Oracle:
         self._blocked: set[Key] = set()
 
     def act(self, observation: Observation) -> Action:
-        """The next action of the plan; STOP as soon as it would succeed."""
+        """Returns the next action of the plan; STOP as soon as it succeeds."""
         del observation
         here = self._here()
         if self._region.succeeds(*here[:2]):
@@ -90,12 +99,12 @@ class Oracle:
         return action
 
     def _here(self) -> Node:
-        pose = self._env.scene.world.pose
+        pose = self._env.scene.task.world.pose
         turned = (pose.yaw_rad - self._env.scene.task.start.yaw_rad) / TURN_RAD
         return pose.x_m, pose.y_m, round(turned) % HEADINGS
 
     def _search(self, begin: Node) -> list[tuple[Action, Node]]:
-        """Actions, and where each leads, to a place that counts; to the nearest that can be reached if none does."""
+        """Returns actions to a goal cell, else to the nearest node that can be reached; each with its end node."""
         came: dict[Key, Node] = {}
         cost = {_key(begin): 0.0}
         tie = itertools.count()
@@ -115,7 +124,7 @@ class Oracle:
                 if _key(after) in done or total_m >= cost.get(_key(after), math.inf):
                     continue
                 cost[_key(after)], came[_key(after)] = total_m, node
-                heapq.heappush(queue, (total_m + GREED * left_m, next(tie), after))
+                heapq.heappush(queue, (total_m + HEURISTIC_WEIGHT * left_m, next(tie), after))
                 if left_m < nearest_m:
                     end, nearest_m = after, left_m
         nodes = [end]
@@ -124,17 +133,17 @@ class Oracle:
         return [action for node, after in itertools.pairwise(nodes[::-1]) for action in _actions(node, after)]
 
     def _steps(self, node: Node) -> Iterator[tuple[float, Node, float]]:
-        """Cost, end and distance left of each way to turn and then go from a node."""
+        """Yields cost, end and remaining distance of each step from a node: a turn, then a forward."""
         x, y, heading = node
         cells = self._frame.to_cells(self._swept_m + np.array([x, y]))  # (headings, samples, 2)
         inside = self._frame.inside(cells).all(axis=1)
         row, col = np.clip(cells, 0, np.array(self._frame.shape) - 1).transpose(2, 0, 1)
-        room_m = self._room_m[row, col].min(axis=1)
+        clearance_m = self._clearance_m[row, col].min(axis=1)
         left_m = self._distance_m[row[:, -1], col[:, -1]]
-        for k in np.flatnonzero(inside & (room_m > 0.0) & np.isfinite(left_m)).tolist():
+        for k in np.flatnonzero(inside & (clearance_m > 0.0) & np.isfinite(left_m)).tolist():
             if _key((x, y, k)) in self._blocked:
                 continue
-            step_m = FORWARD_M + TURN_COST_M * abs(_turns(heading, k)) + TIGHT_COST_M * (room_m[k] < MARGIN_M)
+            step_m = FORWARD_M + TURN_COST_M * abs(_turns(heading, k)) + TIGHT_COST_M * (clearance_m[k] < MARGIN_M)
             dx, dy = self._swept_m[k, -1]
             yield step_m, (x + dx, y + dy, k), float(left_m[k])
 
@@ -144,7 +153,7 @@ def _key(node: Node) -> Key:
 
 
 def _turns(heading: int, to: int) -> int:
-    """Left turns from one heading to another; negative: right."""
+    """Returns the number of left turns from one heading to another; negative: right turns."""
     return (to - heading + HEADINGS // 2) % HEADINGS - HEADINGS // 2
 
 
@@ -153,7 +162,7 @@ def _same(here: Node, expected: Node) -> bool:
 
 
 def _actions(node: Node, after: Node) -> Iterator[tuple[Action, Node]]:
-    """The turns and the forward that lead from a node to the next, and where each leads."""
+    """Yields the turns and the forward from a node to the next, each with the node it leads to."""
     turns = _turns(node[2], after[2])
     turn, sign = (Action.TURN_LEFT, 1) if turns > 0 else (Action.TURN_RIGHT, -1)
     for i in range(1, abs(turns) + 1):

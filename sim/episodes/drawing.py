@@ -1,4 +1,4 @@
-"""Draw episodes: a start in free space from which a goal can be reached, and where the robot really fits."""
+"""Random episodes: a start in free space from which a goal can be reached, and where the robot fits in physics."""
 
 from __future__ import annotations
 
@@ -9,20 +9,21 @@ from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
-from sim.task.objectnav import Stage, Task
+from sim.task.objectnav import Task
 from sim.world.world import World
 
 MIN_DISTANCE_M = 2.0
-"""Least geodesic distance from start to goal, where the house is large enough for it."""
+"""Least geodesic distance from start to goal, if the house is large enough for it."""
 MAX_DISTANCE_M = 30.0
-"""Largest: 120 forwards, and the turns between them, are well inside 500 steps."""
+"""Largest geodesic distance: 120 forwards and the turns between them are well below 500 steps."""
 MAX_TRIES = 50
+"""Attempts to find a start where the robot fits."""
 _ROUND_M = 4
-"""Decimals of a drawn start, so that files stay short."""
+"""Decimals of a random start, so that files stay short."""
 
 
 def sample_episode(
-    scene: Stage,
+    task: Task,
     house: str,
     rng: np.random.Generator,
     *,
@@ -30,12 +31,12 @@ def sample_episode(
     start: Pose | None = None,
     episode_id: str = "drawn",
 ) -> Episode:
-    """An episode in a scene; what is not given is drawn.
+    """Returns an episode in the world of a task; a goal or start that is not given is random.
 
     Raises:
-        EpisodeError: the goal is not in the house or has no way to it, or the robot does not fit at the start.
+        EpisodeError: the goal is not in the house or cannot be reached, or the robot does not fit at the start.
     """
-    world, task = scene.world, scene.task
+    world = task.world
     if start is not None:
         world.reset(start)
     goals = (goal,) if goal is not None else tuple(rng.permutation(np.array(task.truth.goals())).tolist())
@@ -44,21 +45,19 @@ def sample_episode(
     refusals = []
     for candidate in goals:
         try:
-            begin = start or draw_start(world, task, candidate, rng)
+            begin = start or draw_start(task, candidate, rng)
             distance_m = task.distance_from(candidate, begin)
         except EpisodeError as error:
             refusals.append(error)
             continue
         if distance_m is not None:
             return Episode(episode_id, house, candidate, begin, distance_m)
-        refusals.append(task.no_way(candidate, begin))
+        refusals.append(task.unreachable_error(candidate, begin))
     raise refusals[0]
 
 
-def draw_start(world: World, task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: float = 0.0) -> Pose:
-    """A pose, uniform over the largest connected part of the free space that is far enough from the goal.
-
-    In a house too small for `MIN_DISTANCE_M` the farther half of what there is counts as far enough.
+def draw_start(task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: float = 0.0) -> Pose:
+    """Returns a pose, uniform over the cells of the largest connected free space that are far enough from the goal.
 
     Raises:
         EpisodeError: the goal is not in the house, or there is no place to start from.
@@ -76,15 +75,19 @@ def draw_start(world: World, task: Task, goal: str, rng: np.random.Generator, *,
             round(float(rng.uniform(-np.pi, np.pi)), _ROUND_M),
             floor_z_m,
         )
-        if space.is_free(start.x_m, start.y_m) and _fits(world, start):
+        if space.is_free(start.x_m, start.y_m) and _fits(task.world, start):
             return start
     raise EpisodeError(
-        f"House '{world.house.name}': no place to start a search for '{goal}' from; no instance can be reached."
+        f"House '{task.world.house.name}': no place to start a search for '{goal}' from; no instance can be reached."
     )
 
 
 def far_enough(distance_m: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """(rows, cols) cells from which a search is worth its name."""
+    """Returns (rows, cols) the cells that are far enough from a goal.
+
+    These are the cells between `MIN_DISTANCE_M` and `MAX_DISTANCE_M`; in a house without such a cell, those farther
+    than half the largest distance.
+    """
     reachable = np.isfinite(distance_m)
     far = reachable & (distance_m >= MIN_DISTANCE_M) & (distance_m <= MAX_DISTANCE_M)
     if far.any() or not reachable.any():

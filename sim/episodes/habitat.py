@@ -1,10 +1,11 @@
-"""Habitat's ObjectNav files: the one boundary where its y-up frame and xyzw quaternions are read and written.
+"""Habitat's ObjectNav files: the one place where its y-up frame and xyzw quaternions are read and written.
 
-Habitat's world is y up and right-handed, an agent without rotation looks along -z. Ours is z up, a heading of 0 looks
-along +x. (x, y, z) here is (x, z, -y) there, and a heading of 90 degrees here is no rotation there.
+Habitat's world is y up and right-handed; an agent without rotation looks along -z. Our world is z up; a heading of 0
+looks along +x. Our (x, y, z) is Habitat's (x, z, -y), and our heading of 90 degrees is Habitat's identity rotation.
 
-A split named `val` is `val.json.gz` (version, order of the episodes, category ids) and `content/<house>.json.gz`
-(episodes and `goals_by_category` with view points), the layout of the ObjectNav challenge 2021.
+A split named `val` has the files `val.json.gz` (version, order of the episodes, category ids) and
+`content/<house>.json.gz` (episodes and `goals_by_category` with view points), the layout of the ObjectNav challenge
+2021.
 """
 
 from __future__ import annotations
@@ -22,46 +23,46 @@ Json = dict[str, Any]
 
 
 def to_position(x_m: float, y_m: float, z_m: float) -> list[float]:
-    """A place of ours in Habitat's frame."""
+    """Returns a position of our frame in Habitat's."""
     return [x_m, z_m, 0.0 - y_m]
 
 
 def from_position(position: list[float]) -> tuple[float, float, float]:
-    """A place of Habitat's in our frame."""
+    """Returns a position of Habitat's frame in ours."""
     x, up, back = position
     return x, 0.0 - back, up
 
 
 def to_rotation(yaw_rad: float) -> list[float]:
-    """A heading of ours as Habitat's quaternion, xyzw."""
+    """Returns a heading as Habitat's quaternion, xyzw."""
     half = 0.5 * (yaw_rad - 0.5 * math.pi)
     return [0.0, math.sin(half), 0.0, math.cos(half)]
 
 
 def from_rotation(rotation: list[float]) -> float:
-    """The heading, in (-pi, pi], of an upright agent with Habitat's quaternion, xyzw."""
+    """Returns the heading, in (-pi, pi], of an upright agent with Habitat's quaternion, xyzw."""
     _, y, _, w = rotation
     return wrap_angle(2.0 * math.atan2(y, w) + 0.5 * math.pi)
 
 
 def to_agent_state(pose: Pose) -> Json:
-    """A pose as Habitat writes it."""
+    """Returns a pose as an `agent_state` of Habitat."""
     return {"position": to_position(pose.x_m, pose.y_m, pose.floor_z_m), "rotation": to_rotation(pose.yaw_rad)}
 
 
 def from_agent_state(position: list[float], rotation: list[float]) -> Pose:
-    """A pose as Habitat writes it, in our frame."""
+    """Returns the pose of an `agent_state` of Habitat in our frame."""
     x, y, z = from_position(position)
     return Pose(x, y, from_rotation(rotation), z)
 
 
 def goals_key(house: str, goal: str) -> str:
-    """The key of `goals_by_category`: the scene's file name and the category."""
+    """Returns the key in `goals_by_category`: the scene's file name and the category."""
     return f"{house}.xml_{goal}"
 
 
 def category_tables() -> Json:
-    """The two tables that Habitat's loader wants in each file."""
+    """Returns the two tables that Habitat's loader needs in each file."""
     return {
         "category_to_task_category_id": {goal: i for i, goal in enumerate(GOAL_CATEGORIES)},
         "category_to_mp3d_category_id": {goal: MPCAT40_ID[goal] for goal in GOAL_CATEGORIES},
@@ -69,10 +70,10 @@ def category_tables() -> Json:
 
 
 def read_json(path: Path) -> Json:
-    """One gzipped JSON object.
+    """Reads one gzipped JSON object.
 
     Raises:
-        ValueError, OSError: it is not one.
+        ValueError, OSError: the file is not one.
     """
     with gzip.open(path, "rt", encoding="utf-8") as file:
         content = json.load(file)
@@ -82,7 +83,7 @@ def read_json(path: Path) -> Json:
 
 
 def write_json(path: Path, content: Json) -> None:
-    """One gzipped JSON object, the same bytes for the same content."""
+    """Writes one gzipped JSON object; the same content gives the same bytes."""
     text = json.dumps(content, separators=(",", ":"), allow_nan=False)
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("wb") as raw, gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as file:

@@ -1,4 +1,4 @@
-"""What there is to look for in a house: goals that a robot can reach, with view points as Habitat's files have them."""
+"""Goals of a house that a robot can reach, with view points as in Habitat's files, and those it cannot reach."""
 
 from __future__ import annotations
 
@@ -10,48 +10,43 @@ from numpy.typing import NDArray
 
 from sim.episodes import habitat
 from sim.geometry.pose import Pose
-from sim.gl import mujoco
 from sim.houses.house import Room
-from sim.interface import SuccessRule
 from sim.task.objectnav import Task
-from sim.task.success import Footprint, GoalRegion, Surroundings
+from sim.task.success import Footprint, GoalRegion
 from sim.world.freespace import FreeSpace
 
 VIEW_STEP_CELLS = 10
-"""View points lie on a grid of this many cells of the free space: 0.25 m."""
+"""View points are this many cells of the free space apart: 0.25 m."""
 MAX_VIEW_POINTS = 24
-"""For each instance, spread evenly over those there are."""
+"""Largest number of view points of an instance, spread evenly over those possible."""
 _DECIMALS = 3
 
 
 @dataclass(frozen=True)
 class HouseGoals:
-    """What one house has to look for."""
+    """The goals of one house."""
 
     listed: Mapping[str, list[habitat.Json]]
-    """For each goal category that can be reached, Habitat's goals with their view points."""
+    """For each goal category with an instance that can be reached, Habitat's goals with their view points."""
     unreachable: tuple[str, ...]
-    """Names of goal instances that no place of the free space reaches."""
+    """Names of goal instances for which no place of the free space satisfies success."""
 
 
 def survey(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
-    """The goals of a house that a robot in its largest free space can reach, and those it cannot."""
-    world, space = task.world, task.truth.space()
+    """Returns the goals of a house that a robot in its largest free space can reach, and those it cannot."""
+    rooms, space = task.world.rooms, task.truth.space()
     inside = space.largest_part()
     coarse_m = space.frame.to_metres(_spread(inside))
-    at_rest = mujoco.MjData(world.model)
-    mujoco.mj_kinematics(world.model, at_rest)
-    around = Surroundings.of(world.model, at_rest, world.labels)
     listed: dict[str, list[habitat.Json]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
-        region = GoalRegion(world.model, at_rest, world.labels, goal, surroundings=around)
+        region = task.truth.region(goal)
         for footprint in region.footprints:
             views = view_points(region, footprint, coarse_m, at_most=max_view_points)
             if not len(views):
-                views = view_points(region, footprint, _near(space, inside, footprint), at_most=max_view_points)
+                views = view_points(region, footprint, _near(space, inside, region, footprint), at_most=max_view_points)
             if len(views):
-                listed.setdefault(goal, []).append(_to_habitat(footprint, views, world.rooms))
+                listed.setdefault(goal, []).append(_to_habitat(footprint, views, rooms))
             else:
                 unreachable.append(footprint.instance.name)
     return HouseGoals(listed, tuple(unreachable))
@@ -60,29 +55,29 @@ def survey(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
 def view_points(
     region: GoalRegion, footprint: Footprint, places_m: NDArray[np.float64], *, at_most: int = MAX_VIEW_POINTS
 ) -> NDArray[np.float64]:
-    """(n, 2) some of the places (m, 2) from which an instance counts as found."""
-    places_m = places_m[footprint.near(places_m, region.reach_m)]
+    """Returns (n, 2) some of the places (m, 2) where a STOP succeeds for an instance."""
+    places_m = places_m[footprint.near(places_m, region.distance_m)]
     places_m = places_m[region.reaches(footprint, places_m)] if len(places_m) else places_m
     if len(places_m) <= at_most:
         return places_m
     return places_m[np.linspace(0, len(places_m) - 1, at_most).round().astype(np.int64)]
 
 
-def _near(space: FreeSpace, inside: NDArray[np.bool_], footprint: Footprint) -> NDArray[np.float64]:
-    """(n, 2) centres of all the cells of a mask around a footprint, metres."""
-    rows, cols = space.frame.index_of(footprint.bounds_m, SuccessRule().distance_m)
+def _near(space: FreeSpace, inside: NDArray[np.bool_], region: GoalRegion, footprint: Footprint) -> NDArray[np.float64]:
+    """Returns (n, 2) centres of the cells of a mask around a footprint, metres."""
+    rows, cols = space.frame.index_of(footprint.bounds_m, region.distance_m)
     corner = np.array([rows.start, cols.start])
     return space.frame.to_metres(np.argwhere(inside[rows, cols]) + corner)
 
 
 def _spread(mask: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """(n, 2) the True cells that lie on the coarse grid of view points."""
+    """Returns (n, 2) the True cells on the coarse grid of view points."""
     cells = np.argwhere(mask)
     return cells[np.all(cells % VIEW_STEP_CELLS == VIEW_STEP_CELLS // 2, axis=1)]
 
 
 def _to_habitat(footprint: Footprint, views_m: NDArray[np.float64], rooms: Iterable[Room]) -> habitat.Json:
-    """One instance as an entry of Habitat's `goals_by_category`."""
+    """Returns an instance as an entry of Habitat's `goals_by_category`."""
     x0, y0, x1, y1 = footprint.bounds_m
     x, y, z = 0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * sum(footprint.z_m)
     room = next((room.name for room in rooms if room.contains(x, y)), None)

@@ -1,10 +1,10 @@
-"""Episodes of a split: which house, which goal, from where, and in which order.
+"""Splits: houses and their episodes (house, goal, start), in a fixed order.
 
-A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see `sim.episodes.habitat`):
-`val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. In place of house files it may have a list of
-recipes, `train/houses.json` (see `sim.housegen.recipes`); such houses are made when they are first needed.
+A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see
+`sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it may have a list of
+recipes, `train/houses.json` (see `sim.housegen.house_list`); such houses are generated on first use.
 
-`val/unreachable.json` names the things that no episode asks for since no place of the free space reaches them.
+`val/unreachable.json` names the objects that no episode asks for, because no place of the free space reaches them.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from typing import Any, TypeVar
 from sim.episodes import habitat
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
-from sim.housegen.recipes import HouseList, has_house_list, read_house_list
+from sim.housegen.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
 from sim.houses.load import load_house
-from sim.houses.sidecar import NOTHING_FIXED, Sidecar, read_sidecar, sidecar_path
+from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.paths import assets_dir
 
@@ -34,7 +34,7 @@ UNREACHABLE_FILE = "unreachable.json"
 
 @dataclass(frozen=True)
 class Episode:
-    """One search: start here in this house, find one of these."""
+    """One episode: the robot starts at a pose in a house and searches for an instance of a category."""
 
     episode_id: str
     house: str
@@ -42,24 +42,24 @@ class Episode:
     goal: str
     start: Pose
     shortest_path_m: float | None = None
-    """Geodesic distance from the start to the nearest place that satisfies success, as recorded; None: unknown."""
+    """Recorded geodesic distance from the start to the nearest place where a STOP succeeds; None: unknown."""
 
 
 @dataclass(frozen=True)
 class Split:
-    """Houses and the episodes in them, in the order in which they count."""
+    """Houses and their episodes, in the order of the split."""
 
     name: str
     version: str
-    """Raised when a house or an episode of the split changes, so that results name what they were made on."""
+    """Version of the split; it is increased when a house or an episode changes, and results record it."""
     sha256: str
-    """Over the house files, their sidecars and the episodes; of listed houses, over their checksums."""
+    """Hash over house files, their sidecars and the episodes; for listed houses, over their checksums."""
     house_paths: Mapping[str, Path]
-    """Where each house lies; a listed one perhaps not yet (`house_file`)."""
+    """File of each house; a listed house may not be generated yet (`house_file`)."""
     episodes: tuple[Episode, ...]
     labels_path: Path | None = None
     house_list: HouseList | None = None
-    """Makes the houses that are shipped as a list."""
+    """Generates the houses of a split that is shipped as a list."""
 
     @property
     def houses(self) -> tuple[str, ...]:
@@ -67,10 +67,10 @@ class Split:
         return tuple(self.house_paths)
 
     def house_file(self, name: str) -> Path:
-        """The file of the house of that name, made now if it is only listed.
+        """Returns the file of a house; a listed house is generated if necessary.
 
         Raises:
-            HouseError: there is none, or it cannot be made here.
+            HouseError: there is no such house, or it cannot be generated here.
         """
         if name not in self.house_paths:
             there_is = reprlib.repr(list(self.houses)) if len(self.houses) > 40 else ", ".join(self.houses)
@@ -78,28 +78,28 @@ class Split:
         return self.house_paths[name] if self.house_list is None else self.house_list.fetch(name)
 
     def load_house(self, name: str) -> House:
-        """The house of that name.
+        """Returns a house.
 
         Raises:
-            HouseError: there is none, it cannot be made here, or it breaks the house format.
+            HouseError: there is no such house, it cannot be generated here, or it violates the house format.
         """
         return load_house(self.house_file(name), labels_path=self.labels_path)
 
     def sidecar(self, house: str) -> Sidecar:
-        """What the file beside a house fixes; nothing where there is none, or where it holds the label rules.
+        """Returns the settings that the sidecar of a house fixes; none without a sidecar, or if it holds label rules.
 
         Raises:
-            HouseError: it breaks the form of `sim.houses.sidecar`.
+            HouseError: the file violates the format of `sim.houses.sidecar`.
         """
         path = self.house_paths[house]
         is_rules = self.labels_path is not None and self.labels_path.resolve() == sidecar_path(path).resolve()
-        return NOTHING_FIXED if is_rules else read_sidecar(path)
+        return EMPTY_SIDECAR if is_rules else read_sidecar(path)
 
     def episode(self, episode_id: str) -> Episode:
-        """The episode of that id.
+        """Returns the episode with an id.
 
         Raises:
-            EpisodeError: there is none.
+            EpisodeError: there is no such episode.
         """
         for episode in self.episodes:
             if episode.episode_id == episode_id:
@@ -110,15 +110,15 @@ class Split:
 
 
 def shipped_splits() -> tuple[str, ...]:
-    """Names of the splits that come with the package."""
+    """Returns the names of the splits that come with the package."""
     return tuple(sorted(folder.name for folder in assets_dir().iterdir() if _index_of(folder).is_file()))
 
 
 def load_split(name_or_path: str | Path) -> Split:
-    """A shipped split by name, or a folder laid out like one.
+    """Returns a shipped split by name, or the split in a folder with the same layout.
 
     Raises:
-        ConfigError: there is no such split or folder, or its files are not what they should be.
+        ConfigError: there is no such split or folder, or its files have another format.
     """
     shipped = shipped_splits()
     folder = assets_dir() / name_or_path if str(name_or_path) in shipped else Path(name_or_path)
@@ -135,7 +135,7 @@ def load_split(name_or_path: str | Path) -> Split:
 
 
 def one_house(path: str | Path, *, labels: str | Path | None = None) -> Split:
-    """A split of one house file and no episodes: they are drawn.
+    """Returns a split of one house file, without episodes.
 
     Raises:
         HouseError: there is no such file.
@@ -158,14 +158,14 @@ def write_split(
     version: str,
     unreachable: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Write the episodes of the houses in a folder beside them, in Habitat's layout; replaces those that are there.
+    """Writes the episodes of a split beside its houses, in Habitat's layout; existing episodes are replaced.
 
     Args:
         folder: the split's folder, which holds the house files; its name is the split's.
-        episodes: in the order in which they count; it is written down.
+        episodes: in the order of the split.
         goals_by_house: for each house, for each goal category, Habitat's goals (`sim.episodes.habitat`).
-        version: of the split.
-        unreachable: for each house, names of the goal instances that cannot be reached; None: nobody looked.
+        version: version of the split.
+        unreachable: for each house, names of the goal instances that cannot be reached; None: not computed.
     """
     for stale in (folder / "content").glob("*.json.gz"):
         stale.unlink()
@@ -182,10 +182,10 @@ def write_split(
 
 
 def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
-    """For each house of a split, the goal instances that cannot be reached; empty where nobody looked.
+    """Returns for each house of a split the goal instances that cannot be reached; empty if there is no such file.
 
     Raises:
-        ConfigError: the file is not what `write_split` writes.
+        ConfigError: the file has another format than that of `write_split`.
     """
     file = folder / UNREACHABLE_FILE
     if not file.is_file():
@@ -198,7 +198,7 @@ def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
 
 
 def _write_unreachable(file: Path, unreachable: Mapping[str, Sequence[str]]) -> None:
-    """One house a line, those without such things left out."""
+    """Writes a line for each house that has unreachable instances."""
     lines = ",".join(
         f"\n{json.dumps(house)}: {json.dumps(list(names))}" for house, names in unreachable.items() if names
     )
@@ -210,7 +210,7 @@ def _index_of(folder: Path) -> Path:
 
 
 def _read_split(folder: Path) -> Split:
-    """The split in a folder that has an index."""
+    """Returns the split in a folder that has an index."""
     index_file = _index_of(folder)
     index = _parsed(index_file, lambda content: content)
     episodes: dict[str, Episode] = {}
@@ -227,14 +227,14 @@ def _read_split(folder: Path) -> Split:
     if house_list and house_list.version != version:
         raise ConfigError(
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
-            "make both anew (tools/generate_houses.py, tools/make_episodes.py)."
+            "generate both again (tools/generate_houses.py, tools/make_episodes.py)."
         )
     sha256 = _sha256(house_list.sha256 if house_list else _file_sums(houses), ordered)
     return Split(folder.name, version, sha256, houses, ordered, house_list=house_list)
 
 
 def _parsed(file: Path, parse: Callable[[habitat.Json], T]) -> T:
-    """What `parse` makes of a file, or a sentence that names the file."""
+    """Returns the parsed content of a file; raises ConfigError, which names the file, where that fails."""
     try:
         return parse(habitat.read_json(file))
     except (AttributeError, KeyError, TypeError, ValueError, OSError, EOFError) as error:
@@ -247,14 +247,14 @@ def _episodes_of(content: habitat.Json) -> dict[str, Episode]:
 
 
 def _sha256(sums: Mapping[str, str], episodes: Sequence[Episode]) -> str:
-    """Over the names and checksums of the houses and over the episodes."""
+    """Returns a hash over the names and checksums of the houses and over the episodes."""
     digest = hashlib.sha256(json.dumps(dict(sums)).encode())
     digest.update(json.dumps([_to_habitat("", episode) for episode in episodes]).encode())
     return digest.hexdigest()
 
 
 def _file_sums(houses: Mapping[str, Path]) -> dict[str, str]:
-    """Checksum of each house file and its sidecar."""
+    """Returns the checksum of each house file with its sidecar."""
     return {name: hashlib.sha256(path.read_bytes() + _sidecar_bytes(path)).hexdigest() for name, path in houses.items()}
 
 

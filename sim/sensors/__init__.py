@@ -1,1 +1,3 @@
-"""What the robot senses: cameras with their rendering profiles, gps and compass."""
+"""Sensors of the robot and their noise; the camera and its rendering profiles.
+
+Imports the rooms robot, houses and geometry."""

@@ -1,4 +1,4 @@
-"""Floors and motors that differ from episode to episode; what a motion then becomes is left to physics."""
+"""Noise of the drive: floors and motors that differ from episode to episode; the motions follow from physics."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _BOUNDS = (0.01, 10.0)
 
 @dataclass(frozen=True, kw_only=True)
 class ActuationNoise:
-    """Ranges that an episode's conditions are drawn from; every default is off.
+    """Ranges of an episode's conditions; every default is off.
 
-    The driver closes its loop over the true pose, so mild values cost time and a centimetre sideways, while floors with
-    little grip let the robot slide past its mark or spin its wheels.
+    The driver controls the true pose, so moderate values cost time and a centimetre sideways; on floors with little
+    friction the robot slides beyond its target or its wheels spin.
     """
 
     floor_friction_scale: tuple[float, float] = (1.0, 1.0)
-    """Lowest and highest factor on the floors' friction, drawn uniformly in its logarithm."""
+    """Lowest and highest factor on the friction of the floors, sampled uniformly in its logarithm."""
     motor_gain_scale: tuple[float, float] = (1.0, 1.0)
-    """Lowest and highest factor on a motor's speed, drawn uniformly for each wheel."""
+    """Lowest and highest factor on the speed of a motor, sampled uniformly for each wheel."""
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -38,7 +38,7 @@ class ActuationNoise:
                 )
 
     def draw(self, rng: np.random.Generator) -> Conditions:
-        """An episode's conditions."""
+        """Returns the conditions of an episode."""
         if self == ActuationNoise():
             return NOMINAL
         low, high = self.floor_friction_scale

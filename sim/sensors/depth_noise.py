@@ -1,4 +1,4 @@
-"""What a real depth camera makes of a depth image: noise, steps, ragged edges and holes.
+"""Noise of the depth image of a real depth camera: axial noise, steps, ragged edges and holes.
 
 Sources (facts and formulas only):
 - Nguyen, Izadi, Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012: axial
@@ -8,12 +8,13 @@ Sources (facts and formulas only):
   normal jitter (0.5 px), then disparity, 1 / z, is rounded to whole steps, so that steps in z grow with z^2.
 - Keselman, Woodfill, Grunnet-Jepsen, Bhowmik, "Intel RealSense stereoscopic depth cameras", CVPR workshops 2017, and
   Intel's notes on tuning the D400: error s z^2 / (f b) for a disparity error of s px, focal length f px, baseline b m;
-  disparity in steps of 1/32 px; nothing where the two images do not match: beside edges, on glass, mirrors, metal.
+  disparity in steps of 1/32 px; no depth where the two images do not match: at edges, on glass, mirrors, metal.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -28,34 +29,34 @@ from sim.sensors.ranges import require_range
 
 @dataclass(frozen=True, kw_only=True)
 class DepthNoise:
-    """Noise of the depth image; every default is off. What saturates (5 m or farther) stays so, but for dropouts.
+    """Noise of the depth image; every default is off. Saturated pixels (5 m or farther) change by dropouts only.
 
-    Numbers of single pixels hold for the camera's own resolution.
+    Values in pixels are given at the camera's own resolution.
     """
 
     axial_m: float = 0.0
-    """Standard deviation along the optical axis at the distance `axial_from_m` ..."""
+    """Standard deviation along the optical axis at the distance `axial_from_m`."""
     axial_1_m: float = 0.0
-    """... which grows by this much times (z - axial_from_m)^2."""
+    """Growth of that standard deviation: this times (z - axial_from_m)^2 is added."""
     axial_from_m: float = 0.0
     step_1_m: float = 0.0
-    """Step of 1 / z: one of z is this times z^2 metres."""
+    """Step of 1 / z; a step of z is this times z^2 metres."""
     lateral_px: float = 0.0
-    """Standard deviation of the shift of each pixel, right and down, before it is rounded to whole pixels."""
+    """Standard deviation of the shift of each pixel, right and down, before rounding to whole pixels."""
     edge_dropout: float = 0.0
-    """Share of the pixels at depth edges that have no return."""
+    """Share of the pixels at depth edges without return."""
     edge_flying: float = 0.0
-    """Share of them that lie anywhere between the near and the far side."""
+    """Share of the pixels at depth edges that lie anywhere between the near and the far side."""
     edge_radius_px: int = 1
-    """Pixels this near to a jump in depth count as edge."""
+    """Pixels within this distance of a jump in depth are edge pixels."""
     edge_jump_1_m: float = 0.05
     """A jump is a difference in 1 / z of at least this: 5 cm at 1 m, 20 cm at 2 m; a pixel of disparity of a D435."""
     hole_share: float = 0.0
-    """Share without return of a surface whose gloss is 1 (see `sim.sensors.gloss`) ..."""
+    """Share of pixels without return on a surface whose gloss is 1 (see `sim.sensors.gloss`)."""
     hole_gloss: float = 0.3
-    """... which falls linearly to none at this gloss."""
+    """Gloss at which that share has fallen linearly to 0."""
     hole_patch_px: float = 8.0
-    """Size of holes."""
+    """Size of the holes."""
 
     def __post_init__(self) -> None:
         lengths = ("axial_m", "axial_1_m", "axial_from_m", "step_1_m", "lateral_px", "edge_jump_1_m", "hole_patch_px")
@@ -73,7 +74,7 @@ class DepthNoise:
             raise ConfigError(f"DepthNoise.hole_gloss must be below 1, got {self.hole_gloss}.")
 
     def axial_std_m(self, depth_m: NDArray[np.float32], out: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
-        """Standard deviation along the optical axis at these depths."""
+        """Returns the standard deviation along the optical axis at these depths, metres."""
         std_m = np.subtract(depth_m, np.float32(self.axial_from_m), out=out)
         std_m *= std_m
         std_m *= np.float32(self.axial_1_m)
@@ -81,23 +82,30 @@ class DepthNoise:
         return std_m
 
     def hole_shares(self, gloss: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Share without return of surfaces of this gloss."""
+        """Returns the share of pixels without return on surfaces of this gloss."""
         return self.hole_share * np.clip(
             (gloss.astype(np.float64) - self.hole_gloss) / (1.0 - self.hole_gloss), 0.0, 1.0
         )
 
+    def model(self, camera: CameraModel) -> NoisyDepth | None:
+        """Returns a new noise model for this camera; None where all noise is off."""
+        return None if self == DepthNoise() else NoisyDepth(self, camera)
+
 
 class NoisyDepth:
-    """Puts a `DepthNoise` on the images of one camera.
+    """Applies a `DepthNoise` to the images of one camera.
 
-    Works in memory of its own: fresh pages for every intermediate image would take longer than what is computed.
+    It reuses its intermediate images: to allocate them for every frame would take longer than the computation.
     """
+
+    sensors = ("depth",)
 
     def __init__(self, config: DepthNoise, camera: CameraModel) -> None:
         self._config, self._camera = config, camera
+        self.images = ("geom",) if config.hole_share > 0.0 else ()
         shape = (camera.height_px, camera.width_px)
         columns, rows = np.meshgrid(np.arange(shape[1], dtype=np.int16), np.arange(shape[0], dtype=np.int16))
-        self._pixels = np.stack([columns, rows], axis=2)  # (h, w, 2) where each pixel looks
+        self._pixels = np.stack([columns, rows], axis=2)  # (h, w, 2) column and row of each pixel
         self._shifts = np.empty((*shape, 2), np.int16)
         self._normal, self._near_m, self._far_m, self._work = (np.empty(shape, np.float32) for _ in range(4))
         self._lost, self._saturated, self._mask = (np.empty(shape, np.bool_) for _ in range(3))
@@ -105,50 +113,45 @@ class NoisyDepth:
         self._neighbours = np.ones((side, side), np.uint8)
         self._hole_level = np.full(1, -np.inf, np.float32)
 
-    @property
-    def needs_geoms(self) -> bool:
-        """Whether `apply` wants to know which geom each pixel shows."""
-        return self._config.hole_share > 0.0
-
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Take over the gloss (ngeom,) of the geoms that will be seen."""
-        shares = np.append(self._config.hole_shares(gloss), 0.0)  # the last one is number -1, nothing
+        """Starts an episode in a house whose geoms have this gloss (ngeom,)."""
+        shares = np.append(self._config.hole_shares(gloss), 0.0)  # the last entry is for id -1, no geom
         self._hole_level = ndtri(shares).astype(np.float32)
 
     def apply(
-        self, depth_m: NDArray[np.float32], geom: NDArray[np.int32] | None, rng: np.random.Generator
-    ) -> NDArray[np.float32]:
-        """The image (h, w) as the sensor gives it, in new memory; `geom` (h, w) where `needs_geoms`."""
-        camera = self._camera
+        self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
+    ) -> dict[str, NDArray]:
+        """Returns the depth image (h, w) with noise, in new memory."""
+        camera, depth_m = self._camera, readings["depth"]
         noisy_m = np.empty_like(depth_m)
         self._jitter(noisy_m, depth_m, rng)
         self._break_edges(noisy_m, depth_m, rng)
         lost = np.less_equal(noisy_m, 0.0, out=self._lost)
         saturated = np.greater_equal(noisy_m, camera.max_depth_m, out=self._saturated)
-        self._move_along_axis(noisy_m, rng)
+        self._add_axial_noise(noisy_m, rng)
         self._round(noisy_m)
         np.minimum(noisy_m, np.float32(camera.max_depth_m), out=noisy_m)
         np.copyto(noisy_m, camera.max_depth_m, where=saturated)
         lost |= np.less(noisy_m, camera.min_depth_m, out=self._mask)
-        if geom is not None:
-            self._add_holes(lost, geom, rng)
+        if self.images:
+            self._add_holes(lost, images["geom"], rng)
         np.copyto(noisy_m, 0.0, where=lost)
-        return noisy_m
+        return {"depth": noisy_m}
 
     def _jitter(self, noisy_m: NDArray[np.float32], depth_m: NDArray[np.float32], rng: np.random.Generator) -> None:
-        """Each pixel looks a little beside where it should."""
+        """Writes the depth image with each pixel taken from a randomly shifted place."""
         if self._config.lateral_px == 0.0:
             noisy_m[:] = depth_m
             return
         fill_shifts(rng, self._config.lateral_px, self._shifts)
         cv2.add(self._shifts, self._pixels, dst=self._shifts)
-        nothing = np.empty(0)  # the second map is for fractions of pixels
-        cv2.remap(depth_m, self._shifts, nothing, cv2.INTER_NEAREST, dst=noisy_m, borderMode=cv2.BORDER_REPLICATE)
+        no_fractions = np.empty(0)  # the second map holds fractions of pixels
+        cv2.remap(depth_m, self._shifts, no_fractions, cv2.INTER_NEAREST, dst=noisy_m, borderMode=cv2.BORDER_REPLICATE)
 
     def _break_edges(
         self, noisy_m: NDArray[np.float32], depth_m: NDArray[np.float32], rng: np.random.Generator
     ) -> None:
-        """Write dropouts and flying pixels where the true depth jumps."""
+        """Writes dropouts and flying pixels where the true depth jumps."""
         config = self._config
         if config.edge_dropout + config.edge_flying == 0.0:
             return
@@ -162,10 +165,11 @@ class NoisyDepth:
         pixels, near_m = noisy_m.reshape(-1), self._near_m.reshape(-1)
         pixels[edges[chance < config.edge_dropout]] = 0.0
         fly = edges[(chance >= config.edge_dropout) & (chance < config.edge_dropout + config.edge_flying)]
-        fly = fly[near_m[fly] > 0.0]  # between a surface and no return there is nothing to fly to
+        fly = fly[near_m[fly] > 0.0]  # a surface beside pixels without return has no flying pixels
         pixels[fly] = near_m[fly] + jump_m[fly] * rng.random(fly.size, np.float32)
 
-    def _move_along_axis(self, noisy_m: NDArray[np.float32], rng: np.random.Generator) -> None:
+    def _add_axial_noise(self, noisy_m: NDArray[np.float32], rng: np.random.Generator) -> None:
+        """Adds normal noise along the optical axis."""
         config = self._config
         if config.axial_m == config.axial_1_m == 0.0:
             return
@@ -174,7 +178,7 @@ class NoisyDepth:
         noisy_m += self._normal
 
     def _round(self, noisy_m: NDArray[np.float32]) -> None:
-        """Round 1 / z to whole steps."""
+        """Rounds 1 / z to whole steps."""
         step = np.float32(self._config.step_1_m)
         if step == 0.0:
             return
@@ -184,7 +188,7 @@ class NoisyDepth:
             np.divide(np.float32(1.0) / step, noisy_m, out=noisy_m)
 
     def _add_holes(self, lost: NDArray[np.bool_], geom: NDArray[np.int32], rng: np.random.Generator) -> None:
-        """Mark where a glossy or glass thing gives no return; in patches."""
+        """Marks patches without return on glossy and glass surfaces."""
         level = np.take(self._hole_level, geom, mode="wrap", out=self._work)
         if level.max() > -np.inf:
             field = smooth_normal(rng, lost.shape, self._config.hole_patch_px)

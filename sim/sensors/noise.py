@@ -1,7 +1,10 @@
-"""The noise of all sensors: one declared config, presets by name, and what puts it on observations.
+"""Noise of all sensors and of the drive: one configuration, presets by name, and what applies it to observations.
 
-Every part has a stream of random numbers of its own, all of them from the episode's one generator: an agent that also
-looks at `rgb` gets the same `depth` as one that does not.
+Every part has a random stream of its own, all of them from the episode's one generator: an agent that also observes
+`rgb` gets the same `depth` as one that does not.
+
+A new noise model is one file with its settings (`sim.sensors.sensor.NoiseSettings`), used as a further field of
+`NoiseConfig` or as the `noise` of a sensor that is passed to the environment.
 """
 
 from __future__ import annotations
@@ -18,14 +21,18 @@ from numpy.typing import NDArray
 from sim.interface import CameraModel, ConfigError
 from sim.robot.conditions import Conditions
 from sim.sensors.actuation_noise import ActuationNoise
-from sim.sensors.depth_noise import DepthNoise, NoisyDepth
-from sim.sensors.pose_noise import NoisyPose, PoseNoise
-from sim.sensors.rgb_noise import NoisyRgb, RgbNoise
+from sim.sensors.depth_noise import DepthNoise
+from sim.sensors.pose_noise import PoseNoise
+from sim.sensors.rgb_noise import RgbNoise
+from sim.sensors.sensor import NoiseModel, Sensor
 
 
 @dataclass(frozen=True, kw_only=True)
 class NoiseConfig:
-    """Noise of every sensor and of the drive; all of it off by default."""
+    """Noise of every sensor and of the drive; all of it is off by default.
+
+    The order of the fields is the order of the random streams: append new fields at the end.
+    """
 
     depth: DepthNoise = field(default_factory=DepthNoise)
     rgb: RgbNoise = field(default_factory=RgbNoise)
@@ -34,13 +41,13 @@ class NoiseConfig:
 
 
 _D435_FOCAL_BASELINE = 388.0 * 0.05
-"""px m: our camera's focal length times a D435's baseline; a disparity of s px is s / this in 1 / z."""
+"""px m: our camera's focal length times the baseline of a RealSense D435; s px of disparity are s / this in 1 / z."""
 
 NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
     {
         "none": NoiseConfig(),
-        # Depth error 0.08 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). Shares at edges, holes, and the
-        # numbers of the other sensors are of our choosing: a decent wheeled robot indoors.
+        # Depth error 0.08 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The shares at edges, the holes and
+        # the numbers of the other sensors are our choice for a good wheeled robot indoors.
         "realsense": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.001,
@@ -60,8 +67,8 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
             ),
             actuation=ActuationNoise(floor_friction_scale=(0.3, 1.1), motor_gain_scale=(0.9, 1.1)),
         ),
-        # A worn camera in bad light on a robot with slippery wheels: 2.5 times the depth error, 4.5 deg of drift after
-        # 500 actions.
+        # An old camera in poor light on a robot with slippery wheels: 2.5 times the depth error, and a compass drift
+        # of 4.5 deg after 500 actions.
         "harsh": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.003,
@@ -86,14 +93,14 @@ NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
         ),
     }
 )
-"""What `--noise` and `ObjectNavEnv(noise=...)` take by name."""
+"""The presets that `--noise` and `ObjectNavEnv(noise=...)` take by name."""
 
 
 def get_noise(name: str) -> NoiseConfig:
-    """The preset of that name.
+    """Returns the preset with this name.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such preset.
     """
     if name not in NOISE_PRESETS:
         raise ConfigError(f"Unknown noise '{name}'. There is: {', '.join(NOISE_PRESETS)}.")
@@ -101,13 +108,13 @@ def get_noise(name: str) -> NoiseConfig:
 
 
 def noise_from_dict(given: Mapping[str, Any] | str) -> NoiseConfig:
-    """Noise as a file has it: a preset's name, or `{"preset": "realsense", "depth": {"hole_share": 1.0}, ...}`.
+    """Returns the noise that a file declares: a preset's name, or `{"preset": "realsense", "depth": {...}, ...}`.
 
-    `preset` is `none` where it is left out; the other keys are the fields of `NoiseConfig`, each with the fields that
-    differ from the preset.
+    `preset` is `none` by default; the other keys are the fields of `NoiseConfig`, each with the fields that differ
+    from the preset.
 
     Raises:
-        ConfigError: an unknown preset, part or field, or a value that will not do.
+        ConfigError: an unknown preset, part or field, or a value that is not allowed.
     """
     if isinstance(given, str):
         return get_noise(given)
@@ -126,7 +133,7 @@ def noise_from_dict(given: Mapping[str, Any] | str) -> NoiseConfig:
 
 
 def _changed(part: str, config: Any, values: Any) -> Any:
-    """A part's config with these fields changed."""
+    """Returns the settings of one part with some fields changed."""
     if not isinstance(values, Mapping):
         raise ConfigError(f"Noise '{part}' must be an object of fields and values, got {values!r}.")
     names = [each.name for each in fields(config)]
@@ -139,36 +146,54 @@ def _changed(part: str, config: Any, values: Any) -> Any:
 
 
 class SensorNoise:
-    """Puts a `NoiseConfig` on the observations of one environment, episode by episode. What is off costs nothing."""
+    """Applies noise to the observations of one environment, episode by episode. Noise that is off costs nothing."""
 
-    def __init__(self, config: NoiseConfig, camera: CameraModel) -> None:
-        self.config = config
-        self._depth = NoisyDepth(config.depth, camera) if config.depth != DepthNoise() else None
-        self._rgb = NoisyRgb(config.rgb, camera) if config.rgb != RgbNoise() else None
-        self._pose = NoisyPose(config.pose) if config.pose != PoseNoise() else None
-        self._streams: dict[str, np.random.Generator] = {}
+    def __init__(self, config: NoiseConfig, camera: CameraModel, sensors: Sequence[Sensor]) -> None:
+        """Makes the noise models of the sensors in the observation.
 
-    def needs(self, sensors: Sequence[str]) -> tuple[str, ...]:
-        """Images that are wanted beside those of `sensors`."""
-        return ("geom",) if "depth" in sensors and self._depth is not None and self._depth.needs_geoms else ()
+        Args:
+            config: noise of the standard sensors and of the drive.
+            camera: camera of the images.
+            sensors: all sensors of the observation; their own noise is applied after that of `config`.
+        """
+        self._actuation = config.actuation
+        names = [each.name for each in fields(config)]
+        self._actuation_part = names.index("actuation")
+        parts = [getattr(config, name) for name in names] + [each.noise for each in sensors if each.noise is not None]
+        observed = {each.name for each in sensors}
+        self._models: list[NoiseModel | None] = []  # one for each part; None: off or not observed
+        for part in parts:
+            model = None if isinstance(part, ActuationNoise) else part.model(camera)
+            self._models.append(model if model is not None and observed.issuperset(model.sensors) else None)
+        self._streams: list[np.random.Generator] = []
+
+    @property
+    def images(self) -> tuple[str, ...]:
+        """Rendered images that the noise models need."""
+        return tuple(name for model in self._models if model is not None for name in model.images)
 
     def begin(self, rng: np.random.Generator, gloss: NDArray[np.float32]) -> Conditions:
-        """Start an episode whose noise all comes from `rng`, in a world of this gloss (ngeom,); returns its physics."""
-        parts = [each.name for each in fields(self.config)]
-        self._streams = dict(zip(parts, rng.spawn(len(parts)), strict=True))
-        if self._depth is not None:
-            self._depth.begin(gloss)
-        if self._pose is not None:
-            self._pose.begin()
-        return self.config.actuation.draw(self._streams["actuation"])
+        """Starts an episode and returns the conditions of its physics.
 
-    def apply(self, truth: Mapping[str, NDArray], images: Mapping[str, NDArray]) -> dict[str, NDArray]:
-        """An observation as the sensors give it; `images` holds what `needs` asked for. The truth is not changed."""
-        seen = dict(truth)
-        if self._depth is not None and "depth" in truth:
-            seen["depth"] = self._depth.apply(truth["depth"], images.get("geom"), self._streams["depth"])
-        if self._rgb is not None and "rgb" in truth:
-            seen["rgb"] = self._rgb.apply(truth["rgb"], self._streams["rgb"])
-        if self._pose is not None:
-            seen["gps"], seen["compass"] = self._pose.apply(truth["gps"], truth["compass"], self._streams["pose"])
-        return seen
+        Args:
+            rng: generator from which all noise of the episode comes.
+            gloss: (ngeom,) gloss of the world's geoms.
+        """
+        self._streams = rng.spawn(len(self._models))
+        for model in self._models:
+            if model is not None:
+                model.begin(gloss)
+        return self._actuation.draw(self._streams[self._actuation_part])
+
+    def apply(self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray]) -> dict[str, NDArray]:
+        """Returns an observation with noise; the true readings are not changed.
+
+        Args:
+            readings: true reading of each sensor by name.
+            images: rendered images, among them those of `images`.
+        """
+        noisy = dict(readings)
+        for model, rng in zip(self._models, self._streams, strict=True):
+            if model is not None:
+                noisy |= model.apply(noisy, images, rng)
+        return noisy

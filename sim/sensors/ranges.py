@@ -1,4 +1,4 @@
-"""Refuses values of a sensor's config that no sensor has."""
+"""Checks that the numbers of noise settings are in range."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from sim.errors import ConfigError
 
 
 def require_range(config: object, low: float, high: float, *names: str) -> None:
-    """Refuse fields of a config that are not numbers in [low, high].
+    """Checks that fields of a dataclass are finite numbers in [low, high].
 
     Raises:
-        ConfigError: naming the field, its bounds and what was given.
+        ConfigError: a field is not; the message names the field, its bounds and the value.
     """
     for name in names:
         value = getattr(config, name)

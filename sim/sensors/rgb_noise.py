@@ -1,12 +1,13 @@
-"""What a real colour camera makes of an image: wandering exposure, shot noise and read noise.
+"""Noise of the colour image of a real camera: varying exposure, shot noise and read noise.
 
 The model is that of the EMVA standard 1288: a pixel counts electrons, whose number is Poisson distributed, and reading
-them adds normal noise. The Poisson part is drawn from the normal distribution of the same mean and variance.
+them adds normal noise. The Poisson part is sampled from the normal distribution with the same mean and variance.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import cv2
@@ -25,7 +26,7 @@ class RgbNoise:
     gain_std: float = 0.0
     """Standard deviation of the gain of a whole frame about 1."""
     shot_electrons_1: float = 0.0
-    """Variance of the shot noise at full white, as a share of white squared: 1 / (electrons that white stands for)."""
+    """Variance of the shot noise at full white, relative to white squared: 1 / (number of electrons at white)."""
     read_std: float = 0.0
     """Standard deviation of the read noise, in grey levels of 255."""
 
@@ -33,17 +34,30 @@ class RgbNoise:
         require_range(self, 0.0, math.inf, "shot_electrons_1", "read_std")
         require_range(self, 0.0, 0.3, "gain_std")
 
+    def model(self, camera: CameraModel) -> NoisyRgb | None:
+        """Returns a new noise model for this camera; None where all noise is off."""
+        return None if self == RgbNoise() else NoisyRgb(self, camera)
+
 
 class NoisyRgb:
-    """Puts an `RgbNoise` on the images of one camera."""
+    """Applies an `RgbNoise` to the images of one camera."""
+
+    sensors = ("rgb",)
+    images = ()
 
     def __init__(self, config: RgbNoise, camera: CameraModel) -> None:
         self._config = config
         self._normal = np.empty((camera.height_px, camera.width_px, 3), np.float32)
 
-    def apply(self, rgb: NDArray[np.uint8], rng: np.random.Generator) -> NDArray[np.uint8]:
-        """The image (h, w, 3) as the sensor gives it, in new memory."""
-        config = self._config
+    def begin(self, gloss: NDArray[np.float32]) -> None:
+        """Starts an episode: nothing is kept between episodes."""
+
+    def apply(
+        self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
+    ) -> dict[str, NDArray]:
+        """Returns the colour image (h, w, 3) with noise, in new memory."""
+        del images
+        config, rgb = self._config, readings["rgb"]
         gain = max(0.0, 1.0 + config.gain_std * rng.standard_normal())
         mean = np.arange(256) * gain
         std = np.sqrt(mean * (255.0 * config.shot_electrons_1) + config.read_std**2)
@@ -51,4 +65,4 @@ class NoisyRgb:
         self._normal *= cv2.LUT(rgb, std.astype(np.float32))
         self._normal += cv2.LUT(rgb, mean.astype(np.float32))
         np.maximum(self._normal, 0.0, out=self._normal)
-        return np.asarray(cv2.convertScaleAbs(self._normal), np.uint8)  # rounds and stops at 255
+        return {"rgb": np.asarray(cv2.convertScaleAbs(self._normal), np.uint8)}  # rounds and stops at 255

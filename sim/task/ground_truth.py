@@ -1,7 +1,7 @@
-"""What is true of a house when an episode starts: where the robot fits, where a goal counts, how far that is.
+"""Facts about a house at the start of an episode: free space, places where a STOP succeeds, distances to them.
 
-Computed when first asked for and kept: every episode of a house starts from the same state. Things stand where the
-house's file puts them, so the answers do not hang on who played before.
+They are computed on first use and kept, because every episode of a house starts from the same state: objects are where
+the house file puts them, whatever episodes ran before.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from sim.errors import EpisodeError
 from sim.gl import mujoco
-from sim.interface import GOAL_CATEGORIES
+from sim.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.task.success import GoalRegion, Surroundings
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
@@ -25,14 +25,22 @@ class Target:
 
     region: GoalRegion
     reached: NDArray[np.bool_]  # (rows, cols) free cells at which a STOP succeeds
-    distance_m: NDArray[np.float32]  # (rows, cols) geodesic distance to the nearest of them; inf: no way
+    distance_m: NDArray[np.float32]  # (rows, cols) geodesic distance to the nearest of them; inf: no path
 
 
 class GroundTruth:
-    """Free space and goals of one world, for its task, its oracle and whoever makes episodes."""
+    """Free space and goals of one world, for its task, its oracle and the tools that make episodes.
 
-    def __init__(self, world: World) -> None:
+    Args:
+        world: the compiled house with its robot.
+        success: when a STOP succeeds.
+        camera: the robot's camera, whose height is that of the line of sight unless the rule has another.
+    """
+
+    def __init__(self, world: World, *, success: SuccessRule | None = None, camera: CameraModel | None = None) -> None:
         self.world = world
+        self.success = success or SuccessRule()
+        self._sight_height_m = self.success.sight_height_with(camera or CameraModel())
         self._at_rest = mujoco.MjData(world.model)
         mujoco.mj_kinematics(world.model, self._at_rest)
         self._spaces: dict[float, FreeSpace] = {}
@@ -40,38 +48,52 @@ class GroundTruth:
         self._targets: dict[tuple[str, float], Target] = {}
 
     def space(self, floor_z_m: float = 0.0) -> FreeSpace:
-        """Free space of the storey whose floor is at this height."""
+        """Returns the free space of the storey whose floor is at this height."""
         if floor_z_m not in self._spaces:
             world = self.world
             self._spaces[floor_z_m] = FreeSpace(
-                world.model, self._at_rest, world.labels, rooms=world.rooms, robot=world.robot, floor_z_m=floor_z_m
+                world.model,
+                self._at_rest,
+                world.labels,
+                rooms=world.rooms,
+                robot=world.robot,
+                rule=self.success,
+                floor_z_m=floor_z_m,
             )
         return self._spaces[floor_z_m]
 
     def target(self, goal: str, floor_z_m: float = 0.0) -> Target:
-        """Where a STOP for a goal succeeds on a storey, and how far that is from everywhere.
+        """Returns the places of a storey where a STOP for a goal succeeds, and the distance to them from everywhere.
 
-        A storey without an instance in a house that has one elsewhere gives no place and no way.
+        A storey without an instance, in a house that has one elsewhere, has no such place, and no path to one.
 
         Raises:
             EpisodeError: there is no such goal category, or the house has no instance of it.
         """
         if (goal, floor_z_m) not in self._targets:
-            space, region = self.space(floor_z_m), self._region(goal, floor_z_m, self._at_rest)
+            space, region = self.space(floor_z_m), self._existing(self.region(goal, floor_z_m))
             reached = region.mask(space)
             self._targets[goal, floor_z_m] = Target(region, reached, space.geodesic(reached))
         return self._targets[goal, floor_z_m]
 
+    def region(self, goal: str, floor_z_m: float = 0.0) -> GoalRegion:
+        """Returns the region of a storey where a STOP for a goal succeeds, with objects where the house file puts them.
+
+        Raises:
+            EpisodeError: there is no such goal category.
+        """
+        return self._region(goal, floor_z_m, self._at_rest)
+
     def goals(self) -> tuple[str, ...]:
-        """The goal categories that the house has an instance of, in the contract's order."""
+        """Returns the goal categories that the house has an instance of, in the contract's order."""
         return tuple(goal for goal in GOAL_CATEGORIES if self.world.labels.of_category(goal))
 
     def succeeds_now(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> bool:
-        """Whether a STOP at this place succeeds with things where they now are in the world."""
+        """Returns whether a STOP at this place succeeds, with objects where they are now in the world."""
         return self._region_now(goal, floor_z_m).succeeds(x_m, y_m)
 
     def nearest_now_m(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> float | None:
-        """Metres in plan to the nearest instance on a storey, walls ignored, with things where they now are.
+        """Returns the metres in plan to the nearest instance on a storey, walls ignored, objects where they are now.
 
         None where the storey has no instance.
         """
@@ -79,7 +101,7 @@ class GroundTruth:
 
     def _region_now(self, goal: str, floor_z_m: float) -> GoalRegion:
         if self._may_have_moved(goal):
-            return self._region(goal, floor_z_m, self.world.data)
+            return self._existing(self._region(goal, floor_z_m, self.world.data))
         return self.target(goal, floor_z_m).region
 
     def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
@@ -88,17 +110,29 @@ class GroundTruth:
         world = self.world
         if floor_z_m not in self._surroundings:
             self._surroundings[floor_z_m] = Surroundings.of(
-                world.model, self._at_rest, world.labels, floor_z_m=floor_z_m
+                world.model, self._at_rest, world.labels, sight_height_m=self._sight_height_m, floor_z_m=floor_z_m
             )
-        around = self._surroundings[floor_z_m]
-        region = GoalRegion(world.model, data, world.labels, goal, floor_z_m=floor_z_m, surroundings=around)
+        return GoalRegion(
+            world.model,
+            data,
+            world.labels,
+            goal,
+            surroundings=self._surroundings[floor_z_m],
+            success=self.success,
+            floor_z_m=floor_z_m,
+        )
+
+    def _existing(self, region: GoalRegion) -> GoalRegion:
+        """Returns the region; raises EpisodeError where no storey of the house has an instance."""
         if not region.exists:
             raise EpisodeError(
-                f"House '{world.house.name}' has no '{goal}'. It has: {', '.join(self.goals()) or 'no goal'}."
+                f"House '{self.world.house.name}' has no '{region.goal}'. "
+                f"It has: {', '.join(self.goals()) or 'no goal'}."
             )
         return region
 
     def _may_have_moved(self, goal: str) -> bool:
+        """Returns whether an instance of a category is on a body that can move."""
         model = self.world.model
         geoms = [geom for instance in self.world.labels.of_category(goal) for geom in instance.geom_ids]
         return bool(np.any(model.body_weldid[model.geom_bodyid[geoms]] != 0))

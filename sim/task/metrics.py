@@ -1,6 +1,6 @@
-"""The numbers of an episode, as pure functions (contract, section 2).
+"""Metrics of an episode as pure functions (contract, section 2).
 
-SPL is of Anderson et al. 2018 (arXiv:1807.06757), soft SPL as Habitat has it; distances are metres.
+SPL is that of Anderson et al. 2018 (arXiv:1807.06757), soft SPL that of Habitat; distances are in metres.
 """
 
 from __future__ import annotations
@@ -14,24 +14,24 @@ from sim.interface import MPCAT40_ID
 
 TRAPPED_WINDOW_STEPS = 100
 TRAPPED_RADIUS_M = 1.0
-"""A robot is trapped when it never gets this far from where a window of `TRAPPED_WINDOW_STEPS` began."""
+"""A robot is trapped if it never gets this far from its position at the start of a window of that many steps."""
 EXPLORED_SHARE = 0.008
-"""Share of a frame that the goal's true mask must cover for the goal to count as found by exploration."""
+"""Share of a frame that the goal's true mask must cover for GT exploration to be true."""
 
 
 def path_efficiency(shortest_path_m: float, path_length_m: float) -> float:
-    """Shortest over taken path, in [0, 1]; 1 for a robot that had no way to go and went none."""
+    """Returns the shortest over the taken path length, in [0, 1]; 1 where both are 0."""
     longer = max(shortest_path_m, path_length_m)
     return shortest_path_m / longer if longer > 0.0 else 1.0
 
 
 def spl(success: bool, shortest_path_m: float | None, path_length_m: float) -> float:
-    """Success weighted by path length; 0 where there was no way from the start."""
+    """Returns the success weighted by path length; 0 where there was no path from the start."""
     return path_efficiency(shortest_path_m, path_length_m) if success and shortest_path_m is not None else 0.0
 
 
 def soft_spl(start_distance_m: float | None, end_distance_m: float | None, path_length_m: float) -> float:
-    """The share of the way to the goal that was covered, weighted by path length; 0 where there is or was no way."""
+    """Returns the progress to the goal, in [0, 1], weighted by path length; 0 where there is or was no path."""
     if start_distance_m is None or end_distance_m is None:
         return 0.0
     if start_distance_m <= 0.0:
@@ -42,17 +42,12 @@ def soft_spl(start_distance_m: float | None, end_distance_m: float | None, path_
 
 
 def goal_share(semantic: NDArray[np.uint8], goal: str) -> float:
-    """Share of one ground-truth frame (h, w) that the goal's class covers, in [0, 1]."""
+    """Returns the share of one ground-truth frame (h, w) that the goal's class covers, in [0, 1]."""
     return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) / semantic.size
 
 
-def sees_goal(semantic: NDArray[np.uint8], goal: str) -> bool:
-    """Whether the goal's class covers enough of one ground-truth frame (h, w)."""
-    return goal_share(semantic, goal) >= EXPLORED_SHARE
-
-
 def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:
-    """Whether the last window of a walk, positions (n, 2) from its start on, never left the circle around its begin.
+    """Returns whether the last window of positions (n, 2) stays within `TRAPPED_RADIUS_M` of its first position.
 
     False while fewer than `TRAPPED_WINDOW_STEPS` steps were taken.
     """

@@ -1,42 +1,43 @@
-"""How an episode starts, what counts while it runs, and when it ends (contract, section 2)."""
+"""The ObjectNav task: start of an episode, its metrics while it runs, and its end (contract, section 2)."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, Action, ConfigError
+from sim.interface import Action, CameraModel
 from sim.robot.drive import Motion
 from sim.task import metrics
+from sim.task.config import TaskConfig
 from sim.task.failures import Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
 from sim.task.trajectory import Recorder, Trajectory
 from sim.world.world import World
 
 EndReason = Literal["stop", "max_steps"]
-_SURELY_OUTSIDE_M = 0.1
-"""A robot this far from the nearest cell that counts need not be tested exactly."""
+_EXACT_TEST_M = 0.1
+"""Farther than this from the nearest cell where a STOP succeeds, the exact test of success is left out."""
 
 
 @dataclass
 class _Record:
-    """What is known of the running episode."""
+    """State of the running episode."""
 
     goal: str
     start: Pose
     shortest_path_m: float | None
-    """None: no way to the goal, which is on another storey."""
+    """None: the goal is on another storey, there is no path to it."""
     positions_m: list[tuple[float, float]]
-    """Of the robot's centre, the start first."""
+    """Positions of the robot's centre, the start first."""
     recorder: Recorder
     distance_m: float | None
-    """From where the robot stands to the nearest place that satisfies success; None: no way."""
+    """Geodesic distance from the robot to the nearest place where a STOP succeeds; None: no path."""
     path_length_m: float = 0.0
     collisions: int = 0
     touches: int = 0
@@ -45,59 +46,62 @@ class _Record:
     success: bool = False
     end_reason: EndReason | None = None
     nearest_instance_m: float | None = None
-    """At the end; see `sim.task.trajectory`."""
+    """Set at the end; see `sim.task.trajectory`."""
     failure: Cause | None = None
 
 
 class Task:
-    """ObjectNav in one world: watches the motions and the true segmentation, and keeps the metrics.
+    """ObjectNav in one world: it computes the metrics from the motions and the true segmentation.
 
     Call `begin` after `World.reset`, `look` with the first frame, then `observe` after each motion.
+
+    Args:
+        world: the compiled house with its robot.
+        config: when a STOP succeeds, and the number of actions.
+        camera: the robot's camera; see `GroundTruth`.
     """
 
-    def __init__(self, world: World, *, max_steps: int = MAX_STEPS) -> None:
-        if max_steps < 1:
-            raise ConfigError(f"max_steps must be at least 1, got {max_steps}.")
-        self.truth = GroundTruth(world)
-        self.max_steps = max_steps
+    def __init__(self, world: World, config: TaskConfig | None = None, *, camera: CameraModel | None = None) -> None:
         self.world = world
+        self.config = config or TaskConfig()
+        self.truth = GroundTruth(world, success=self.config.success, camera=camera)
         self._record: _Record | None = None
 
     def begin(self, goal: str, start: Pose) -> None:
-        """Start an episode.
+        """Starts an episode.
 
-        A goal whose only instances are on another storey can be asked for, as Habitat's splits do, but not be reached:
-        its distances are None, its SPL 0. A goal that is on this storey and walled in is an episode gone wrong.
+        A goal whose only instances are on another storey is allowed, as in Habitat's splits, but cannot be reached:
+        its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
             EpisodeError: the goal is no goal category, is not in the house, or is on the storey of the start without
-                a way to it.
+                a path to it.
         """
         self._record = None
         shortest_path_m = self.distance_from(goal, start)
         on_storey = bool(self.truth.target(goal, start.floor_z_m).region.footprints)
         if shortest_path_m is None and on_storey:
-            raise self.no_way(goal, start)
+            raise self.unreachable_error(goal, start)
         recorder = Recorder(start, distance_m=shortest_path_m, goal_on_storey=on_storey)
         self._record = _Record(
             goal, start, shortest_path_m, [(start.x_m, start.y_m)], recorder, distance_m=shortest_path_m
         )
 
     def look(self, semantic: NDArray[np.uint8]) -> None:
-        """Note what one frame of ground-truth segmentation (h, w) shows."""
+        """Counts one frame of ground-truth segmentation (h, w)."""
         record, share = self._running, metrics.goal_share(semantic, self.goal)
         record.recorder.look(share)
         record.explored = record.explored or share >= metrics.EXPLORED_SHARE
 
     def observe(self, action: Action, motion: Motion, semantic: NDArray[np.uint8] | None = None) -> None:
-        """Count one action, carried out by the world, and the frame seen after it.
+        """Counts one action that the world has carried out, and the frame rendered after it.
 
         Raises:
             EpisodeError: the episode has not begun or is over.
         """
         record = self._running
         if record.end_reason is not None:
-            raise EpisodeError(f"The episode has ended ({record.end_reason}): begin another before the next action.")
+            raise EpisodeError(f"The episode has ended ({record.end_reason}): start another before the next action.")
         pose = self.world.pose
         record.positions_m.append((pose.x_m, pose.y_m))
         record.path_length_m += motion.displacement_m
@@ -112,7 +116,7 @@ class Task:
             self.look(semantic)
         if action == Action.STOP:
             self._end("stop")
-        elif self.num_steps >= self.max_steps:
+        elif self.num_steps >= self.config.max_steps:
             self._end("max_steps")
 
     @property
@@ -122,12 +126,12 @@ class Task:
 
     @property
     def start(self) -> Pose:
-        """Where the episode started."""
+        """Start pose of the episode."""
         return self._running.start
 
     @property
     def num_steps(self) -> int:
-        """Actions so far, STOP included."""
+        """Number of actions so far, STOP included."""
         return len(self._running.positions_m) - 1
 
     @property
@@ -137,7 +141,7 @@ class Task:
 
     @property
     def truncated(self) -> bool:
-        """Whether the steps are used up."""
+        """Whether the episode reached `max_steps`."""
         return self._running.end_reason == "max_steps"
 
     @property
@@ -147,26 +151,26 @@ class Task:
 
     @property
     def success(self) -> bool:
-        """Whether the agent called STOP where the goal counts as found."""
+        """Whether the agent called STOP where it succeeds."""
         return self._running.success
 
     def distance_from(self, goal: str, pose: Pose) -> float | None:
-        """Geodesic distance from a pose to the nearest place that satisfies success; None where there is no way."""
+        """Returns the geodesic distance from a pose to the nearest place where a STOP succeeds; None: no path."""
         target, space = self.truth.target(goal, pose.floor_z_m), self.truth.space(pose.floor_z_m)
         distance_m = space.distance_at(target.distance_m, pose.x_m, pose.y_m)
-        if distance_m < _SURELY_OUTSIDE_M and target.region.succeeds(pose.x_m, pose.y_m):
+        if distance_m < _EXACT_TEST_M and target.region.succeeds(pose.x_m, pose.y_m):
             return 0.0
         return distance_m if math.isfinite(distance_m) else None
 
-    def no_way(self, goal: str, start: Pose) -> EpisodeError:
-        """The error that says that a goal cannot be reached from a start."""
+    def unreachable_error(self, goal: str, start: Pose) -> EpisodeError:
+        """Returns the error for a goal that cannot be reached from a start."""
         return EpisodeError(
-            f"House '{self.world.house.name}': there is no way from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
-            f"where '{goal}' would count as found."
+            f"House '{self.world.house.name}': there is no path from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
+            f"where a STOP for '{goal}' succeeds."
         )
 
     def metrics(self) -> dict[str, Any]:
-        """The contract's metrics as they stand now; `failure` is None until the episode has failed."""
+        """Returns the contract's metrics so far; `failure` is None until the episode has failed."""
         record = self._running
         distance_m = record.distance_m
         return {
@@ -186,14 +190,14 @@ class Task:
         }
 
     def trajectory(self) -> Trajectory:
-        """What the episode was so far, step by step."""
+        """Returns the trajectory of the episode so far."""
         record = self._running
         return record.recorder.trajectory(
             success=record.success, end_reason=record.end_reason, nearest_instance_m=record.nearest_instance_m
         )
 
     def _end(self, reason: EndReason) -> None:
-        """The episode is over: say why it failed, if it did."""
+        """Ends the episode and computes the cause of a failure."""
         record, pose = self._running, self.world.pose
         record.end_reason = reason
         record.nearest_instance_m = self.truth.nearest_now_m(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
@@ -209,15 +213,6 @@ class Task:
         pose, record = self.world.pose, self._running
         if record.success:
             return 0.0
-        if abs(pose.floor_z_m - record.start.floor_z_m) >= self.world.rule.same_storey_m:
+        if abs(pose.floor_z_m - record.start.floor_z_m) >= self.config.success.same_storey_m:
             return None
         return self.distance_from(record.goal, pose)
-
-
-class Stage(Protocol):
-    """World and task of one house: what whoever knows the truth works with."""
-
-    @property
-    def world(self) -> World: ...  # noqa: D102
-    @property
-    def task(self) -> Task: ...  # noqa: D102

@@ -1,6 +1,6 @@
-"""What the world knows of one episode, step by step: kept while it runs, written with `--record`, read back.
+"""Trajectories: the true record of an episode, step by step; recorded, written with `--record`, read back.
 
-A file `trajectories/<episode_id>.npz` holds the arrays of a `Trajectory` and, as JSON in `about`, what names the
+A file `trajectories/<episode_id>.npz` holds the arrays of a `Trajectory` and, as JSON in `about`, the identity of the
 episode (agent, semantics, seed, house, goal, start, versions) and its scores. No pickle; 500 steps are about 10 KB.
 """
 
@@ -25,10 +25,10 @@ from sim.interface import Action, ConfigError
 from sim.robot.drive import Ended, Motion
 
 FORMAT = 1
-"""Raised when the arrays of a file change their meaning."""
+"""Version of the file format; it is increased when the arrays change their meaning."""
 FOLDER = "trajectories"
 ENDED: tuple[str, ...] = get_args(Ended)
-"""What the numbers of `Trajectory.ended` mean."""
+"""Meaning of the numbers in `Trajectory.ended`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -36,44 +36,44 @@ class Trajectory:
     """An episode of n actions; index i of the poses, shares and distances is the moment before action i."""
 
     poses: NDArray[np.float32]  # (n + 1, 4)
-    """x, y, yaw and height of the floor in the world; metres and radians."""
+    """x, y, yaw and floor height in the world; metres and radians."""
     actions: NDArray[np.uint8]  # (n,)
-    """Numbers of `sim.interface.Action`."""
+    """Values of `sim.interface.Action`."""
     ended: NDArray[np.uint8]  # (n,)
-    """Why each motion ended: index into `ENDED`."""
+    """Reason why each motion ended: index into `ENDED`."""
     collided: NDArray[np.bool_]  # (n,)
-    """A contact of the body stopped the motion."""
+    """True: a contact of the body stopped the motion."""
     touched: NDArray[np.bool_]  # (n,)
-    """The body touched something, whether that stopped it or not."""
+    """True: the body touched something, whether or not that stopped the motion."""
     goal_share: NDArray[np.float32]  # (n + 1,)
-    """Share of the frame that the goal's true mask covers, in [0, 1]; nan: no frame was looked at."""
+    """Share of the frame that the goal's true mask covers, in [0, 1]; nan: there was no frame."""
     distance_m: NDArray[np.float32]  # (n + 1,)
-    """Geodesic distance to the nearest place where a STOP succeeds; nan: no way."""
+    """Geodesic distance to the nearest place where a STOP succeeds; nan: no path."""
     contacts: NDArray[np.float32]  # (m, 3)
-    """What stopped a motion: number of the action, x and y of the contact in the world, metres."""
+    """Contacts that stopped a motion: number of the action, x and y in the world, metres."""
     goal_on_storey: bool
-    """Whether an instance stands on the storey of the start."""
+    """Whether the storey of the start has an instance."""
     nearest_instance_m: float | None
-    """Metres in plan from where the episode ended to the nearest instance, walls ignored; None: storey has none."""
+    """Metres in plan from the end of the episode to the nearest instance, walls ignored; None: storey has none."""
     success: bool
     end_reason: str | None
-    """`stop`, `max_steps`, `error`; None: the episode still runs."""
+    """`stop`, `max_steps` or `error`; None: the episode still runs."""
     about: Mapping[str, Any] = field(default_factory=dict)
-    """What names the episode, and its scores; JSON's types."""
+    """Identity of the episode, and its scores; JSON types."""
 
     @property
     def num_steps(self) -> int:
-        """Actions, STOP included."""
+        """Number of actions, STOP included."""
         return len(self.actions)
 
     @property
     def positions_m(self) -> NDArray[np.float32]:
-        """(n + 1, 2) x and y of the robot's centre."""
+        """x and y of the robot's centre, (n + 1, 2)."""
         return self.poses[:, :2]
 
     @property
     def moved_m(self) -> NDArray[np.float64]:
-        """(n,) displacement of each action in plan."""
+        """Displacement of each action in plan, (n,) metres."""
         return np.hypot(*np.diff(self.positions_m.astype(np.float64), axis=0).T)
 
 
@@ -86,7 +86,7 @@ _ARRAYS: Mapping[str, tuple[type, int, int]] = {
     "goal_share": (np.float32, 1, 1),
     "distance_m": (np.float32, 1, 1),
 }
-"""Type, number of axes, and how many entries there are more than actions."""
+"""Dtype, number of axes, and number of entries beyond the number of actions."""
 _SCALARS = ("goal_on_storey", "nearest_instance_m", "success", "end_reason")
 
 
@@ -101,11 +101,11 @@ class Recorder:
         self._motions: list[Motion] = []
 
     def look(self, goal_share: float) -> None:
-        """The share of the goal in the frame seen from where the robot stands."""
+        """Records the share of the goal in the frame at the robot's current pose."""
         self._shares[-1] = goal_share
 
     def move(self, motion: Motion, pose: Pose, distance_m: float | None) -> None:
-        """One action was carried out."""
+        """Records one action that was carried out."""
         self._motions.append(motion)
         self._poses.append((pose.x_m, pose.y_m, pose.yaw_rad, pose.floor_z_m))
         self._shares.append(np.nan)
@@ -114,7 +114,7 @@ class Recorder:
     def trajectory(
         self, *, success: bool = False, end_reason: str | None = None, nearest_instance_m: float | None = None
     ) -> Trajectory:
-        """All of it so far."""
+        """Returns the trajectory so far."""
         stops = [
             (step, *contact.position_m[:2])
             for step, motion in enumerate(self._motions)
@@ -138,20 +138,20 @@ class Recorder:
 
 
 def trajectory_file(run: Path, episode_id: str) -> Path:
-    """Where a run keeps the trajectory of an episode; what no file name may hold is written as %xx."""
+    """Returns the file of an episode's trajectory in a run; characters that file names cannot have become %xx."""
     return run / FOLDER / f"{urllib.parse.quote(episode_id, safe=' ')}.npz"
 
 
 def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any]) -> None:
-    """Write one file, whole or not at all.
+    """Writes one file, completely or not at all.
 
     Args:
-        file: where to; its folder is made.
+        file: its folder is created.
         trajectory: of one episode.
-        about: what names the episode and its scores, in JSON's types.
+        about: identity of the episode and its scores, JSON types.
 
     Raises:
-        ConfigError: nothing can be written there.
+        ConfigError: the file cannot be written.
     """
     scalars = {name: getattr(trajectory, name) for name in _SCALARS}
     text = json.dumps({"format": FORMAT, "scalars": scalars, "about": dict(about)}, allow_nan=False)
@@ -164,27 +164,27 @@ def write_trajectory(file: Path, trajectory: Trajectory, about: Mapping[str, Any
         part.replace(file)
     except OSError as error:
         raise ConfigError(f"Cannot write the trajectory '{file}': {error.strerror}.") from None
-    finally:  # of a write that failed; a whole one is not called that any more
+    finally:  # the partial file is left only by a write that failed
         with contextlib.suppress(OSError):
             part.unlink()
 
 
 def read_trajectory(file: Path) -> Trajectory:
-    """The trajectory in a file.
+    """Returns the trajectory in a file.
 
     Raises:
-        ConfigError: there is no such file, or it holds something else.
+        ConfigError: there is no such file, or it is no trajectory.
     """
     if not file.is_file():
         raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
     try:
         with np.load(file, allow_pickle=False) as content:
             arrays = {name: content[name] for name in (*_ARRAYS, "contacts")}
-            head = json.loads(content["about"].tobytes())
-        if head["format"] != FORMAT:
-            raise ValueError(f"its format is {head['format']}, this program reads {FORMAT}")
-        scalars = {name: head["scalars"][name] for name in _SCALARS}
-        trajectory = Trajectory(**arrays, **scalars, about=head["about"])
+            header = json.loads(content["about"].tobytes())
+        if header["format"] != FORMAT:
+            raise ValueError(f"its format is {header['format']}, this program reads {FORMAT}")
+        scalars = {name: header["scalars"][name] for name in _SCALARS}
+        trajectory = Trajectory(**arrays, **scalars, about=header["about"])
         _check(trajectory)
     except KeyError as error:
         raise ConfigError(f"'{file}' is no trajectory: it has no {error.args[0]!r}.") from None
@@ -194,7 +194,7 @@ def read_trajectory(file: Path) -> Trajectory:
 
 
 def _check(trajectory: Trajectory) -> None:
-    """Raise ValueError where arrays do not fit one another."""
+    """Raises ValueError where the arrays do not fit each other."""
     for name, (kind, axes, more) in _ARRAYS.items():
         array = getattr(trajectory, name)
         if array.dtype != kind or array.ndim != axes or len(array) != trajectory.num_steps + more:
@@ -202,7 +202,7 @@ def _check(trajectory: Trajectory) -> None:
     if trajectory.poses.shape[1:] != (4,) or trajectory.contacts.shape[1:] != (3,):
         raise ValueError(f"poses are {trajectory.poses.shape}, contacts {trajectory.contacts.shape}")
     if np.any(trajectory.actions >= len(Action)) or np.any(trajectory.ended >= len(ENDED)):
-        raise ValueError("an action or the end of one has a number that has no meaning")
+        raise ValueError("an action or the reason of its end is out of range")
 
 
 def _or_nan(value: float | None) -> float:

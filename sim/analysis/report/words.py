@@ -1,35 +1,41 @@
-"""An episode in words: how it ended and why, and the moments worth a look on its way.
+"""Describes an episode in words: how and why it ended, and its decisive moments.
 
-The causes are those of `sim.task.failures`; here its rules are said with the numbers of the one episode.
+The causes are those of `sim.task.failures`; the sentences give the numbers of the episode to which the rules applied.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from sim.analysis.comparison import Line
-from sim.task.failures import AT_IT_M, LOOP_STEPS, cause_of_failure, first_looping_step, first_trapped_step
+from sim.task.failures import (
+    LOOP_STEPS,
+    STOPPED_AT_GOAL_M,
+    cause_of_failure,
+    first_looping_step,
+    first_trapped_step,
+)
 from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
 from sim.task.trajectory import Trajectory
 
 MEANING: Mapping[str, str] = {
-    "false_detection": "The agent called STOP at something that was not the goal.",
-    "missed_detection": "The goal was in view and the agent went on without it.",
-    "loop": f"{LOOP_STEPS} steps of driving over ground where it had been before.",
-    "trapped": f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one place.",
+    "false_detection": "The agent called STOP at an object that is not the goal.",
+    "missed_detection": "The goal was in view and the agent did not go to it.",
+    "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
+    "trapped": f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position.",
     "explore": "The goal never came into view before the steps ran out.",
     "stairs": "The goal is on another storey.",
-    "misc": "None of the other rules: stopped short of the goal, ran out of steps on the way, or broke.",
+    "misc": "No other rule applies: stopped short of the goal, ran out of steps on the path to it, or an error.",
 }
-"""What each cause of a failure means, in a sentence (the rules are in `sim.task.failures`)."""
+"""The meaning of each cause of failure (the rules are in `sim.task.failures`)."""
 ENDS: Mapping[str, str] = {
     "stop": "called STOP",
     "max_steps": "the steps ran out",
-    "error": "the episode broke",
+    "error": "the episode ended with an error",
 }
 
 
@@ -38,44 +44,44 @@ class Mark:
     """A moment of an episode, or a span of steps."""
 
     kind: str
-    """`seen`, `nearest`, `there`, `trapped`, `loop` or `end`."""
+    """`seen`, `nearest`, `at_goal`, `trapped`, `loop` or `end`."""
     step: int
     until: int | None
-    """Last step of a span; None: a moment."""
+    """Last step of a span; None for a moment."""
     words: str
 
 
 def outcome(line: Line) -> str:
-    """`found`, the cause of the failure, `error`, or `failed` where no cause was written down."""
+    """Returns `found`, the cause of the failure, `error`, or `failed` where no cause was recorded."""
     if line.get("end_reason") == "error":
         return "error"
     return "found" if line["success"] else str(line.get("failure") or "failed")
 
 
 def explain(line: Line, trajectory: Trajectory | None) -> str:
-    """Why the episode ended as it did: a few sentences, with the numbers of the trajectory where there is one."""
+    """Returns a few sentences on why the episode ended as it did, with numbers of the trajectory if there is one."""
     result = outcome(line)
     if result == "error":
-        return f"The episode broke: {line.get('error') or 'no reason was written down'}"
+        return f"The episode ended with an error: {line.get('error') or 'no reason was recorded'}"
     if trajectory is None:
-        return "Found." if result == "found" else f"Not found. {MEANING.get(result, 'No cause was written down.')}"
-    sentences = [_reason(result, line, trajectory)]
-    today = cause_of_failure(trajectory) if trajectory.end_reason is not None else None
-    if not trajectory.success and today is not None and today != result:
-        sentences.append(f"By the rules of the code that wrote this report the cause would be {_plain(today)}.")
+        return "Found." if result == "found" else f"Not found. {MEANING.get(result, 'No cause was recorded.')}"
+    reason = _REASONS.get(result, _other_reason)
+    sentences = [reason(line, trajectory).strip()]
+    current = cause_of_failure(trajectory) if trajectory.end_reason is not None else None
+    if not trajectory.success and current is not None and current != result:
+        sentences.append(f"By the rules of the code that wrote this report the cause is {_plain(current)}.")
     return " ".join(sentences)
 
 
 def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
-    """The moments worth a look, in the order of their steps; the end is always among them."""
-    goal, last = _plain(str(line["goal"])), trajectory.num_steps
+    """Returns the decisive moments in the order of their steps; the end is always among them."""
+    goal, last = _goal(line), trajectory.num_steps
     found: list[Mark] = []
-    seen = _seen(trajectory)
+    seen, at_goal = _seen(trajectory), _at_goal(trajectory)
     if len(seen):
         found.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
-    there = _there(trajectory)
-    if len(there) and not trajectory.success:
-        found.append(Mark("there", int(there[0]), None, "stands where a STOP would count"))
+    if len(at_goal) and not trajectory.success:
+        found.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
     elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
         found.append(Mark("nearest", nearest[0], None, f"nearest to the goal, {nearest[1]:.1f} m to go"))
     trapped, looping = first_trapped_step(trajectory.positions_m), first_looping_step(trajectory)
@@ -84,89 +90,127 @@ def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
         found.append(Mark("trapped", trapped, until, f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m"))
     if looping is not None:
         until = looping + LOOP_STEPS
-        found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over old ground"))
-    found.append(Mark("end", last, None, _the_end(line, trajectory)))
+        found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
+    found.append(Mark("end", last, None, _end(line, trajectory)))
     return sorted(found, key=lambda mark: mark.step)
 
 
-def _reason(result: str, line: Line, trajectory: Trajectory) -> str:
-    goal, seen = _plain(str(line["goal"])), _seen(trajectory)
-    sight = f"The {goal} was in view from step {seen[0]} on, in {len(seen)} frames." if len(seen) else ""
-    never = f"The {goal} never covered {100 * EXPLORED_SHARE:g} % of a frame"
-    driven = f"{float(trajectory.moved_m.sum()):.1f} m"
-    if result == "found":
-        return f"Found: stopped after {trajectory.num_steps} steps and {driven}{_against_shortest(line)}."
-    if result == "false_detection":
-        where = _instance_away(goal, trajectory)
-        return f"Called STOP at step {trajectory.num_steps}: {where}. {sight or never + '.'}"
-    if result == "missed_detection":
-        there = _there(trajectory)
-        if len(there):
-            return f"{sight} At step {there[0]} a STOP would have counted, and it drove on."
-        return f"{sight} It drove on, {driven} in all, and did not go there."
-    if result == "trapped":
-        step = first_trapped_step(trajectory.positions_m)
-        stayed = f"stayed within {TRAPPED_RADIUS_M:g} m for {TRAPPED_WINDOW_STEPS} steps"
-        return f"From step {step} on it {stayed}. {sight or never + '.'}"
-    if result == "loop":
-        return f"{_loop_in_words(trajectory)} {sight or never + '.'}"
-    if result == "explore":
-        nearest = _nearest(trajectory)
-        near = f"; the nearest it came was {nearest[1]:.1f} m, at step {nearest[0]}" if nearest else ""
-        return f"{never} in {trajectory.num_steps} steps and {driven}{near}."
-    if result == "stairs":
-        return f"No {goal} is on the storey where the episode starts."
-    if result == "misc" and trajectory.end_reason == "stop":
-        return f"Called STOP at step {trajectory.num_steps} short of it: {_instance_away(goal, trajectory)}. {sight}"
-    return f"{sight or never + '.'} {_the_end(line, trajectory).capitalize()}."
-
-
-def _loop_in_words(trajectory: Trajectory) -> str:
-    step = first_looping_step(trajectory)
-    if step is None:  # judged by rules of another version
-        return "It drove in a loop."
-    driven_m = float(trajectory.moved_m[step : step + LOOP_STEPS].sum())
-    return f"From step {step} on it drove {driven_m:.1f} m in {LOOP_STEPS} steps, nearly all of it over old ground."
-
-
-def _against_shortest(line: Line) -> str:
+def _found(line: Line, trajectory: Trajectory) -> str:
     shortest_m = line.get("shortest_path")
-    return f"; the shortest way is {shortest_m:.1f} m" if shortest_m is not None else ""
+    shortest = f"; the shortest path is {shortest_m:.1f} m" if shortest_m is not None else ""
+    return f"Found: stopped after {trajectory.num_steps} steps and {_driven(trajectory)}{shortest}."
 
 
-def _instance_away(goal: str, trajectory: Trajectory) -> str:
+def _false_detection(line: Line, trajectory: Trajectory) -> str:
+    distance = _distance_to_instance(_goal(line), trajectory)
+    return f"Called STOP at step {trajectory.num_steps}: {distance}. {_view(line, trajectory)}"
+
+
+def _missed_detection(line: Line, trajectory: Trajectory) -> str:
+    at_goal = _at_goal(trajectory)
+    if len(at_goal):
+        return f"{_view(line, trajectory)} At step {at_goal[0]} a STOP would have succeeded, but the agent drove on."
+    return f"{_view(line, trajectory)} The robot drove {_driven(trajectory)} in all and did not go there."
+
+
+def _trapped(line: Line, trajectory: Trajectory) -> str:
+    step = first_trapped_step(trajectory.positions_m)
+    stayed = f"the robot stayed within {TRAPPED_RADIUS_M:g} m for {TRAPPED_WINDOW_STEPS} steps"
+    return f"From step {step} on {stayed}. {_view(line, trajectory)}"
+
+
+def _loop(line: Line, trajectory: Trajectory) -> str:
+    step = first_looping_step(trajectory)
+    if step is None:  # the cause comes from rules of another version
+        return f"The robot drove in a loop. {_view(line, trajectory)}"
+    driven_m = float(trajectory.moved_m[step : step + LOOP_STEPS].sum())
+    driven = f"the robot drove {driven_m:.1f} m in {LOOP_STEPS} steps, nearly all of it over visited ground"
+    return f"From step {step} on {driven}. {_view(line, trajectory)}"
+
+
+def _explore(line: Line, trajectory: Trajectory) -> str:
+    nearest = _nearest(trajectory)
+    near = f"; its smallest distance was {nearest[1]:.1f} m, at step {nearest[0]}" if nearest else ""
+    return f"{_never_seen(line)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
+
+
+def _stairs(line: Line, _: Trajectory) -> str:
+    return f"No {_goal(line)} is on the storey where the episode starts."
+
+
+def _other_reason(line: Line, trajectory: Trajectory) -> str:
+    if trajectory.end_reason == "stop":
+        distance = _distance_to_instance(_goal(line), trajectory)
+        seen = _view(line, trajectory) if len(_seen(trajectory)) else ""
+        return f"Called STOP at step {trajectory.num_steps} short of the goal: {distance}. {seen}"
+    return f"{_view(line, trajectory)} {_end(line, trajectory).capitalize()}."
+
+
+_REASONS: Mapping[str, Callable[[Line, Trajectory], str]] = {
+    "found": _found,
+    "false_detection": _false_detection,
+    "missed_detection": _missed_detection,
+    "trapped": _trapped,
+    "loop": _loop,
+    "explore": _explore,
+    "stairs": _stairs,
+}
+"""For each outcome the function that describes it; the others are described by `_other_reason`."""
+
+
+def _view(line: Line, trajectory: Trajectory) -> str:
+    """Returns a sentence on when the goal was in view."""
+    seen = _seen(trajectory)
+    if not len(seen):
+        return f"{_never_seen(line)}."
+    return f"The {_goal(line)} was in view from step {seen[0]} on, in {len(seen)} frames."
+
+
+def _never_seen(line: Line) -> str:
+    return f"The {_goal(line)} never covered {100 * EXPLORED_SHARE:g} % of a frame"
+
+
+def _driven(trajectory: Trajectory) -> str:
+    return f"{float(trajectory.moved_m.sum()):.1f} m"
+
+
+def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None:
         return f"no {goal} is on this storey"
-    beyond = f", more than the {AT_IT_M:g} m that could be meant" if nearest_m > AT_IT_M else ""
-    return f"the nearest {goal} is {nearest_m:.1f} m away{beyond}"
+    limit = f", which is more than {STOPPED_AT_GOAL_M:g} m" if nearest_m > STOPPED_AT_GOAL_M else ""
+    return f"the nearest {goal} is {nearest_m:.1f} m away{limit}"
 
 
-def _the_end(line: Line, trajectory: Trajectory) -> str:
+def _end(line: Line, trajectory: Trajectory) -> str:
     end = ENDS.get(str(trajectory.end_reason), "the file ends here")
     if trajectory.success:
-        return f"{end} where it counts"
+        return f"{end} at the goal"
     left_m = line.get("distance_to_goal")
-    return f"{end}, {left_m:.1f} m to go" if left_m is not None else f"{end}, no way to the goal from here"
+    return f"{end}, {left_m:.1f} m to go" if left_m is not None else f"{end}, no path to the goal from here"
 
 
 def _seen(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Steps at which the goal was in view."""
+    """Returns the steps at which the goal was in view."""
     return np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
 
 
-def _there(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Steps at which a STOP would have counted, from the first sight of the goal on; all where it was never seen."""
-    there, seen = np.flatnonzero(trajectory.distance_m <= 0.0), _seen(trajectory)
-    return there[there >= seen[0]] if len(seen) else there
+def _at_goal(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Returns the steps at which a STOP would have succeeded, from the first view of the goal on if there is one."""
+    at_goal, seen = np.flatnonzero(trajectory.distance_m <= 0.0), _seen(trajectory)
+    return at_goal[at_goal >= seen[0]] if len(seen) else at_goal
 
 
 def _nearest(trajectory: Trajectory) -> tuple[int, float] | None:
-    """The step at which the goal was nearest, and how near; None where there was never a way."""
+    """Returns the step with the smallest distance to the goal and the distance; None if there was never a path."""
     if not np.isfinite(trajectory.distance_m).any():
         return None
     step = int(np.nanargmin(trajectory.distance_m))
     return step, float(trajectory.distance_m[step])
+
+
+def _goal(line: Line) -> str:
+    return _plain(str(line["goal"]))
 
 
 def _plain(name: str) -> str:

@@ -1,4 +1,4 @@
-"""The noisy detector: its mistakes come as often as its config says, and last as long."""
+"""The noisy detector: rates and duration of its errors are those of its configuration."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 
 from sim import run
 from sim.detectors.confusions import CONFUSIONS
-from sim.detectors.noisy import NoisyConfig, NoisySegmenter, Seen, Things
+from sim.detectors.noisy import Classification, LabelledObjects, NoisyConfig, NoisySegmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, Action, ConfigError
@@ -19,7 +19,7 @@ from tests.helpers.worlds import room, with_box
 
 COUNT = 6000
 LARGE = np.full(COUNT, 0.2)
-"""A share of the frame at which nothing is missed for its size."""
+"""A share of the frame at which no object is missed because of its size."""
 FLAWLESS = NoisyConfig(
     lookalike_share=0.0,
     mistake_rate=0.0,
@@ -31,49 +31,51 @@ FLAWLESS = NoisyConfig(
 )
 
 
-def things(category: str, count: int = COUNT) -> Things:
+def objects(category: str, count: int = COUNT) -> LabelledObjects:
     names = [f"{category}_{i:05d}" for i in range(count)]
-    return Things.named(names, [category] * count, np.zeros((count, 2)), np.arange(count))
+    return LabelledObjects.named(names, [category] * count, np.zeros((count, 2)), np.arange(count))
 
 
-def seen(config: NoisyConfig, of: Things, *, share=LARGE, eye=(2.0, 0.5), seed: int = 1, frame: int = 0) -> Seen:
-    segmenter = NoisySegmenter(None, config)  # type: ignore[arg-type] # `see` asks nothing of an episode
-    return segmenter.see(of, share, eye, seed, np.random.default_rng([seed, frame]))
+def seen(
+    config: NoisyConfig, of: LabelledObjects, *, share=LARGE, eye=(2.0, 0.5), seed: int = 1, frame: int = 0
+) -> Classification:
+    segmenter = NoisySegmenter(None, config)  # type: ignore[arg-type] # `classify` does not read the episode
+    return segmenter.classify(of, share, eye, seed, np.random.default_rng([seed, frame]))
 
 
 def near(rate: float) -> float:
-    """Four standard deviations of a share of `COUNT`."""
+    """Returns four standard deviations of a share of `COUNT`."""
     return 4.0 * np.sqrt(rate * (1.0 - rate) / COUNT) + 1e-9
 
 
 def test_views_are_mistaken_as_often_as_the_rates_say():
     config = replace(FLAWLESS, lookalike_share=0.3, lookalike_rate=0.5, mistake_rate=0.1)
-    mistaken = (seen(config, things("chair")).first != MPCAT40_ID["chair"]).mean()
+    mistaken = (seen(config, objects("chair")).first != MPCAT40_ID["chair"]).mean()
     expected = 0.3 * 0.5 + 0.7 * 0.1
     assert mistaken == pytest.approx(expected, abs=near(expected))
 
 
-def test_a_row_that_sums_to_less_is_mistaken_less_often():
+def test_a_row_that_sums_to_less_than_one_reduces_the_error_rate():
     config = replace(FLAWLESS, mistake_rate=0.5)
     for category in ("toilet", "door", "plant"):
         expected = 0.5 * sum(CONFUSIONS[category].values())
-        mistaken = (seen(config, things(category)).first != MPCAT40_ID[category]).mean()
+        mistaken = (seen(config, objects(category)).first != MPCAT40_ID[category]).mean()
         assert mistaken == pytest.approx(expected, abs=near(expected))
 
 
-def test_mistakes_are_divided_as_the_table_says():
-    first = seen(replace(FLAWLESS, mistake_rate=1.0), things("sofa")).first
+def test_errors_have_the_shares_of_the_table():
+    first = seen(replace(FLAWLESS, mistake_rate=1.0), objects("sofa")).first
     for name, share in CONFUSIONS["sofa"].items():
         assert (first == MPCAT40_ID[name]).mean() == pytest.approx(share, abs=near(share))
 
 
-def test_what_has_no_row_is_never_mistaken():
+def test_a_category_without_a_row_has_no_errors():
     config = replace(FLAWLESS, mistake_rate=1.0, flicker_rate=1.0, lookalike_share=1.0)
-    assert (seen(config, things("wall")).first == MPCAT40_ID["wall"]).all()
+    assert (seen(config, objects("wall")).first == MPCAT40_ID["wall"]).all()
 
 
-def test_a_mistake_lasts_over_the_frames_and_small_moves_of_a_view_and_not_beyond():
-    of, config = things("table"), replace(FLAWLESS, mistake_rate=0.3)
+def test_an_error_lasts_over_the_frames_and_small_moves_of_a_view_and_not_beyond():
+    of, config = objects("table"), replace(FLAWLESS, mistake_rate=0.3)
     here = seen(config, of).first
     np.testing.assert_array_equal(here, seen(config, of, frame=99).first)
     moved = seen(config, of, eye=(2.05, 0.52)).first
@@ -85,7 +87,7 @@ def test_a_mistake_lasts_over_the_frames_and_small_moves_of_a_view_and_not_beyon
 
 
 def test_a_lookalike_resembles_one_category_from_most_sides():
-    of, config = things("cabinet"), replace(FLAWLESS, lookalike_share=0.2, lookalike_rate=0.7)
+    of, config = objects("cabinet"), replace(FLAWLESS, lookalike_share=0.2, lookalike_rate=0.7)
     views = [seen(config, of, eye=(3 * np.cos(a), 3 * np.sin(a))).first for a in np.arange(8) * np.pi / 4 + 0.1]
     mistaken = np.array(views) != MPCAT40_ID["cabinet"]
     ever = mistaken.any(axis=0)
@@ -96,22 +98,22 @@ def test_a_lookalike_resembles_one_category_from_most_sides():
 
 
 def test_flicker_lasts_one_frame():
-    of, config = things("chair"), replace(FLAWLESS, flicker_rate=0.05)
+    of, config = objects("chair"), replace(FLAWLESS, flicker_rate=0.05)
     frames = np.array([seen(config, of, frame=i).first for i in range(8)]) != MPCAT40_ID["chair"]
     assert frames.mean() == pytest.approx(0.05, abs=0.006)
     assert (frames[1:] & frames[:-1]).mean() == pytest.approx(0.05**2, abs=0.002)
 
 
 @pytest.mark.parametrize("share", [0.0005, 0.003, 0.008, 0.1])
-def test_small_things_are_missed_more_often_by_the_law_of_the_config(share: float):
+def test_small_objects_are_missed_as_often_as_configured(share: float):
     config = replace(FLAWLESS, miss_rate=0.04, miss_share=0.003)
     expected = 0.04 + 0.96 * np.exp(-share / 0.003)
-    missed = (seen(config, things("cushion"), share=np.full(COUNT, share)).first == 0).mean()
+    missed = (seen(config, objects("cushion"), share=np.full(COUNT, share)).first == 0).mean()
     assert missed == pytest.approx(expected, abs=near(expected))
 
 
-def test_what_is_missed_small_is_seen_when_it_has_grown_and_not_the_other_way_round():
-    of, config = things("cushion"), replace(FLAWLESS, miss_share=0.003)
+def test_an_object_missed_at_a_small_size_is_detected_at_a_large_one_and_never_the_reverse():
+    of, config = objects("cushion"), replace(FLAWLESS, miss_share=0.003)
     small = seen(config, of, share=np.full(COUNT, 0.002)).first == 0
     large = seen(config, of, share=np.full(COUNT, 0.02), frame=1).first == 0
     assert small.sum() > 1000 > large.sum()
@@ -119,15 +121,15 @@ def test_what_is_missed_small_is_seen_when_it_has_grown_and_not_the_other_way_ro
 
 
 def test_confidence_has_the_mean_and_deviation_of_the_config():
-    config = replace(FLAWLESS, confidence=(0.8, 0.05), mistaken_confidence=(0.6, 0.05), thing_logit=0.0)
-    right = seen(config, things("bed")).confidence
+    config = replace(FLAWLESS, confidence=(0.8, 0.05), mistaken_confidence=(0.6, 0.05), object_logit=0.0)
+    right = seen(config, objects("bed")).confidence
     assert (right.mean(), right.std()) == pytest.approx((0.8, 0.05), abs=0.005)
-    wrong = seen(replace(config, mistake_rate=1.0, lookalike_share=0.0), things("sofa")).confidence
+    wrong = seen(replace(config, mistake_rate=1.0, lookalike_share=0.0), objects("sofa")).confidence
     assert (wrong.mean(), wrong.std()) == pytest.approx((0.6, 0.05), abs=0.005)
 
 
-def test_another_seed_errs_elsewhere():
-    of, config = things("chair"), replace(FLAWLESS, mistake_rate=0.5)
+def test_another_seed_gives_other_errors():
+    of, config = objects("chair"), replace(FLAWLESS, mistake_rate=0.5)
     one, same, other = (seen(config, of, seed=seed).first for seed in (1, 1, 2))
     np.testing.assert_array_equal(one, same)
     assert (one != other).mean() > 0.4
@@ -140,7 +142,7 @@ def test_the_table_names_categories_and_its_shares_are_shares():
         assert set(row) <= set(MPCAT40) - {"void"}
         assert 0.0 < sum(row.values()) <= 1.0 + 1e-9
     for goal in GOAL_CATEGORIES:
-        assert any(goal in row for row in CONFUSIONS.values()), f"nothing is ever taken for a {goal}"
+        assert any(goal in row for row in CONFUSIONS.values()), f"no category is ever classified as {goal}"
 
 
 @pytest.fixture(scope="module")
@@ -160,8 +162,8 @@ def env(house: Path):
     made.close()
 
 
-def watch(env: ObjectNavEnv, segmenter: NoisySegmenter, seed: int) -> list[np.ndarray]:
-    """Scores of some frames of an episode."""
+def scores_of_frames(env: ObjectNavEnv, segmenter: NoisySegmenter, seed: int) -> list[np.ndarray]:
+    """Returns the scores of some frames of an episode."""
     observation, _ = env.reset(seed=seed, options={"episode": env.draw_episode(np.random.default_rng(0))})
     frames = []
     for action in (Action.TURN_LEFT, Action.TURN_RIGHT, Action.MOVE_FORWARD, Action.MOVE_FORWARD):
@@ -171,24 +173,24 @@ def watch(env: ObjectNavEnv, segmenter: NoisySegmenter, seed: int) -> list[np.nd
 
 
 def test_scores_are_probabilities_at_a_fraction_of_the_image(env: ObjectNavEnv):
-    for frame in watch(env, NoisySegmenter(env), seed=3):
+    for frame in scores_of_frames(env, NoisySegmenter(env), seed=3):
         assert frame.shape == (2, 120, 160)
         assert frame.dtype == np.float32
         assert frame.min() >= 0.0
         assert frame.sum(axis=0).max() <= 1.0 + 1e-5
 
 
-def test_the_same_seed_gives_the_same_scores_whoever_played_before(env: ObjectNavEnv):
+def test_the_same_seed_gives_the_same_scores_after_any_other_episode(env: ObjectNavEnv):
     segmenter = NoisySegmenter(env)
-    once = watch(env, segmenter, seed=3)
-    other = watch(env, segmenter, seed=4)
-    again, fresh = watch(env, segmenter, seed=3), watch(env, NoisySegmenter(env), seed=3)
+    once = scores_of_frames(env, segmenter, seed=3)
+    other = scores_of_frames(env, segmenter, seed=4)
+    again, fresh = scores_of_frames(env, segmenter, seed=3), scores_of_frames(env, NoisySegmenter(env), seed=3)
     np.testing.assert_array_equal(once, again)
     np.testing.assert_array_equal(once, fresh)
     assert np.abs(np.array(once) - np.array(other)).max() > 0.05
 
 
-def test_without_mistakes_it_says_what_is_there(env: ObjectNavEnv):
+def test_without_errors_the_scores_are_the_ground_truth(env: ObjectNavEnv):
     segmenter = NoisySegmenter(env, FLAWLESS)
     observation, _ = env.reset(seed=0, options={"episode": env.draw_episode(np.random.default_rng(0))})
     truth = observation["semantic"][2::4, 2::4] == MPCAT40_ID["sofa"]

@@ -251,7 +251,7 @@ def test_the_check_finds_loose_things_that_do_not_stand() -> None:
 
 def test_the_oracle_reaches_a_goal_among_loose_things() -> None:
     scene = Scene(home(), robot=RobotConfig(), camera=CameraModel(), profile="fast")
-    episode = sample_episode(scene, "home", np.random.default_rng(0))
+    episode = sample_episode(scene.task, "home", np.random.default_rng(0))
     scene.world.reset(episode.start)
     scene.task.begin(episode.goal, episode.start)
 

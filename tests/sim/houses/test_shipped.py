@@ -1,6 +1,6 @@
-"""One conformance test over every shipped house and over fresh ones of both pools; a sample of them at each commit.
+"""Conformance test of every shipped house and of newly generated ones of both pools; each commit tests a sample.
 
-Of the listed train houses every tenth is met: the checksum says that the others are what the generator's check passed.
+Of the train houses in the list every tenth is tested: the checksums show that the others passed the generator's check.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from sim.world.check import check_house
 from tests.helpers.sampling import sample
 
 FIRST_FRESH_SEED = 900_000
-"""No split comes near."""
+"""No split has such a seed."""
 FRESH: list[tuple[Pool, int]] = [(pool, FIRST_FRESH_SEED + n) for n in range(15) for pool in ("train", "heldout")]
 SHIPPED = [(split, house) for split in ("val", "test") for house in load_split(split).houses]
 LISTED = [("train", house) for house in load_split("train").houses[::10]] if "train" in shipped_splits() else []
@@ -44,7 +44,7 @@ KIND_OF_FRESH = ("studio", "flat", "corridor", "lshape", "openplan", "large")
 
 @dataclass(frozen=True)
 class Case:
-    """A house ready to play in."""
+    """A house with its scene and its episodes."""
 
     scene: Scene
     episodes: list[Episode]
@@ -61,7 +61,7 @@ def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     scene = Scene(split.load_house(name), robot=RobotConfig(), camera=SMALL, profile="fast")
     if fresh:
         rng = np.random.default_rng(0)
-        episodes = [sample_episode(scene, name, rng) for _ in range(3)]
+        episodes = [sample_episode(scene.task, name, rng) for _ in range(3)]
         yield Case(scene, episodes, dict(survey(scene.task).listed))
     else:
         episodes = [episode for episode in split.episodes if episode.house == name]
@@ -70,7 +70,7 @@ def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 def written(folder: Path, pool: Pool, seed: int) -> Path:
-    """A fresh house as a file."""
+    """Generates a house and returns its file."""
     kind = KIND_OF_FRESH[seed // 2 % len(KIND_OF_FRESH)]
     house = generate_house(seed, HouseConfig(pool=pool, kind=kind, movable=seed % 3 == 1))
     path = folder / f"{pool}_{seed}.xml"
@@ -84,7 +84,7 @@ def goals_in_file(split: Split, house: str) -> dict[str, list[habitat.Json]]:
 
 
 def pushing(model: mujoco.MjModel, data: mujoco.MjData) -> list[int]:
-    """Numbers of the contacts through which a force goes."""
+    """Returns the indices of the contacts that transmit a force."""
     wrench, found = np.zeros(6), []
     for number in range(data.ncon):
         mujoco.mj_contactForce(model, data, number, wrench)
@@ -97,7 +97,7 @@ def test_the_check_finds_no_fault(case: Case) -> None:
     assert check_house(case.scene.world.house.spec) == []
 
 
-def test_all_that_is_seen_is_labelled(case: Case) -> None:
+def test_all_visual_geoms_are_labelled(case: Case) -> None:
     world = case.scene.world
     seen = rendered_geoms(world.model) & ~geoms_of(world.model, "robot/")
     assert seen.any()
@@ -105,16 +105,16 @@ def test_all_that_is_seen_is_labelled(case: Case) -> None:
     assert (world.labels.geom_instance[seen] >= 0).all()
 
 
-def test_what_can_be_pushed_stands_less_than_a_centimetre_in_anything(case: Case) -> None:
+def test_movable_objects_overlap_others_by_less_than_a_centimetre(case: Case) -> None:
     model = case.scene.world.model
     at_rest = mujoco.MjData(model)
     mujoco.mj_forward(model, at_rest)
-    things = collidable_geoms(model) & ~geoms_of(model, "robot/")
-    between_things = things[at_rest.contact.geom].all(axis=1)
-    assert (at_rest.contact.dist[between_things] > -0.01).all()
+    objects = collidable_geoms(model) & ~geoms_of(model, "robot/")
+    between_objects = objects[at_rest.contact.geom].all(axis=1)
+    assert (at_rest.contact.dist[between_objects] > -0.01).all()
 
 
-def test_the_free_space_is_one_and_reaches_into_every_room(case: Case) -> None:
+def test_the_free_space_is_connected_and_reaches_every_room(case: Case) -> None:
     space = case.scene.task.truth.space(0.0)
     part = space.largest_part()
     assert part.sum() > 0.97 * space.free.sum()
@@ -124,7 +124,7 @@ def test_the_free_space_is_one_and_reaches_into_every_room(case: Case) -> None:
         assert inside * 7 * space.frame.cell_m**2 > 0.1, room.name
 
 
-def test_every_instance_of_a_goal_counts_as_found_from_places_that_the_robot_reaches(case: Case) -> None:
+def test_every_goal_instance_can_be_reached_from_its_view_points(case: Case) -> None:
     space = case.scene.task.truth.space(0.0)
     part = space.largest_part()
     assert {episode.goal for episode in case.episodes} <= set(case.goals)
@@ -140,7 +140,7 @@ def test_every_instance_of_a_goal_counts_as_found_from_places_that_the_robot_rea
             assert region.reaches(footprints[entry["object_id"]], space.frame.to_metres(cells)).all()
 
 
-def test_a_start_is_as_far_from_its_goal_as_is_recorded_and_far_enough(case: Case) -> None:
+def test_the_distance_from_start_to_goal_is_the_recorded_one_and_within_the_limits(case: Case) -> None:
     for episode in sample(case.episodes, EPISODES):
         distance_m = case.scene.task.distance_from(episode.goal, episode.start)
         assert distance_m is not None, episode

@@ -1,4 +1,4 @@
-"""Noise does what its config says, no more and no less, and the same again with the same seed."""
+"""Noise has the statistics of its configuration, and is the same again with the same seed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import read_labels
-from sim.interface import Action, CameraModel, ConfigError, wrap_angle
+from sim.interface import SENSORS, Action, CameraModel, ConfigError, wrap_angle
 from sim.robot.conditions import NOMINAL, Conditions
 from sim.sensors.actuation_noise import ActuationNoise
 from sim.sensors.depth_noise import DepthNoise, NoisyDepth
@@ -25,6 +25,7 @@ from sim.sensors.noise import NOISE_PRESETS, NoiseConfig, SensorNoise, get_noise
 from sim.sensors.pose_noise import NoisyPose, PoseNoise
 from sim.sensors.random_fields import smooth_normal
 from sim.sensors.rgb_noise import NoisyRgb, RgbNoise
+from sim.sensors.standard import resolve_sensors
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
 
@@ -34,19 +35,20 @@ SMALL = CameraModel(width_px=64, height_px=48)
 
 
 def wall(distance_m: float) -> np.ndarray:
-    """Depth of a wall that fills the image."""
+    """Returns the depth of a wall that fills the image."""
     return np.full(SHAPE, distance_m, np.float32)
 
 
 def step_of(near_m: float, far_m: float) -> np.ndarray:
-    """Depth of a near thing on the left before a far wall on the right."""
+    """Returns the depth of a near surface on the left before a far wall on the right."""
     depth_m = wall(near_m)
     depth_m[:, SHAPE[1] // 2 :] = far_m
     return depth_m
 
 
 def sensed(config: DepthNoise, depth_m: np.ndarray, seed: int = 0) -> np.ndarray:
-    return NoisyDepth(config, CAMERA).apply(depth_m, None, np.random.default_rng(seed))
+    noise = NoisyDepth(replace(config, hole_share=0.0), CAMERA)
+    return noise.apply({"depth": depth_m}, {}, np.random.default_rng(seed))["depth"]
 
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.0, 4.0])
@@ -75,7 +77,7 @@ def test_depth_comes_in_steps_that_grow_with_the_square_of_range(distance_m: flo
 
 
 @pytest.mark.parametrize("sigma_px", [0.5, 1.0, 2.0])
-def test_pixels_look_aside_as_often_as_configured(sigma_px: float) -> None:
+def test_pixels_are_shifted_as_often_as_configured(sigma_px: float) -> None:
     """A pixel k columns before a step shows the far side when its shift is rounded to k or more."""
     depth_m = sensed(DepthNoise(lateral_px=sigma_px), step_of(1.0, 3.0))
     for k in (1, 2, 3):
@@ -85,7 +87,7 @@ def test_pixels_look_aside_as_often_as_configured(sigma_px: float) -> None:
 
 
 def test_shifts_have_the_configured_std_in_both_directions_and_are_uncorrelated() -> None:
-    """Depth that grows along one axis tells how far a pixel looked along it; rounding adds 1/12 px^2."""
+    """Depth that grows along one axis measures the shift along it; rounding adds 1/12 px^2."""
     rows, columns = np.mgrid[: SHAPE[0], : SHAPE[1]].astype(np.float32)
     inner = (slice(20, -20), slice(20, -20))
     shifts = [
@@ -122,13 +124,13 @@ def test_a_slanted_floor_has_no_edges() -> None:
     np.testing.assert_array_equal(sensed(DepthNoise(edge_dropout=0.5, edge_flying=0.5), depth_m), depth_m)
 
 
-def test_beside_a_surface_nothing_flies_towards_no_return() -> None:
+def test_a_surface_beside_pixels_without_return_has_no_flying_pixels() -> None:
     depth_m = sensed(DepthNoise(edge_flying=1.0), step_of(0.0, 3.0))
     assert set(np.unique(depth_m)) == {0.0, 3.0}
 
 
 @pytest.mark.parametrize("gloss", [0.35, 0.6, 0.9, 1.0])
-def test_glossy_things_lose_the_configured_share_and_matt_ones_nothing(gloss: float) -> None:
+def test_glossy_surfaces_lose_the_configured_share_and_matt_ones_nothing(gloss: float) -> None:
     config = DepthNoise(hole_share=0.8, hole_gloss=0.3, hole_patch_px=6.0)
     noisy = NoisyDepth(config, CAMERA)
     noisy.begin(np.array([0.25, gloss], np.float32))
@@ -136,7 +138,7 @@ def test_glossy_things_lose_the_configured_share_and_matt_ones_nothing(gloss: fl
     geom[:, 100:] = 1
     geom[:40] = -1
     rng = np.random.default_rng(0)
-    images = np.stack([noisy.apply(wall(2.0), geom, rng) for _ in range(30)])
+    images = np.stack([noisy.apply({"depth": wall(2.0)}, {"geom": geom}, rng)["depth"] for _ in range(30)])
     lost = images == 0.0
     assert not lost[:, geom < 1].any()
     assert lost[:, geom == 1].mean() == pytest.approx(0.8 * (gloss - 0.3) / 0.7, rel=0.05)
@@ -174,7 +176,7 @@ def test_gloss_is_of_glass_mirrors_and_polish() -> None:
 
 
 def test_the_limits_of_depth_keep_their_meaning() -> None:
-    """What is 5 m or farther stays so, what has no return too; noise moves nothing out of [0.5, 5] but to 0."""
+    """Saturated pixels and those without return do not change; noise leaves [0.5, 5] only to 0."""
     config = replace(get_noise("harsh").depth, edge_dropout=0.0, edge_flying=0.0, lateral_px=0.0)
     for value in (0.0, 5.0):
         np.testing.assert_array_equal(sensed(config, wall(value)), value)
@@ -185,11 +187,15 @@ def test_the_limits_of_depth_keep_their_meaning() -> None:
     assert depth_m.dtype == np.float32
 
 
+def noisy_rgb(config: RgbNoise, rgb: np.ndarray) -> np.ndarray:
+    return NoisyRgb(config, CAMERA).apply({"rgb": rgb}, {}, np.random.default_rng(0))["rgb"].astype(float)
+
+
 @pytest.mark.parametrize("grey", [40, 120, 200])
 def test_shot_noise_grows_with_the_square_root_of_light(grey: int) -> None:
     rgb = np.full((*SHAPE, 3), grey, np.uint8)
     noise = RgbNoise(shot_electrons_1=1 / 500, read_std=0.0)
-    seen = NoisyRgb(noise, CAMERA).apply(rgb, np.random.default_rng(0)).astype(float)
+    seen = noisy_rgb(noise, rgb)
     electrons = 500 * grey / 255
     assert seen.std() == pytest.approx(math.sqrt((255 * math.sqrt(electrons) / 500) ** 2 + 1 / 12), rel=0.05)
     assert seen.mean() == pytest.approx(grey, abs=0.05)
@@ -198,14 +204,14 @@ def test_shot_noise_grows_with_the_square_root_of_light(grey: int) -> None:
 def test_read_noise_is_the_same_at_every_grey() -> None:
     for grey in (30, 128, 225):
         rgb = np.full((*SHAPE, 3), grey, np.uint8)
-        seen = NoisyRgb(RgbNoise(read_std=4.0), CAMERA).apply(rgb, np.random.default_rng(0)).astype(float)
+        seen = noisy_rgb(RgbNoise(read_std=4.0), rgb)
         assert seen.std() == pytest.approx(math.sqrt(16.0 + 1 / 12), rel=0.05)
         assert abs(np.corrcoef(seen[..., 0].ravel(), seen[..., 1].ravel())[0, 1]) < 0.01
 
 
 def test_the_gain_is_one_for_a_frame_and_varies_from_frame_to_frame() -> None:
     noisy, rng = NoisyRgb(RgbNoise(gain_std=0.1), SMALL), np.random.default_rng(0)
-    frames = [noisy.apply(np.full((48, 64, 3), 120, np.uint8), rng) for _ in range(4000)]
+    frames = [noisy.apply({"rgb": np.full((48, 64, 3), 120, np.uint8)}, {}, rng)["rgb"] for _ in range(4000)]
     assert all(frame.min() == frame.max() for frame in frames[:20])
     gains = np.array([frame[0, 0, 0] for frame in frames]) / 120
     assert gains.std() == pytest.approx(0.1, rel=0.05)
@@ -215,21 +221,22 @@ def test_the_gain_is_one_for_a_frame_and_varies_from_frame_to_frame() -> None:
 def test_dark_and_bright_saturate() -> None:
     rng = np.random.default_rng(0)
     for grey in (0, 255):
-        seen = NoisyRgb(RgbNoise(read_std=5.0), SMALL).apply(np.full((48, 64, 3), grey, np.uint8), rng)
+        image = {"rgb": np.full((48, 64, 3), grey, np.uint8)}
+        seen = NoisyRgb(RgbNoise(read_std=5.0), SMALL).apply(image, {}, rng)["rgb"]
         assert abs(seen.astype(int) - grey).max() < 30
 
 
 def readings(config: PoseNoise, *, episodes: int, actions: int) -> tuple[np.ndarray, np.ndarray]:
     """Errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
     noisy, rng = NoisyPose(config), np.random.default_rng(0)
-    gps, compass = np.array([1.0, -2.0], np.float32), np.array([3.1], np.float32)
+    true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
     seen = []
     for _ in range(episodes):
-        noisy.begin()
-        seen.append([noisy.apply(gps, compass, rng) for _ in range(actions + 1)])
-    errors = np.array([[reading[0] - gps for reading in episode] for episode in seen])
-    yaws = [[wrap_angle(float(reading[1][0]) - 3.1) for reading in episode] for episode in seen]
-    assert all(-np.pi < reading[1][0] <= np.float32(np.pi) for episode in seen for reading in episode)
+        noisy.begin(np.empty(0, np.float32))
+        seen.append([noisy.apply(true, {}, rng) for _ in range(actions + 1)])
+    errors = np.array([[reading["gps"] - true["gps"] for reading in episode] for episode in seen])
+    yaws = [[wrap_angle(float(reading["compass"][0]) - 3.1) for reading in episode] for episode in seen]
+    assert all(-np.pi < reading["compass"][0] <= np.float32(np.pi) for episode in seen for reading in episode)
     return errors, np.array(yaws)
 
 
@@ -327,7 +334,7 @@ def same(one: list[dict[str, np.ndarray]], other: list[dict[str, np.ndarray]], *
     )
 
 
-def test_the_same_seed_gives_the_same_noise_whatever_was_played_before(noisy: ObjectNavEnv) -> None:
+def test_the_same_seed_gives_the_same_noise_after_any_other_episode(noisy: ObjectNavEnv) -> None:
     first = play(noisy, 7)
     other = play(noisy, 8)
     assert same(first, play(noisy, 7))
@@ -341,7 +348,7 @@ def test_episodes_without_a_new_seed_have_noise_of_their_own(noisy: ObjectNavEnv
     assert not np.array_equal(first["depth"], second["depth"])
 
 
-def test_depth_is_the_same_whatever_else_is_seen(noisy: ObjectNavEnv, house: Path) -> None:
+def test_depth_does_not_depend_on_the_other_sensors(noisy: ObjectNavEnv, house: Path) -> None:
     lone = ObjectNavEnv(
         house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.3), camera=SMALL, noise="harsh", sensors=("depth",)
     )
@@ -349,9 +356,9 @@ def test_depth_is_the_same_whatever_else_is_seen(noisy: ObjectNavEnv, house: Pat
     lone.close()
 
 
-def test_none_changes_nothing_and_asks_for_nothing(house: Path) -> None:
-    noise = SensorNoise(get_noise("none"), SMALL)
-    assert noise.needs(("rgb", "depth", "semantic")) == ()
+def test_noise_none_changes_nothing_and_needs_no_image(house: Path) -> None:
+    noise = SensorNoise(get_noise("none"), SMALL, resolve_sensors(SENSORS))
+    assert noise.images == ()
     assert noise.begin(np.random.default_rng(0), np.ones(3, np.float32)) is NOMINAL
     truth = {name: np.zeros(2, np.float32) for name in ("rgb", "depth", "gps", "compass")}
     assert all(value is truth[name] for name, value in noise.apply(truth, {}).items())
@@ -374,8 +381,8 @@ def test_noise_draws_the_same_episodes_as_none(house: Path) -> None:
     assert starts[0] == starts[1]
 
 
-def test_what_counts_is_never_noisy(house: Path) -> None:
-    """Noise of the sensors alone: the task's numbers and `semantic` are those of a run without."""
+def test_metrics_are_never_noisy(house: Path) -> None:
+    """With noise of the sensors alone the metrics and `semantic` are those of a run without noise."""
     sensors_only = replace(get_noise("harsh"), actuation=ActuationNoise())
     runs = []
     for noise in ("none", sensors_only):
@@ -400,8 +407,8 @@ def test_noisy_observations_are_in_the_space_and_share_no_memory(noisy: ObjectNa
         assert not np.shares_memory(value, second[name])
 
 
-def test_the_truth_handed_in_is_not_changed() -> None:
-    noise = SensorNoise(get_noise("harsh"), CAMERA)
+def test_the_true_readings_are_not_changed() -> None:
+    noise = SensorNoise(get_noise("harsh"), CAMERA, resolve_sensors(SENSORS))
     noise.begin(np.random.default_rng(0), np.ones(1, np.float32))
     truth: dict[str, Any] = {
         "rgb": np.full((*SHAPE, 3), 99, np.uint8),
@@ -435,7 +442,7 @@ def test_the_truth_handed_in_is_not_changed() -> None:
         (Conditions, {"motor_gain_scale": (1.0, math.nan)}, "motor_gain_scale"),
     ],
 )
-def test_a_value_that_no_sensor_has_is_refused(config: type, values: Mapping[str, Any], told: str) -> None:
+def test_a_value_out_of_range_is_refused(config: type, values: Mapping[str, Any], told: str) -> None:
     with pytest.raises(ConfigError, match=told):
         config(**values)
 
@@ -466,6 +473,6 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
         (7, "7"),
     ],
 )
-def test_a_file_that_will_not_do_is_told_what_there_is(given: Any, told: str) -> None:
+def test_an_invalid_noise_file_is_refused_with_what_is_allowed(given: Any, told: str) -> None:
     with pytest.raises(ConfigError, match=told):
         noise_from_dict(given)

@@ -12,6 +12,7 @@ from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.interface import MPCAT40_ID, Action, ConfigError
+from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, two_storeys, with_box, with_movable
@@ -24,8 +25,8 @@ def bed_room() -> World:
     return World(with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25)))
 
 
-def begin(world: World, goal: str, start: Pose, **options) -> Task:
-    task = Task(world, **options)
+def begin(world: World, goal: str, start: Pose, **config) -> Task:
+    task = Task(world, TaskConfig(**config))
     world.reset(start)
     task.begin(goal, start)
     return task
@@ -37,7 +38,7 @@ def act(world: World, task: Task, *actions: Action) -> dict:
     return task.metrics()
 
 
-def test_the_straight_way_to_the_goal_has_success_and_spl_one():
+def test_the_straight_path_to_the_goal_has_success_and_spl_one():
     world = bed_room()
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
     assert task.metrics()["distance_to_goal"] == pytest.approx(2.0, abs=0.02)
@@ -62,7 +63,7 @@ def test_a_stop_one_step_too_early_fails_with_the_distance_that_was_left():
     assert result["soft_spl"] == pytest.approx(1.75 / 2.0, abs=0.02)
 
 
-def test_standing_where_the_goal_is_without_stop_is_no_success():
+def test_a_robot_at_the_goal_without_stop_is_no_success():
     world = bed_room()
     task = begin(world, "bed", Pose(1.2, 0.0, 0.0))
     result = act(world, task, LEFT)
@@ -70,7 +71,7 @@ def test_standing_where_the_goal_is_without_stop_is_no_success():
     assert result["distance_to_goal"] == 0.0
 
 
-def test_a_stop_at_once_where_the_goal_is_has_spl_one():
+def test_a_stop_at_once_at_the_goal_has_spl_one():
     world = bed_room()
     result = act(world, begin(world, "bed", Pose(1.2, 0.0, 0.0)), STOP)
     assert result["success"] == result["spl"] == result["soft_spl"] == 1.0
@@ -94,7 +95,7 @@ def test_a_stop_as_the_last_step_is_a_stop():
     assert task.success
 
 
-def test_blocked_motions_are_collisions_and_the_way_is_what_was_really_moved():
+def test_blocked_motions_are_collisions_and_path_length_is_the_true_displacement():
     world = bed_room()
     task = begin(world, "bed", Pose(-3.7, 0.0, math.pi))
     result = act(world, task, FORWARD, FORWARD)
@@ -103,7 +104,7 @@ def test_blocked_motions_are_collisions_and_the_way_is_what_was_really_moved():
     assert result["distance_to_goal"] == pytest.approx(4.8, abs=0.03)
 
 
-def test_a_thing_that_is_pushed_along_is_touched_and_no_collision():
+def test_an_object_that_is_pushed_along_is_a_touch_and_no_collision():
     world = World(with_movable(bed_room().house, "stool_00", xy_m=(-0.4, 0.0), mass_kg=1.0))
     task = begin(world, "bed", Pose(-1.0, 0.0, 0.0))
     result = act(world, task, FORWARD, FORWARD, LEFT)
@@ -167,7 +168,7 @@ def test_a_goal_that_cannot_be_is_refused_with_what_there_is(goal, message):
 def test_a_goal_without_a_way_to_it_is_refused():
     house = with_box(room(8, 4), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "wall_10", centre_m=(0, 0, 1.25), half_m=(0.05, 2.0, 1.25))
-    with pytest.raises(EpisodeError, match="no way from"):
+    with pytest.raises(EpisodeError, match="no path from"):
         begin(World(house), "bed", Pose(-1.0, 0.0, 0.0))
 
 
@@ -190,7 +191,7 @@ def test_a_stop_right_under_the_goal_is_no_success():
     assert (result["success"], result["failure"]) == (0.0, "false_detection")
 
 
-def test_the_goal_of_the_storey_one_stands_on_is_found_there():
+def test_a_goal_on_the_storey_of_the_robot_is_found():
     world = World(two_storeys())
     for goal, start in (("sofa", UPSTAIRS), ("bed", Pose(0.5, 0.0, 0.0))):
         result = act(world, begin(world, goal, start), FORWARD, FORWARD, STOP)
@@ -199,7 +200,7 @@ def test_the_goal_of_the_storey_one_stands_on_is_found_there():
         assert result["spl"] > 0.7
 
 
-def test_each_storey_looks_for_the_other_ones_goal_in_vain():
+def test_a_goal_on_the_other_storey_is_not_found():
     world = World(two_storeys())
     result = act(world, begin(world, "bed", UPSTAIRS, max_steps=2), FORWARD, LEFT)
     assert (result["success"], result["failure"]) == (0.0, "stairs")
@@ -208,7 +209,7 @@ def test_each_storey_looks_for_the_other_ones_goal_in_vain():
 def test_an_episode_is_never_drawn_with_its_goal_on_another_storey():
     with_sofa = World(two_storeys())
     with pytest.raises(EpisodeError, match="no instance can be reached"):
-        draw_start(with_sofa, Task(with_sofa), "sofa", np.random.default_rng(0))
+        draw_start(Task(with_sofa), "sofa", np.random.default_rng(0))
 
 
 def test_the_trajectory_has_a_line_for_each_moment_and_action():
@@ -237,4 +238,4 @@ def test_nothing_counts_before_an_episode_has_begun():
 
 def test_an_episode_needs_a_step():
     with pytest.raises(ConfigError, match="max_steps"):
-        Task(bed_room(), max_steps=0)
+        TaskConfig(max_steps=0)

@@ -1,4 +1,4 @@
-"""Where a STOP succeeds, in rooms of a few boxes."""
+"""Places where a STOP succeeds, in rooms of a few boxes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from sim.geometry.convex import lines_blocked
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.task.success import GoalRegion, sight_blockers
+from sim.interface import CameraModel, SuccessRule
+from sim.task.success import GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
 from tests.helpers.worlds import room, with_box, with_movable
 
@@ -23,8 +24,18 @@ def compiled(house: House):
     return model, data, read_labels(model)
 
 
-def region(house: House, goal: str, **options) -> GoalRegion:
-    return GoalRegion(*compiled(house), goal, **options)
+CAMERA = CameraModel()
+
+
+def region(house: House, goal: str, *, floor_z_m: float = 0.0, camera=CAMERA, **rule) -> GoalRegion:
+    return region_in(*compiled(house), goal, floor_z_m=floor_z_m, camera=camera, **rule)
+
+
+def region_in(model, data, labels, goal: str, *, floor_z_m: float = 0.0, camera=CAMERA, **rule) -> GoalRegion:
+    success = SuccessRule(**rule)
+    sight_height_m = success.sight_height_with(camera)
+    around = Surroundings.of(model, data, labels, sight_height_m=sight_height_m, floor_z_m=floor_z_m)
+    return GoalRegion(model, data, labels, goal, surroundings=around, success=success, floor_z_m=floor_z_m)
 
 
 def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5, group: int = 0) -> House:
@@ -62,13 +73,13 @@ def test_walls_doors_and_windows_hide_it(wall):
     assert not region(two_rooms(wall), "bed").succeeds(-0.4, 0.0)
 
 
-@pytest.mark.parametrize("thing", ["cabinet_10", "curtain_00", "mirror_00"])
-def test_other_things_do_not_hide_it(thing):
-    assert region(two_rooms(thing), "bed").succeeds(-0.4, 0.0)
+@pytest.mark.parametrize("category", ["cabinet_10", "curtain_00", "mirror_00"])
+def test_other_objects_do_not_hide_it(category):
+    assert region(two_rooms(category), "bed").succeeds(-0.4, 0.0)
 
 
 @pytest.mark.parametrize(("low_m", "high_m", "hides"), [(0.0, 0.87, False), (0.0, 0.89, True), (0.9, 2.5, False)])
-def test_only_what_spans_the_height_of_the_camera_hides(low_m, high_m, hides):
+def test_only_walls_that_span_the_height_of_the_camera_hide(low_m, high_m, hides):
     assert region(two_rooms(low_m=low_m, high_m=high_m), "bed").succeeds(-0.4, 0.0) != hides
 
 
@@ -93,7 +104,7 @@ def test_a_picture_on_a_wall_is_found_from_its_own_room_only():
     assert not there.succeeds(1.2, 1.2)
 
 
-def test_a_picture_sunk_into_the_wall_is_found_by_what_stands_out():
+def test_a_picture_sunk_into_the_wall_is_found_by_its_visible_part():
     house = with_box(two_rooms(), "picture_00", centre_m=(0.05, 1.2, 1.5), half_m=(0.02, 0.3, 0.2))
     there = region(house, "picture")
     assert there.succeeds(0.9, 1.2)
@@ -108,7 +119,7 @@ def test_a_shower_in_a_corner_is_found_though_two_of_its_sides_lie_in_walls():
     assert not there.succeeds(2.3, 1.6)
 
 
-def test_a_goal_seen_round_the_end_of_a_wall_counts_at_the_distance_of_what_is_seen():
+def test_a_goal_seen_round_the_end_of_a_wall_counts_at_the_distance_of_its_visible_part():
     # The wall ends at y = 0; from (-0.3, -0.25) the near side of the bed is hidden, its far part is not.
     house = with_box(room(6, 6), "wall_10", centre_m=(0, -1.5, 1.25), half_m=(0.05, 1.5, 1.25))
     house = with_box(house, "bed_00", centre_m=(0.55, 0.0, 0.25), half_m=(0.5, 0.5, 0.25))
@@ -117,12 +128,12 @@ def test_a_goal_seen_round_the_end_of_a_wall_counts_at_the_distance_of_what_is_s
     assert not there.succeeds(-0.3, -1.2)
 
 
-def test_the_boundary_alone_says_what_all_points_of_the_footprint_say():
+def test_the_boundary_alone_gives_the_result_of_all_points_of_the_footprint():
     house = two_rooms()
     house = with_box(house, "wall_11", centre_m=(1.4, 0.6, 1.25), half_m=(0.05, 0.5, 1.25), yaw_rad=0.4)
     house = with_box(house, "bed_01", centre_m=(1.7, -0.9, 0.2), half_m=(0.5, 0.2, 0.2), yaw_rad=0.7)
     model, data, labels = compiled(house)
-    there = GoalRegion(model, data, labels, "bed")
+    there = region_in(model, data, labels, "bed")
     grid = np.stack(np.meshgrid(np.arange(-1, 3, 0.02), np.arange(-2, 2, 0.02)), axis=-1).reshape(-1, 2)
     points = np.concatenate([fp.boundary_m.data for fp in there.footprints])
     inside = grid[np.any([fp.contains(grid) for fp in there.footprints], axis=0)]
@@ -136,11 +147,11 @@ def test_the_boundary_alone_says_what_all_points_of_the_footprint_say():
         assert there.succeeds(*place) == expected, place
 
 
-def test_the_mask_says_of_each_free_cell_what_the_test_at_stop_says_of_its_centre():
+def test_the_mask_has_for_each_free_cell_the_result_of_the_test_at_its_centre():
     house = two_rooms()
     model, data, labels = compiled(house)
     space = FreeSpace(model, data, labels, rooms=read_rooms(model))
-    there = GoalRegion(model, data, labels, "bed")
+    there = region_in(model, data, labels, "bed")
     mask = there.mask(space)
     assert not (mask & ~space.free).any()
     assert mask.any()
@@ -156,7 +167,7 @@ def test_an_instance_on_another_storey_does_not_count():
     assert region(house, "sofa", floor_z_m=2.1).succeeds(1.0, 1.0)
 
 
-def test_what_is_not_rendered_is_no_part_of_the_footprint():
+def test_geoms_that_are_not_rendered_are_no_part_of_the_footprint():
     spec = with_box(room(8, 4), "sofa_00", centre_m=(0, 0, 0.3), half_m=(0.3, 0.3, 0.3)).spec
     spec.worldbody.add_geom(name="hull", type=mujoco.mjtGeom.mjGEOM_BOX, size=(2, 0.3, 0.3), pos=(0, 0, 0.3), group=3)
     assert not region(House("hull", spec), "sofa").succeeds(1.9, 0.0)
@@ -212,11 +223,29 @@ def test_a_wall_that_is_a_mesh_hides_where_it_is_and_not_where_its_doorway_is():
     assert not there.succeeds(-0.4, 1.4)
 
 
-def test_a_goal_counts_where_it_stands_now():
+def test_a_goal_counts_at_its_current_position():
     house = with_movable(room(8, 4), "stool_00", xy_m=(2.0, 0.0))
     model, data, labels = compiled(house)
     data.qpos[0] = -2.0
     mujoco.mj_kinematics(model, data)
-    moved = GoalRegion(model, data, labels, "stool")
+    moved = region_in(model, data, labels, "stool")
     assert moved.succeeds(-1.2, 0.0)
     assert not moved.succeeds(1.2, 0.0)
+
+
+@pytest.mark.parametrize(("distance_m", "found"), [(1.0, True), (0.5, False)])
+def test_a_smaller_success_distance_needs_a_nearer_stop(distance_m, found):
+    assert region(two_rooms(), "bed", distance_m=distance_m).succeeds(1.75, 0.0) == found
+
+
+def test_a_taller_camera_sees_over_a_wall_that_blocks_the_default_one():
+    low_wall = two_rooms(high_m=1.2)
+    assert not region(low_wall, "bed").succeeds(-0.4, 0.0)
+    assert region(low_wall, "bed", camera=CameraModel(height_m=1.3)).succeeds(-0.4, 0.0)
+    assert region(low_wall, "bed", sight_height_m=1.3).succeeds(-0.4, 0.0)
+
+
+def test_the_rule_says_which_floors_are_one_storey():
+    house = with_box(room(6, 4), "sofa_00", centre_m=(1, 0, 0.3), half_m=(0.4, 0.4, 0.3))
+    assert region(house, "sofa", floor_z_m=0.8).footprints
+    assert not region(house, "sofa", floor_z_m=0.8, same_storey_m=0.5).footprints

@@ -112,13 +112,14 @@ def test_without_jitter_the_collision_rule_is_as_configured():
 @pytest.mark.parametrize("preset", ["realsense", "harsh"])
 def test_noise_of_the_gps_makes_no_collision_of_a_whole_forward_and_hides_no_blocked_one(preset: str):
     noise, rng = NoisyPose(get_noise(preset).pose), np.random.default_rng(3)
-    noise.begin()
+    noise.begin(np.empty(0, np.float32))
     jitter, x_m, last, false, missed = Jitter(), 0.0, np.zeros(2), 0, 0
     for step in range(1200):
         action = (Action.TURN_LEFT, Action.MOVE_FORWARD, Action.MOVE_FORWARD)[step % 3]
         blocked = step % 3 == 1
         x_m += FORWARD_M if action is Action.MOVE_FORWARD and not blocked else 0.0
-        gps, _ = noise.apply(np.array([x_m, 0.0], np.float32), np.zeros(1, np.float32), rng)
+        true = {"gps": np.array([x_m, 0.0], np.float32), "compass": np.zeros(1, np.float32)}
+        gps = noise.apply(true, {}, rng)["gps"]
         moved_m = float(np.hypot(*(gps - last)))
         last = gps
         jitter.observe(action, moved_m)

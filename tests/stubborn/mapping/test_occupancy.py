@@ -28,7 +28,7 @@ CHAIR_ID = 3
 def noisy(depth: np.ndarray, preset: str, rng: np.random.Generator) -> np.ndarray:
     noise = NoisyDepth(get_noise(preset).depth, CAMERA)
     noise.begin(np.zeros(1, np.float32))
-    return noise.apply(depth, None, rng)
+    return noise.apply({"depth": depth}, {"geom": np.zeros(depth.shape, np.int32)}, rng)["depth"]
 
 
 def look_around(

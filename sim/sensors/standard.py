@@ -1,0 +1,155 @@
+"""The six standard sensors, named as in Habitat; shapes and units are in `sim.interface.Observation`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from sim.errors import ConfigError
+from sim.interface import GOAL_CATEGORIES, MPCAT40, POSE_SENSORS, CameraModel
+from sim.sensors.sensor import NoiseSettings, Sensor, SensorContext
+
+
+@dataclass(frozen=True, kw_only=True)
+class RgbSensor:
+    """Colour image."""
+
+    name: str = "rgb"
+    images: tuple[str, ...] = ("rgb",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of uint8 images (h, w, 3)."""
+        return spaces.Box(0, 255, (camera.height_px, camera.width_px, 3), np.uint8)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the rendered colour image."""
+        return context.images["rgb"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthSensor:
+    """Depth image, metres along the optical axis."""
+
+    name: str = "depth"
+    images: tuple[str, ...] = ("depth",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 images (h, w) within the camera's range."""
+        return spaces.Box(0.0, camera.max_depth_m, (camera.height_px, camera.width_px), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the rendered depth image."""
+        return context.images["depth"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SemanticSensor:
+    """Ground-truth segmentation, mpcat40 ids."""
+
+    name: str = "semantic"
+    images: tuple[str, ...] = ("semantic",)
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of uint8 images (h, w)."""
+        return spaces.Box(0, len(MPCAT40) - 1, (camera.height_px, camera.width_px), np.uint8)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the rendered categories."""
+        return context.images["semantic"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GpsSensor:
+    """Position relative to the start pose."""
+
+    name: str = "gps"
+    images: tuple[str, ...] = ()
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 positions (2,), unbounded."""
+        limit = np.finfo(np.float32).max
+        return spaces.Box(-limit, limit, (2,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns metres forward and left of the start pose."""
+        pose = context.pose.relative_to(context.start)
+        return np.array([pose.x_m, pose.y_m], np.float32)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompassSensor:
+    """Yaw relative to the start heading."""
+
+    name: str = "compass"
+    images: tuple[str, ...] = ()
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 angles (1,)."""
+        return spaces.Box(-np.float32(np.pi), np.float32(np.pi), (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the yaw in (-pi, pi], radians."""
+        return np.array([context.pose.relative_to(context.start).yaw_rad], np.float32)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObjectGoalSensor:
+    """Category that the episode asks for."""
+
+    name: str = "objectgoal"
+    images: tuple[str, ...] = ()
+    noise: NoiseSettings | None = None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of int64 indices (1,)."""
+        return spaces.Box(0, len(GOAL_CATEGORIES) - 1, (1,), np.int64)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the index of the goal in `GOAL_CATEGORIES`."""
+        return np.array([GOAL_CATEGORIES.index(context.goal)], np.int64)
+
+
+STANDARD_SENSORS: Mapping[str, Sensor] = MappingProxyType(
+    {
+        sensor.name: sensor
+        for sensor in (
+            RgbSensor(), DepthSensor(), SemanticSensor(), GpsSensor(), CompassSensor(), ObjectGoalSensor(),
+        )
+    }
+)  # fmt: skip
+"""The sensors that `ObjectNavEnv(sensors=...)` takes by name; those of `POSE_SENSORS` are always present."""
+
+
+def resolve_sensors(given: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
+    """Returns the sensors of an observation, in its order: those given, then the pose sensors that are missing.
+
+    Raises:
+        ConfigError: an unknown name, or two different sensors with one name.
+    """
+    resolved: dict[str, Sensor] = {}
+    for each in given:
+        sensor = _standard_sensor(each) if isinstance(each, str) else each
+        if resolved.setdefault(sensor.name, sensor) != sensor:
+            raise ConfigError(f"Two sensors have the name '{sensor.name}'; each key of the observation needs its own.")
+    for name in POSE_SENSORS:
+        resolved.setdefault(name, STANDARD_SENSORS[name])
+    return tuple(resolved.values())
+
+
+def _standard_sensor(name: str) -> Sensor:
+    if name not in STANDARD_SENSORS:
+        raise ConfigError(
+            f"Unknown sensor '{name}'. There is: {', '.join(STANDARD_SENSORS)}, or an object with the interface "
+            "`sim.sensors.sensor.Sensor`."
+        )
+    return STANDARD_SENSORS[name]

@@ -1,0 +1,21 @@
+"""Configuration of the task: when a STOP succeeds, and how many actions an episode has."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from sim.errors import ConfigError
+from sim.interface import MAX_STEPS, SuccessRule
+
+
+@dataclass(frozen=True, kw_only=True)
+class TaskConfig:
+    """Rules of an episode."""
+
+    success: SuccessRule = field(default_factory=SuccessRule)
+    max_steps: int = MAX_STEPS
+    """Number of actions after which an episode is truncated."""
+
+    def __post_init__(self) -> None:
+        if self.max_steps < 1:
+            raise ConfigError(f"TaskConfig.max_steps must be at least 1, got {self.max_steps}.")
