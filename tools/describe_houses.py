@@ -34,7 +34,7 @@ from sim.houses.labels import Labels, read_labels, rendered_geoms
 from sim.interface import GOAL_CATEGORIES, SENSORS, CameraModel, ConfigError
 from sim.paths import assets_dir
 from sim.robot.config import RobotConfig
-from sim.sensors.camera import describe_gl
+from sim.sensors.opengl import describe_gl
 
 SPLITS = ("val", "test", "train")
 PROFILES = ("fast", "good")

@@ -1,4 +1,4 @@
-"""Kinds of rooms, their sizes, and which rooms a home of a given kind and area has.
+"""Kinds of rooms with their sizes, and the choice of rooms for a home of a given plan kind and area.
 
 Room sizes follow what European building guides call usual (Neufert, Architects' Data, 4th ed., chapter "Dwellings"):
 a single bedroom from 9 m2, a double from 12 m2, bathrooms 3.5-10 m2, corridors 1.1-1.6 m wide.
@@ -15,7 +15,7 @@ import numpy as np
 
 PlanKind = Literal["studio", "flat", "corridor", "lshape", "openplan", "large"]
 PLAN_KINDS: tuple[PlanKind, ...] = ("studio", "flat", "corridor", "lshape", "openplan", "large")
-"""Shapes a home can have, smallest first."""
+"""Kinds of floor plans, smallest first."""
 
 PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
     {
@@ -27,31 +27,31 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
         "large": (180.0, 400.0),
     }
 )
-"""Floor areas each shape is built for, smallest and largest."""
-
-
+"""Smallest and largest floor area of each kind of plan."""
 MAX_ROOMS = 18
-"""Rooms a home has at most, hallways counted."""
+"""Largest number of rooms in a home, including hallways."""
 HALLWAYS: Mapping[PlanKind, int] = MappingProxyType(
     {"studio": 1, "flat": 1, "corridor": 1, "lshape": 2, "openplan": 1, "large": 3}
 )
-"""Corridor pieces that a shape may need."""
+"""Number of hallways that a kind of plan may need."""
+GAP = "slot"
+"""Front of a column through which a branch corridor passes."""
 
 
 @dataclass(frozen=True)
 class RoomRule:
-    """Sizes a kind of room may have."""
+    """Limits on the size of a kind of room."""
 
     area_m2: tuple[float, float, float]
     """Smallest, usual, largest."""
     short_m: float
-    """Shortest side allowed."""
+    """Smallest length of the shorter side."""
     aspect: float = 2.2
-    """Longest side over shortest at most."""
+    """Largest ratio of the longer side to the shorter one."""
     windows: bool = True
-    """False: no daylight needed."""
+    """Whether it gets windows."""
     grows: bool = True
-    """False: in large homes it is hardly larger than elsewhere."""
+    """Whether it is larger in large homes."""
 
 
 ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
@@ -74,10 +74,10 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Column:
-    """A slice of a row of rooms along a corridor: one room, or two behind each other."""
+    """A slice of a row of rooms along a corridor: one room, or one room behind another."""
 
     front: str
-    """Kind of the room at the corridor; "slot": a branch corridor passes here."""
+    """Kind of the room at the corridor, or `GAP`."""
     back: str | None = None
     """Kind of a room behind it, reached from a neighbouring column."""
 
@@ -89,7 +89,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Program:
-    """Which rooms a home has: `public` ones belong together, `private` groups of columns stay side by side."""
+    """The rooms of a home: public rooms, and groups of columns of private rooms that stay side by side."""
 
     public: tuple[str, ...]
     private: tuple[tuple[Column, ...], ...]
@@ -102,15 +102,15 @@ class Program:
 
 
 def draw_plan_kind(rng: np.random.Generator, area_m2: float) -> PlanKind:
-    """A shape that suits the area."""
+    """Returns a random kind of plan that suits the area."""
     fitting: list[PlanKind] = [kind for kind in PLAN_KINDS if PLAN_AREA_M2[kind][0] <= area_m2 <= PLAN_AREA_M2[kind][1]]
     return fitting[int(rng.integers(len(fitting)))]
 
 
 def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str] = ()) -> Program:
-    """The rooms of a home of this shape and area; larger homes have more of the rarer rooms.
+    """Returns the rooms of a home of this plan kind and area; larger homes have more of the rarer rooms.
 
-    Private rooms `wanted` are granted first, as far as the area goes.
+    The private rooms `wanted` are added first, to the extent that the area allows.
     """
     if kind == "studio":
         extra = "laundry" if rng.random() < 0.4 else "closet"
@@ -120,10 +120,10 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wante
         public.append("dining_room")
     left = 0.84 * area_m2 - sum(ROOM_RULES[room].area_m2[1] for room in public) * (1.25 if kind == "openplan" else 1.0)
     groups: list[tuple[Column, ...]] = [(Column("bathroom"),)]
-    wishes = [(Column(room),) for room in wanted] + _wishes(rng, area_m2, wanted)
+    candidates = [(Column(room),) for room in wanted] + _candidates(rng, area_m2, wanted)
     left -= 6.5
     rooms = len(public) + 1
-    for group in wishes:
+    for group in candidates:
         need = sum(column.usual_area_m2 for column in group)
         count = sum(1 + (column.back is not None) for column in group)
         if need <= left + 4.0 and rooms + count <= MAX_ROOMS - HALLWAYS[kind]:
@@ -133,17 +133,17 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wante
     return Program(tuple(public), tuple(groups))
 
 
-def _wishes(rng: np.random.Generator, area_m2: float, wanted: Sequence[str]) -> list[tuple[Column, ...]]:
-    """Private rooms in the order they are granted while area lasts."""
+def _candidates(rng: np.random.Generator, area_m2: float, wanted: Sequence[str]) -> list[tuple[Column, ...]]:
+    """Returns private rooms in the order in which they are added while area is left."""
     ensuite = (Column("bedroom"), Column("closet", "bathroom"))
     beside = (Column("bedroom"), Column("bathroom", "closet"))
     bedroom = (Column("bedroom"),)
     first = ensuite if area_m2 > 85 and rng.random() < 0.6 else bedroom
     second = beside if area_m2 > 130 and rng.random() < 0.5 else bedroom
     rare = [(Column(kind),) for kind in rng.permutation(["office", "gym", "laundry"]).tolist()]
-    wishes = [first, rare[0], second, rare[1], bedroom, rare[2]]
+    rooms = [first, rare[0], second, rare[1], bedroom, rare[2]]
     if area_m2 < 105 and rng.random() < 0.5:
-        wishes = [first, second, *rare]
-    wishes = [group for group in wishes if group[0].front not in wanted]
-    wishes += [ensuite, bedroom, (Column("office"),), beside, (Column("closet"),), bedroom]
-    return wishes
+        rooms = [first, second, *rare]
+    rooms = [group for group in rooms if group[0].front not in wanted]
+    rooms += [ensuite, bedroom, (Column("office"),), beside, (Column("closet"),), bedroom]
+    return rooms
