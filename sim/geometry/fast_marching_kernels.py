@@ -1,0 +1,275 @@
+"""The loops of `sim.geometry.fast_marching`, compiled by numba.
+
+Arrays are flat, `width` cells a row, with a frame of impassable cells, so that a stencil needs no test for the border.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+
+@njit(cache=True, error_model="numpy")
+def advance_second_order(
+    passable: NDArray[np.bool_], frozen: NDArray[np.float64], width: int, inverse_area: float
+) -> None:
+    """Replaces infinity in `frozen`, which holds 0 at sources, by the distance of every cell that can be reached.
+
+    The frame is two cells wide. Cells are frozen in the order of their trial distances, cells of equal distance
+    together. A trial distance depends on frozen cells only; it is computed again when a cell one or two steps away
+    along an axis is frozen.
+    """
+    heap = np.empty(frozen.size, np.int32)  # cells, a binary heap ordered by `trial`
+    trial = np.empty(frozen.size)  # trial distance of each cell of the heap
+    place = np.full(frozen.size, -1, np.int32)  # index of each cell in the heap; -1: it is not in the heap
+    equal = np.empty(frozen.size, np.int32)  # cells of one distance
+    length = 0
+    for cell in range(frozen.size):
+        if passable[cell] and frozen[cell] > 0.0 and _nearest_neighbour(frozen, cell, width) == 0.0:
+            _move_up(cell, _second_order_distance(frozen, cell, width, inverse_area), length, heap, trial, place)
+            length += 1
+    while length > 0:
+        distance = trial[0]
+        count = 0
+        while length > 0 and trial[0] == distance:
+            equal[count] = heap[0]
+            frozen[heap[0]] = distance
+            place[heap[0]] = -1
+            count += 1
+            length -= 1
+            if length > 0:
+                _move_down(heap[length], trial[length], 0, length, heap, trial, place)
+        for cell in equal[:count]:
+            for step in (-width, width, -1, 1):
+                near = cell + step
+                if math.isfinite(frozen[near]):
+                    near += step
+                    if place[near] < 0:
+                        continue
+                elif not passable[near]:
+                    continue
+                changed = _second_order_distance(frozen, near, width, inverse_area)
+                length = _put(near, changed, length, heap, trial, place)
+
+
+@njit(cache=True, error_model="numpy")
+def _nearest_neighbour(frozen: NDArray[np.float64], cell: int, width: int) -> float:
+    """Returns the smallest distance of the four neighbours of a cell."""
+    return min(min(frozen[cell - 1], frozen[cell + 1]), min(frozen[cell - width], frozen[cell + width]))
+
+
+@njit(cache=True, error_model="numpy")
+def _second_order_distance(frozen: NDArray[np.float64], cell: int, width: int, inverse_area: float) -> float:
+    """Returns the trial distance of a cell from the frozen cells up to two steps away.
+
+    Where both neighbours on an axis are frozen, the second cell may lie behind the farther one. scikit-fmm does the
+    same. Where the second-order equation has no root, the first-order one is solved.
+    """
+    a = b = c = 0.0  # of the quadratic equation
+    for step in (width, 1):
+        first, second = math.inf, math.inf
+        for side in (-step, step):
+            near = frozen[cell + side]
+            if near < first:
+                first, behind = near, frozen[cell + 2 * side]
+                if behind <= near or (near == 0.0 and behind < math.inf):
+                    second = behind
+        if second < math.inf:
+            weight, value = 9.0 / 4.0 * inverse_area, 1.0 / 3.0 * (4.0 * first - second)
+        elif first < math.inf:
+            weight, value = inverse_area, first
+        else:
+            continue
+        a += weight
+        b -= 2.0 * weight * value
+        c += weight * (value * value)
+    discriminant = b * b - 4.0 * a * (c - 1.0)
+    if discriminant < 0.0:
+        return _first_order_distance(frozen, cell, width, inverse_area)
+    return (-b + math.sqrt(discriminant)) / 2.0 / a
+
+
+@njit(cache=True, error_model="numpy")
+def _first_order_distance(frozen: NDArray[np.float64], cell: int, width: int, inverse_area: float) -> float:
+    """Returns the trial distance of a cell from its frozen neighbours; their mean where the equation has no root."""
+    a = b = c = 0.0
+    for step in (width, 1):
+        value = min(frozen[cell - step], frozen[cell + step])
+        if value < math.inf:
+            a += inverse_area
+            b -= 2.0 * inverse_area * value
+            c += inverse_area * (value * value)
+    discriminant = b * b - 4.0 * a * (c - 1.0)
+    if discriminant < 0.0:
+        return -b / (2.0 * a)
+    return (-b + math.sqrt(discriminant)) / 2.0 / a
+
+
+@njit(cache=True)
+def _put(
+    cell: int,
+    distance: float,
+    length: int,
+    heap: NDArray[np.int32],
+    trial: NDArray[np.float64],
+    place: NDArray[np.int32],
+) -> int:
+    """Adds a cell to the heap, or changes its trial distance; returns the new length of the heap."""
+    index = place[cell]
+    if index < 0:
+        _move_up(cell, distance, length, heap, trial, place)
+        return length + 1
+    if distance < trial[index]:
+        _move_up(cell, distance, index, heap, trial, place)
+    else:
+        _move_down(cell, distance, index, length, heap, trial, place)
+    return length
+
+
+@njit(cache=True)
+def _move_up(
+    cell: int,
+    distance: float,
+    index: int,
+    heap: NDArray[np.int32],
+    trial: NDArray[np.float64],
+    place: NDArray[np.int32],
+) -> None:
+    """Writes a cell to the heap at `index`, or above it as far as its trial distance is the smaller one."""
+    while index > 0:
+        parent = (index - 1) >> 1
+        if trial[parent] <= distance:
+            break
+        heap[index], trial[index] = heap[parent], trial[parent]
+        place[heap[index]] = index
+        index = parent
+    heap[index], trial[index], place[cell] = cell, distance, index
+
+
+@njit(cache=True)
+def _move_down(
+    cell: int,
+    distance: float,
+    index: int,
+    length: int,
+    heap: NDArray[np.int32],
+    trial: NDArray[np.float64],
+    place: NDArray[np.int32],
+) -> None:
+    """Writes a cell to the heap at `index`, or below it as far as its trial distance is the larger one."""
+    while 2 * index + 1 < length:
+        child = 2 * index + 1
+        if child + 1 < length and trial[child + 1] < trial[child]:
+            child += 1
+        if trial[child] >= distance:
+            break
+        heap[index], trial[index] = heap[child], trial[child]
+        place[heap[index]] = index
+        index = child
+    heap[index], trial[index], place[cell] = cell, distance, index
+
+
+@njit(cache=True)
+def advance_first_order(
+    cost: NDArray[np.float32],
+    time: NDArray[np.float64],
+    width: int,
+    bucket: float,
+    limit: float,
+    target: int,
+    beyond: float,
+) -> float:
+    """Lowers `time`, which holds 0 at goals and infinity elsewhere, until it is right up to the returned time.
+
+    The frame is one cell wide and its cost infinite. Bucket n holds the cells with times from n to n + 1 times
+    `bucket`; the buckets form a ring that is long enough for the slowest cell.
+    """
+    slowest = 0.0
+    for cell in range(cost.size):
+        if math.isfinite(cost[cell]) and cost[cell] > slowest:
+            slowest = cost[cell]
+    ring = int(slowest / bucket) + 3
+    first = np.full(ring, -1, np.int32)  # the first cell of each bucket; the cells of a bucket are linked both ways
+    after = np.full(cost.size, -1, np.int32)
+    before = np.full(cost.size, -1, np.int32)
+    bucket_of = np.full(cost.size, -1, np.int32)
+    waiting = 0
+    for cell in range(cost.size):
+        if time[cell] == 0.0:
+            _link(cell, 0, first, after, before, bucket_of)
+            waiting += 1
+    number = 0
+    while waiting > 0 and number * bucket <= limit:
+        current = number % ring
+        while first[current] >= 0:
+            cell = first[current]
+            _unlink(cell, first, after, before, bucket_of)
+            waiting -= 1
+            for step in (-width, -1, 1, width):
+                near = cell + step
+                if not math.isfinite(cost[near]) or time[near] <= time[cell]:
+                    continue
+                arrival = _first_order_time(time, near, width, float(cost[near]))
+                if arrival >= time[near] - 1e-9:
+                    continue
+                time[near] = arrival
+                later = max(int(arrival / bucket), number) % ring
+                if later == bucket_of[near]:
+                    continue
+                if bucket_of[near] >= 0:
+                    _unlink(near, first, after, before, bucket_of)
+                    waiting -= 1
+                _link(near, later, first, after, before, bucket_of)
+                waiting += 1
+        number += 1
+        if target >= 0 and time[target] < number * bucket:
+            limit = min(limit, time[target] + beyond)
+            target = -1
+    return limit
+
+
+@njit(cache=True)
+def _first_order_time(time: NDArray[np.float64], cell: int, width: int, crossing: float) -> float:
+    """Returns the travel time to a cell that takes `crossing` seconds to cross, from the times of its neighbours."""
+    x = min(time[cell - 1], time[cell + 1])
+    y = min(time[cell - width], time[cell + width])
+    if abs(x - y) >= crossing:
+        return min(x, y) + crossing
+    return 0.5 * (x + y + math.sqrt(2.0 * crossing * crossing - (x - y) * (x - y)))
+
+
+@njit(cache=True)
+def _link(
+    cell: int,
+    bucket: int,
+    first: NDArray[np.int32],
+    after: NDArray[np.int32],
+    before: NDArray[np.int32],
+    bucket_of: NDArray[np.int32],
+) -> None:
+    """Inserts a cell at the head of a bucket."""
+    after[cell], before[cell], bucket_of[cell] = first[bucket], -1, bucket
+    if first[bucket] >= 0:
+        before[first[bucket]] = cell
+    first[bucket] = cell
+
+
+@njit(cache=True)
+def _unlink(
+    cell: int,
+    first: NDArray[np.int32],
+    after: NDArray[np.int32],
+    before: NDArray[np.int32],
+    bucket_of: NDArray[np.int32],
+) -> None:
+    """Removes a cell from its bucket."""
+    if before[cell] >= 0:
+        after[before[cell]] = after[cell]
+    else:
+        first[bucket_of[cell]] = after[cell]
+    if after[cell] >= 0:
+        before[after[cell]] = before[cell]
+    bucket_of[cell] = -1
