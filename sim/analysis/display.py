@@ -1,4 +1,4 @@
-"""What a run shows in the terminal: progress while it works, tables at the end."""
+"""Output of a run in the terminal: progress while it runs, tables at the end."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from sim.evaluation.results import SUMMARY_METRICS
 Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
 PLAIN_WIDTH = 120
-"""Columns where no terminal says how many it has (a file, a pipe, a CI log)."""
+"""Columns of output that is not a terminal (a file, a pipe, a CI log)."""
 
 
 def make_console() -> Console:
-    """The terminal, or plain text wide enough for the tables."""
+    """Returns a console for the terminal, or for plain text that is wide enough for the tables."""
     console = Console()
     return console if console.is_terminal else Console(width=PLAIN_WIDTH)
 
 
 def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: int) -> Iterator[dict[str, Any]]:
-    """Pass the lines on; a bar in a terminal, a line an episode elsewhere."""
+    """Yields the lines and shows progress: a bar in a terminal, else one line of text per episode."""
     if console.is_terminal:
         yield from _with_bar(console, lines, total)
         return
@@ -34,7 +34,7 @@ def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: i
 
 
 def describe(line: Line) -> str:
-    """One episode in one sentence."""
+    """Returns one sentence about an episode."""
     outcome = "found" if line["success"] else f"not found ({line['end_reason']}, {line['failure']})"
     return (
         f"{line['episode_id']}: {line['goal']} {outcome} after {line['num_steps']} steps, {line['wall_time_s']:.0f} s"
@@ -42,7 +42,7 @@ def describe(line: Line) -> str:
 
 
 def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str, Any]) -> None:
-    """The episodes where they are few, and the means with their intervals."""
+    """Prints the episodes if they are few, and the means with their intervals."""
     if len(lines) <= MOST_EPISODES_SHOWN:
         console.print(_episode_table(lines))
     console.print(_summary_table(summary))
@@ -92,7 +92,9 @@ def _episode_table(lines: Sequence[Line]) -> Table:
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    table = Table(title=f"{summary['episodes']} episodes, mean and bootstrap")
+    houses = f"{summary['houses']} house" + "s" * (summary["houses"] != 1)
+    caption = f"Intervals resample {summary['ci95_resamples']}."
+    table = Table(title=f"{summary['episodes']} episodes in {houses}", caption=caption)
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")

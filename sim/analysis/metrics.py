@@ -1,17 +1,18 @@
-"""Metrics of result lines as columns of tables: which number, in which unit, with how many digits."""
+"""Metrics of result lines as columns of tables: the key of the number, its unit and its digits."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sim.analysis.comparison import Line, Value, estimate, paired_difference
+from sim.analysis.comparison import Line
 from sim.analysis.tables import Cell
+from sim.evaluation.bootstrap import Value, estimate, paired_difference
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A column: a number of a result line."""
+    """A number of a result line, shown as a column."""
 
     title: str
     key: str
@@ -19,19 +20,25 @@ class Metric:
     digits: int = 1
 
     def cell(self, lines: Sequence[Line]) -> Cell:
-        """Its mean over lines."""
-        return Cell(estimate([line_value(line, self.key) for line in lines]), self.percent, self.digits)
+        """Returns the mean over lines."""
+        values = [line_value(line, self.key) for line in lines]
+        return Cell(estimate(values, houses_of(lines)), self.percent, self.digits)
 
     def difference(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
-        """Second minus first, paired."""
+        """Returns the mean of second minus first; both hold the same episodes in the same order."""
         values = ([line_value(line, self.key) for line in lines] for lines in (first, second))
-        return Cell(paired_difference(*values), self.percent, self.digits, difference=True)
+        return Cell(paired_difference(*values, houses_of(first)), self.percent, self.digits, difference=True)
 
 
 def line_value(line: Line, key: str) -> Value:
     """Returns the number under this key of a result line; None where there is none."""
     value = line.get(key)
     return None if value is None else float(value)
+
+
+def houses_of(lines: Sequence[Line]) -> list[str]:
+    """Returns the house of each line."""
+    return [str(line["house"]) for line in lines]
 
 
 SUCCESS = Metric("success %", "success", percent=True)

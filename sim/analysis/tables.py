@@ -1,4 +1,4 @@
-"""Tables of estimates: for the terminal, as Markdown, as CSV."""
+"""Tables of estimates, for the terminal, as Markdown and as CSV."""
 
 from __future__ import annotations
 
@@ -7,85 +7,107 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from rich.markup import escape
 from rich.table import Table
 
-from sim.analysis.comparison import UNRESOLVED, Estimate
+from sim.evaluation.bootstrap import Estimate
 
-CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "verdict")
+UNRESOLVED = "unresolved"
+CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
+ONE_HOUSE = "*"
+"""Marks an interval over the episodes of one house."""
+ONE_HOUSE_NOTE = f"{ONE_HOUSE} One house: the interval is over its episodes and says nothing about other houses."
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One estimate and how it is shown."""
+    """One estimate and its format."""
 
     estimate: Estimate
     percent: bool = False
     """Shown times 100."""
     digits: int = 1
     difference: bool = False
-    """Shown with its sign and, where the interval holds 0, as unresolved."""
+    """Shown with its sign, and as unresolved where the interval holds 0."""
 
     @property
     def verdict(self) -> str:
-        """`unresolved`, `higher` or `lower` for a difference; "" for a mean, and where nothing is known."""
+        """`unresolved`, `higher` or `lower` for a difference; "" for a mean and for a difference without pairs."""
         if not self.difference or self.estimate.mean is None:
             return ""
         if not self.estimate.resolved:
             return UNRESOLVED
         return "higher" if self.estimate.mean > 0.0 else "lower"
 
-    def text(self) -> str:
-        """`12.0 [8.0, 16.0]`, a difference as `+4.0 [-1.0, 9.0] unresolved`."""
-        value = self.estimate
-        if value.mean is None or value.low is None or value.high is None:
-            return "-"
-        scale, sign = 100.0 if self.percent else 1.0, "+" if self.difference else ""
-        mean, low, high = (f"{scale * number:{sign}.{self.digits}f}" for number in (value.mean, value.low, value.high))
-        unresolved = f" {UNRESOLVED}" if self.verdict == UNRESOLVED else ""
-        return f"{mean} [{low}, {high}]{unresolved}"
+    @property
+    def mean_text(self) -> str:
+        """`12.0`, or `-` without a value."""
+        return "-" if self.estimate.mean is None else self._number(self.estimate.mean)
+
+    @property
+    def interval_text(self) -> str:
+        """`[8.0, 16.0]`, with an asterisk if it is over the episodes of one house; "" without a value."""
+        low, high = self.estimate.low, self.estimate.high
+        if low is None or high is None:
+            return ""
+        return f"[{self._number(low)}, {self._number(high)}]" + ONE_HOUSE * (self.estimate.houses == 1)
+
+    def text(self, separator: str = " ") -> str:
+        """Returns `12.0 [8.0, 16.0]`, for a difference `+4.0 [-1.0, 9.0] unresolved`."""
+        unresolved = UNRESOLVED if self.verdict == UNRESOLVED else ""
+        return separator.join(filter(None, (self.mean_text, self.interval_text, unresolved)))
+
+    def _number(self, value: float) -> str:
+        sign = "+" if self.difference else ""
+        return f"{(100.0 if self.percent else 1.0) * value:{sign}.{self.digits}f}"
 
 
 @dataclass(frozen=True)
 class ResultTable:
-    """Rows of cells under a header."""
+    """A table: rows of cells under a header."""
 
     name: str
-    """Of its files."""
+    """Name in the CSV file."""
     title: str
     header: tuple[str, ...]
-    """The first column has the rows' labels."""
+    """The first column has the labels of the rows."""
     rows: Sequence[tuple[str, Sequence[Cell | str]]]
     notes: Sequence[str] = field(default_factory=tuple)
     """Sentences below the table."""
 
+    @property
+    def footnotes(self) -> tuple[str, ...]:
+        """The notes, and the meaning of the asterisk if a cell has one."""
+        cells = [cell for _, row in self.rows for cell in row if isinstance(cell, Cell)]
+        return (*self.notes, *((ONE_HOUSE_NOTE,) if any(cell.estimate.houses == 1 for cell in cells) else ()))
+
 
 def to_rich(table: ResultTable) -> Table:
-    """For the terminal."""
-    shown = Table(
-        title=table.title, caption="\n".join(table.notes) or None, title_justify="left", caption_justify="left"
-    )
+    """Returns the table for the terminal."""
+    caption = escape("\n".join(table.footnotes)) or None
+    shown = Table(title=table.title, caption=caption, title_justify="left", caption_justify="left")
     shown.add_column(table.header[0])
     for name in table.header[1:]:
         shown.add_column(name, justify="right")
     for label, cells in table.rows:
-        shown.add_row(label, *(_text(cell).replace(" [", "\n[").replace("] ", "]\n") for cell in cells))
+        shown.add_row(escape(label), *(escape(_text(cell, "\n")) for cell in cells))
     return shown
 
 
 def to_markdown(tables: Sequence[ResultTable]) -> str:
-    """Several tables as one page."""
+    """Returns several tables as one page."""
     parts = []
     for table in tables:
         rule = ["---", *("---:" for _ in table.header[1:])]
         lines = [list(table.header), rule, *([label, *map(_text, cells)] for label, cells in table.rows)]
         grid = "".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |\n" for line in lines)
-        notes = "".join(f"\n{note}\n" for note in table.notes)
+        notes = "".join(f"\n{note}\n" for note in table.footnotes)
         parts.append(f"**{table.title}**\n\n{grid}{notes}")
     return "\n".join(parts)
 
 
 def write_csv(file: Path, tables: Sequence[ResultTable]) -> None:
-    """Several tables, a line a cell that holds a number; shares and not percent."""
+    """Writes one line for each cell that holds a number, of several tables; shares are not in percent."""
     with file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(CSV_COLUMNS)
@@ -95,8 +117,8 @@ def write_csv(file: Path, tables: Sequence[ResultTable]) -> None:
                     if isinstance(cell, Cell):
                         value = cell.estimate
                         numbers = ("" if v is None else round(v, 6) for v in (value.mean, value.low, value.high))
-                        writer.writerow([table.name, label, column, *numbers, value.count, cell.verdict])
+                        writer.writerow([table.name, label, column, *numbers, value.count, value.houses, cell.verdict])
 
 
-def _text(cell: Cell | str) -> str:
-    return cell if isinstance(cell, str) else cell.text()
+def _text(cell: Cell | str, separator: str = " ") -> str:
+    return cell if isinstance(cell, str) else cell.text(separator)

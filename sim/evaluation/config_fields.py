@@ -35,7 +35,7 @@ def field_text(value: Any) -> str:
 def _differences(path: str, a: Any, b: Any) -> list[Difference]:
     first, second = _fields(a, b), _fields(b, a)
     if first is None or second is None:
-        return [] if a == b and type(a) is type(b) else [(path, a, b)]
+        return [] if a == b and isinstance(a, bool) == isinstance(b, bool) else [(path, a, b)]
     found: list[Difference] = []
     for key in {*first, *second}:
         inner = f"{path}.{key}" if path else key

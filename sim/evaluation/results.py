@@ -21,6 +21,8 @@ from sim.evaluation.config_fields import ABSENT, differing_fields, field_text
 
 SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
 """Metrics of a result line that the summary averages."""
+RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
+"""What the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
@@ -124,7 +126,7 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
         "episodes": len(lines),
         "errors": sum(line["end_reason"] == "error" for line in lines),
         "houses": len(set(houses)),
-        "ci95_resamples": "episodes of the one house" if len(set(houses)) == 1 else "houses, then episodes of each",
+        "ci95_resamples": RESAMPLED_IN_ONE_HOUSE if len(set(houses)) == 1 else RESAMPLED,
     }
     for metric in SUMMARY_METRICS:
         value = estimate([line.get(metric) for line in lines], houses)

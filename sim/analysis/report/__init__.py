@@ -1,1 +1,1 @@
-"""The report of a run as one HTML page: `python -m sim.report RUN_DIR`, or two runs side by side."""
+"""Builds the report of one run, or of two runs side by side, as one HTML page: `python -m sim.report RUN_DIR`."""

@@ -1,4 +1,4 @@
-"""A page from one run, or from two that played the same episodes: everything is read, nothing is played again."""
+"""Builds the page of one run, or of two runs of the same episodes, from their files; no episode is run again."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ from typing import Any
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
-from sim.analysis.comparison import MIN_PAIRS, Line, Run, require_same_episodes
-from sim.analysis.report.drawings import Ways, draw_episodes, read_ways, video_of
-from sim.analysis.report.figures import causes, groups, means, verdict
+from sim.analysis.comparison import Line, Run, differences_table, require_same_episodes
+from sim.analysis.report.drawings import Trajectories, draw_episodes, read_trajectories, video_of
+from sim.analysis.report.figures import causes, groups, interval_note, means, verdict
 from sim.analysis.report.words import explain, outcome
 from sim.errors import ConfigError
+from sim.evaluation.bootstrap import MIN_PAIRS
 
 NO_DEFAULT = ("agent", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg", "episodes")
 DEFAULTS: Mapping[str, Any] = {"semantics": "gt", "seed": 0, "profile": "fast", "noise": "none", "workers": 1}
-"""Options of `sim.run` that are told as a command; those with another value than here."""
+"""Options of `sim.run` that the command of a run names if their value differs from this one."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +36,12 @@ class Column:
     title: str
     is_number: bool = True
     second: bool = True
-    """Left out where the window is narrow."""
+    """True: hidden in a narrow window."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """An episode in the table."""
+    """The row of an episode in the table."""
 
     episode_id: str
     goal: str
@@ -48,7 +49,7 @@ class Row:
     outcomes: Sequence[str]
     """One for each run."""
     tokens: Sequence[str]
-    """What the filter of outcomes goes by."""
+    """Values of the filter of outcomes that select this episode."""
     numbers: Sequence[tuple[str, float | None]]
     """Text and value of the other columns."""
     collisions: int
@@ -56,10 +57,10 @@ class Row:
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What the head of the page says of a run."""
+    """Facts about a run at the top of the page."""
 
     label: str
-    """`A`, `B`; "" for a run alone."""
+    """`A` or `B`; "" for a single run."""
     name: str
     facts: Sequence[tuple[str, Any]]
     command: str
@@ -74,15 +75,15 @@ _TOKENS |= {"both": "both found it", "neither": "neither found it"}
 
 
 def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
-    """The HTML of the report.
+    """Returns the HTML of the report.
 
     Args:
-        runs: one, or two that played the same episodes.
-        out_folder: where the page will lie; links to videos are relative to it.
-        command: that made the page, for its foot.
+        runs: one run, or two runs of the same episodes.
+        out_folder: folder of the page; links to videos are relative to it.
+        command: the command that made the page, for its footer.
 
     Raises:
-        ConfigError: no episode has ended yet, or the two runs were not played on the same episodes.
+        ConfigError: no episode has ended yet, or the two runs are not of the same episodes.
     """
     for run in runs:
         if not run.lines:
@@ -91,22 +92,24 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
     episode_ids = require_same_episodes(*runs) if both else list(runs[0].lines)
     episode_ids.sort(key=_by_number)
     lines = [[run.lines[i] for i in episode_ids] for run in runs]
-    ways, complaints = read_ways(runs, episode_ids)
-    drawings, regrets = draw_episodes(runs, ways)
+    trajectories, unreadable = read_trajectories(runs, episode_ids)
+    drawings, undrawn = draw_episodes(runs, trajectories)
     labels = ["A", "B"] if both else [""]
     rows = [_row(i, of) for i, of in zip(episode_ids, zip(*lines, strict=True), strict=True)]
     episodes = [
-        _episode(runs, ways, row, out_folder) | drawings.episodes.get(row.episode_id, {"goal": row.goal})
+        _episode(runs, trajectories, row, out_folder) | drawings.episodes.get(row.episode_id, {"goal": row.goal})
         for row in rows
     ]
     template = _environment().from_string(_part("report.html.j2"))
     return template.render(
         title=_title(runs),
         both=both,
-        runs=[_facts(run, label, ways, which) for which, (run, label) in enumerate(zip(runs, labels, strict=True))],
-        notes=[*complaints, *regrets],
+        runs=[_facts(run, label, trajectories, i) for i, (run, label) in enumerate(zip(runs, labels, strict=True))],
+        notes=[*unreadable, *undrawn],
         count=len(episode_ids),
         means=means(lines),
+        interval_note=interval_note(lines),
+        fields=differences_table(*runs) if both else None,
         by_goal=groups(lines, "goal"),
         by_house=groups(lines, "house"),
         causes=causes(lines),
@@ -130,7 +133,7 @@ def build_page(runs: Sequence[Run], *, out_folder: Path, command: str) -> str:
 
 
 def _environment() -> Environment:
-    """Escapes all that it is given; JSON without spaces."""
+    """Returns a template environment that escapes all values and writes JSON without spaces."""
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["plain"] = lambda name: str(name).replace("_", " ")
     environment.globals["verdict"] = verdict
@@ -152,7 +155,7 @@ def _title(runs: Sequence[Run]) -> str:
     return f"{' against '.join(names)} on {split}"
 
 
-def _facts(run: Run, label: str, ways: Ways, which: int) -> RunFacts:
+def _facts(run: Run, label: str, trajectories: Trajectories, index: int) -> RunFacts:
     config = run.config
     split, versions = config.get("split_identity", {}), config.get("versions", {})
     codes = config.get("codes") or [versions.get("code", "unknown")]
@@ -165,14 +168,14 @@ def _facts(run: Run, label: str, ways: Ways, which: int) -> RunFacts:
         ("profile", config.get("profile")),
         ("seed", config.get("seed")),
         ("code", " or ".join(map(str, codes))),
-        ("drawn by", versions.get("gl_renderer")),
+        ("renderer", versions.get("gl_renderer")),
     ]
     shown = [(name, value) for name, value in facts if value is not None]
-    return RunFacts(label, run.path.resolve().name, shown, command_of(config), list(_notes(run, ways, which)))
+    return RunFacts(label, run.path.resolve().name, shown, command_of(config), list(_notes(run, trajectories, index)))
 
 
 def command_of(config: Mapping[str, Any]) -> str:
-    """The command that makes such a run, but for `--out`."""
+    """Returns the command of a run without `--out`."""
     words = ["python", "-m", "sim.run"]
     for key in (*NO_DEFAULT, *DEFAULTS):
         value = config.get(key)
@@ -182,34 +185,34 @@ def command_of(config: Mapping[str, Any]) -> str:
     return shlex.join([*words, "--record"])
 
 
-def _notes(run: Run, ways: Ways, which: int) -> Iterable[str]:
-    """What a reader has to know of a run that is not whole."""
-    wanted, there = run.config.get("episodes"), len(run.lines)
-    if isinstance(wanted, int) and there < wanted:
+def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
+    """Yields sentences about what is missing in a run."""
+    wanted, count = run.config.get("episodes"), len(run.lines)
+    if isinstance(wanted, int) and count < wanted:
         yield (
-            f"Not finished: {there} of {wanted} episodes have ended. The same command with --out {run.path} goes on "
-            "where it was."
+            f"Not finished: {count} of {wanted} episodes have ended. The same command with --out {run.path} runs the "
+            "rest."
         )
-    broken = sum(line.get("end_reason") == "error" for line in run.lines.values())
-    if broken:
-        yield f"{broken} of {there} episodes broke; they count as failures and are listed below."
+    errors = sum(line.get("end_reason") == "error" for line in run.lines.values())
+    if errors:
+        yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
     if len(run.config.get("codes") or []) > 1:
-        yield "The episodes were played by more than one version of the code."
-    missing = sum(of_runs[which] is None for of_runs in ways.values()) - broken
-    if missing >= len(ways) - broken and len(ways) > broken:
+        yield "The episodes were run by more than one version of the code."
+    missing = sum(of_runs[index] is None for of_runs in trajectories.values()) - errors
+    if missing >= len(trajectories) - errors and len(trajectories) > errors:
         yield (
             "There are no trajectories, so there are no pictures. The command below, with --record and another --out, "
-            "plays the same episodes and leaves them."
+            "runs the same episodes and writes them."
         )
     elif missing > 0:
-        yield f"{missing} episodes have no trajectory (they were played without --record), so no picture."
+        yield f"{missing} episodes have no trajectory (they were run without --record), so no picture."
 
 
 def _errors(lines: Sequence[Sequence[Line]], labels: Sequence[str]) -> Iterable[tuple[str, str, str]]:
     for label, of_run in zip(labels, lines, strict=True):
         for line in of_run:
             if line.get("end_reason") == "error":
-                yield label, line["episode_id"], str(line.get("error") or "no reason was written down")
+                yield label, line["episode_id"], str(line.get("error") or "no reason was recorded")
 
 
 def _columns(both: bool) -> list[Column]:
@@ -242,33 +245,33 @@ def _shown(value: float | None, digits: int, sign: str = "") -> tuple[str, float
 
 
 def _tokens(outcomes: Sequence[str]) -> list[str]:
-    """`found`, or `failed` and the cause; of two runs who found it, and the causes."""
+    """Returns `found`, or `failed` and the cause; for two runs which of them found the goal, and the causes."""
     failures = sorted({name for name in outcomes if name != "found"})
     if len(outcomes) == 1:
         return ["failed", *(name for name in failures if name != "failed")] if failures else ["found"]
     found = [name == "found" for name in outcomes]
-    who = {(True, True): "both", (True, False): "only-a", (False, True): "only-b", (False, False): "neither"}
-    return [who[found[0], found[1]], *failures]
+    token = {(True, True): "both", (True, False): "only-a", (False, True): "only-b", (False, False): "neither"}
+    return [token[found[0], found[1]], *failures]
 
 
 def _outcomes(rows: Sequence[Row]) -> list[tuple[str, str, int]]:
-    """What the filter of outcomes offers: token, words, and how many episodes it leaves."""
+    """Returns the choices of the filter of outcomes: token, words, and number of episodes."""
     counts = Counter(token for row in rows for token in row.tokens)
     order = ["found", "both", "only-a", "only-b", "neither", "failed"]
     tokens = [token for token in order if token in counts] + sorted(set(counts).difference(order))
     return [(token, _TOKENS.get(token, token.replace("_", " ")), counts[token]) for token in tokens]
 
 
-def _episode(runs: Sequence[Run], ways: Ways, row: Row, out_folder: Path) -> dict[str, Any]:
-    """What the page needs of an episode beside what is drawn."""
+def _episode(runs: Sequence[Run], trajectories: Trajectories, row: Row, out_folder: Path) -> dict[str, Any]:
+    """Returns the data of an episode that the page needs besides its drawing."""
     lines = [run.lines[row.episode_id] for run in runs]
-    words = [explain(line, way) for line, way in zip(lines, ways[row.episode_id], strict=True)]
+    words = [explain(line, trajectory) for line, trajectory in zip(lines, trajectories[row.episode_id], strict=True)]
     videos = [_link(video_of(run, row.episode_id), out_folder) for run in runs]
     return {"id": row.episode_id, "outcomes": row.outcomes, "words": words, "videos": videos}
 
 
 def _by_number(name: str) -> list[tuple[int, str]]:
-    """`val_9` before `val_10`."""
+    """Returns a sort key that puts `val_9` before `val_10`."""
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 

@@ -1,4 +1,4 @@
-"""What a page draws of episodes: plans of the houses, areas of the goals, and ways; all of JSON's types."""
+"""Collects the drawings of a page as JSON types: plans of houses, success areas of goals, and paths of robots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.analysis.comparison import Run
-from sim.analysis.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_way
+from sim.analysis.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_path
 from sim.analysis.report.words import marks
 from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import EpisodeError, HouseError
@@ -23,81 +23,83 @@ from sim.task.metrics import EXPLORED_SHARE
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.world.world import World
 
-Ways = Mapping[str, Sequence[Trajectory | None]]
+Trajectories = Mapping[str, Sequence[Trajectory | None]]
 """For each episode the trajectory of each run."""
-Truth = GroundTruth | None
-"""Of a house; None where it is not there."""
+HouseTruth = GroundTruth | None
+"""Ground truth of a house; None where the house cannot be loaded."""
 
 
 def split_of(run: Run) -> Split:
-    """The split or the house that a run was played in.
+    """Returns the split of a run, or a split with its one house.
 
     Raises:
-        ConfigError: it is another version now, or is not there.
-        HouseError: its one house is not there.
+        ConfigError: the split does not exist or has another version now.
+        HouseError: the one house does not exist.
     """
     config = run.config
     split = (
         one_house(config["house"], labels=config.get("labels")) if config.get("house") else load_split(config["split"])
     )
     if split.sha256 != config["split_identity"]["sha256"]:
-        raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than is here now.")
+        raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than the present one.")
     return split
 
 
-def read_ways(runs: Sequence[Run], episode_ids: Sequence[str]) -> tuple[Ways, list[str]]:
-    """The trajectories that are there, and sentences about files that cannot be read."""
-    complaints: list[str] = []
+def read_trajectories(runs: Sequence[Run], episode_ids: Sequence[str]) -> tuple[Trajectories, list[str]]:
+    """Returns the existing trajectories, and sentences about files that cannot be read."""
+    problems: list[str] = []
 
     def read(run: Run, episode_id: str) -> Trajectory | None:
         file = trajectory_file(run.path, episode_id)
         try:
             return read_trajectory(file) if file.is_file() else None
         except ConfigError as error:
-            complaints.append(str(error))
+            problems.append(str(error))
             return None
 
-    return {i: [read(run, i) for run in runs] for i in episode_ids}, complaints
+    return {i: [read(run, i) for run in runs] for i in episode_ids}, problems
 
 
 @dataclass(frozen=True)
 class Drawings:
-    """All that is drawn; what several episodes share is there once."""
+    """All drawings of a page; those that several episodes share are stored once."""
 
     plans: dict[str, Any] = field(default_factory=dict)
     """By house and storey (`sim.analysis.report.plans.draw_plan`)."""
     areas: dict[str, str] = field(default_factory=dict)
-    """Where a STOP counts, by plan and goal."""
+    """The area where a STOP succeeds, by plan and goal."""
     episodes: dict[str, Any] = field(default_factory=dict)
-    """By id: the names of its plan and area, the shortest way, and a way for each run."""
+    """By id: the names of plan and area, the shortest path, and a path for each run."""
 
-    def add(self, runs: Sequence[Run], episode_id: str, ways: Sequence[Trajectory | None], truth: Truth) -> None:
-        """Draw one episode, in its house if that is there."""
-        there = [trajectory for trajectory in ways if trajectory is not None]
+    def add(
+        self, runs: Sequence[Run], episode_id: str, trajectories: Sequence[Trajectory | None], truth: HouseTruth
+    ) -> None:
+        """Draws one episode, with its house if that could be loaded."""
+        existing = [trajectory for trajectory in trajectories if trajectory is not None]
         if truth is None:
-            sheet = sheet_around(np.vstack([trajectory.positions_m for trajectory in there]))
+            sheet = sheet_around(np.vstack([trajectory.positions_m for trajectory in existing]))
             episode: dict[str, Any] = {"size": sheet.size_px}
             radius_m = RobotModel().radius_m
         else:
-            line, floor_z_m = runs[0].lines[episode_id], float(there[0].poses[0, 3])
+            line, floor_z_m = runs[0].lines[episode_id], float(existing[0].poses[0, 3])
             sheet = Sheet(truth.space(floor_z_m).frame)
             plan = f"{line['house']}@{floor_z_m:g}"
             if plan not in self.plans:
                 self.plans[plan] = draw_plan(truth, floor_z_m)
-            start_m, radius_m = there[0].positions_m[0].tolist(), truth.world.robot.radius_m
+            start_m, radius_m = existing[0].positions_m[0].tolist(), truth.world.robot.radius_m
             episode = {"plan": plan, **self._target(truth, plan, str(line["goal"]), floor_z_m, start_m)}
-        episode["ways"] = [
+        episode["paths"] = [
             None
             if trajectory is None
-            else way(sheet, trajectory, radius_m=radius_m) | {"marks": _marks(run, episode_id, trajectory)}
-            for run, trajectory in zip(runs, ways, strict=True)
+            else path_on(sheet, trajectory, radius_m=radius_m) | {"marks": _marks(run, episode_id, trajectory)}
+            for run, trajectory in zip(runs, trajectories, strict=True)
         ]
         self.episodes[episode_id] = episode
 
     def _target(
         self, truth: GroundTruth, plan: str, goal: str, floor_z_m: float, start_m: Sequence[float]
     ) -> dict[str, Any]:
-        """Where a STOP counts and the shortest way there, where the house has such a thing."""
+        """Draws the area where a STOP succeeds and the shortest path to it, if the house has the goal."""
         try:
             target = truth.target(goal, floor_z_m)
         except EpisodeError:
@@ -105,49 +107,50 @@ class Drawings:
         space, area = truth.space(floor_z_m), f"{plan}/{goal}"
         if area not in self.areas:
             self.areas[area] = draw_area(space, target.reached)
-        shortest = shortest_way(space, target, start_m)
+        shortest = shortest_path(space, target, start_m)
         line = [] if shortest is None else Sheet(space.frame).place(shortest).reshape(-1).tolist()
         return {"goal": goal, "area": area, "shortest": line}
 
 
-def draw_episodes(runs: Sequence[Run], ways: Ways) -> tuple[Drawings, list[str]]:
-    """Draw what has a trajectory in some run; and sentences about what could not be drawn.
+def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Drawings, list[str]]:
+    """Returns drawings of the episodes with a trajectory in some run, and sentences about houses without a drawing.
 
-    Houses that are not there any more, or have changed, are left out: then the ways stand alone.
+    Episodes in houses that do not exist any more, or have changed, are drawn without a plan.
     """
-    drawings, regrets = Drawings(), []
-    drawn = [i for i, of_runs in ways.items() if any(way is not None for way in of_runs)]
-    if not drawn:
-        return drawings, regrets
+    drawings, problems = Drawings(), []
+    recorded = [i for i, of_runs in trajectories.items() if any(trajectory is not None for trajectory in of_runs)]
+    if not recorded:
+        return drawings, problems
     split, robot = None, None
     try:
         split, robot = split_of(runs[0]), _robot_of(runs[0])
     except (ConfigError, HouseError, KeyError) as error:
-        regrets.append(f"The houses are not drawn: {error}")
-    truth: Truth = None
+        problems.append(f"The houses are not drawn: {error}")
+    truth: HouseTruth = None
     house = None
-    for episode_id in sorted(drawn, key=lambda i: str(runs[0].lines[i]["house"])):
+    for episode_id in sorted(recorded, key=lambda i: str(runs[0].lines[i]["house"])):
         if house != (house := str(runs[0].lines[episode_id]["house"])) and split is not None:
             try:
                 truth = GroundTruth(World(split.load_house(house), robot=robot))
             except (ConfigError, HouseError) as error:
                 truth = None
-                regrets.append(f"House '{house}' is not drawn: {error}")
-        drawings.add(runs, episode_id, ways[episode_id], truth)
-    return drawings, regrets
+                problems.append(f"House '{house}' is not drawn: {error}")
+        drawings.add(runs, episode_id, trajectories[episode_id], truth)
+    return drawings, problems
 
 
 def _robot_of(run: Run) -> RobotConfig | None:
-    """The robot from elsewhere that played; None for ours."""
+    """Returns the robot of `--robot`; None for ours."""
     return load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else None
 
 
-def way(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, Any]:
-    """A trajectory over a sheet, of a robot of this radius.
+def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, Any]:
+    """Returns a trajectory on a sheet, of a robot with this radius.
 
-    `x`, `y` (page units) and `a` (degrees, clockwise as on the page) are the first value and then differences; `d` is
-    decimetres to go, null where there is no way; `actions` a digit an action; `hits` step, x and y of each contact
-    that stopped a motion; `stopped` the steps in which that happened; `seen` spans of steps with the goal in view.
+    `x`, `y` (page units) and `a` (degrees, clockwise on the page) are the first value, then differences; `d` is the
+    distance to go in decimetres, null where there is no path; `actions` has one digit per action; `hits` are step, x
+    and y of each contact that stopped a motion; `stopped` are the steps of these contacts; `seen` are spans of steps
+    with the goal in view.
     """
     places = sheet.place(trajectory.positions_m)
     degrees = np.rad2deg(-np.unwrap(trajectory.poses[:, 2].astype(np.float64))).round().astype(np.int64)
@@ -167,7 +170,7 @@ def way(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, A
 
 
 def video_of(run: Run, episode_id: str) -> Path | None:
-    """The video of an episode, where there is one."""
+    """Returns the video of an episode, None if there is none."""
     file = run.path / "videos" / f"{trajectory_file(Path(), episode_id).stem}.mp4"
     return file if file.is_file() else None
 
@@ -182,7 +185,7 @@ def _differences(values: NDArray[np.integer]) -> list[int]:
 
 
 def _spans(mask: NDArray[np.bool_]) -> Iterator[list[int]]:
-    """[first, last] of each run of True."""
+    """Yields [first, last] of each span of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     for first, end in edges.reshape(-1, 2).tolist():
         yield [first, end - 1]

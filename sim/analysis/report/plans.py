@@ -1,7 +1,7 @@
-"""Floor plans for a page: outlines of what stands on a storey, as SVG paths, and the shortest way over it.
+"""Draws floor plans for a page: outlines of the objects on a storey as SVG paths, and shortest paths.
 
-Coordinates on a page are whole centimetres, x to the right and y down, from the upper left corner of the storey's
-chart (`sim.world.freespace`), so that the plan of a house is drawn once and the ways of all its episodes fit over it.
+Coordinates on a page are whole centimetres, x to the right and y down, from the upper left corner of the storey's grid
+(`sim.world.freespace`). So the plan of a house is drawn once, and the paths of all its episodes fit over it.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from sim.world.freespace import CELL_M, FreeSpace
 PX_M = 100.0
 """Units of the page in a metre."""
 CUT_M = (0.9, 1.3)
-"""Walls and what is in them are cut between these heights above the floor: lintels leave doors open."""
+"""Walls, doors and windows are cut between these heights above the floor, so that lintels leave doorways open."""
 HIGHEST_M, HIGHEST_GOAL_M = 1.9, 2.6
-"""What hangs higher than this above the floor is left out; goals are of interest wherever they hang."""
+"""Objects and goals whose lower edge is higher than this above the floor are left out."""
 CUT = ("wall", "door", "window", "column")
 LEFT_OUT = frozenset({"floor", "ceiling", "beam", "lighting", "void", *CUT})
 SMOOTH_PX = 1.5
-"""How far a simplified outline may be from the true one."""
+"""Largest distance of a simplified outline from the true one."""
 _NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """Where a storey lies on the page."""
+    """The place of a storey on the page."""
 
     frame: GridFrame
 
@@ -51,13 +51,13 @@ class Sheet:
         return round(cols * self.frame.cell_m * PX_M), round(rows * self.frame.cell_m * PX_M)
 
     def place(self, xy_m: ArrayLike) -> NDArray[np.int32]:
-        """(n, 2) places on the page of places (n, 2) in the world."""
+        """Returns (n, 2) points on the page of points (n, 2) in the world."""
         xy = (np.asarray(xy_m, np.float64).reshape(-1, 2) - self.frame.origin_xy_m) * PX_M
         return np.stack([xy[:, 0], self.size_px[1] - xy[:, 1]], axis=1).round().astype(np.int32)
 
 
 def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sheet:
-    """A sheet for a way (n, 2) through a house that is not there."""
+    """Returns a sheet for positions (n, 2) in a house that cannot be loaded."""
     low, high = positions_m.min(axis=0) - margin_m, positions_m.max(axis=0) + margin_m
     cell = CELL_M
     cols, rows = np.ceil((high - low) / cell).astype(int).tolist()
@@ -65,34 +65,35 @@ def sheet_around(positions_m: NDArray[np.floating], margin_m: float = 1.0) -> Sh
 
 
 def draw_plan(truth: GroundTruth, floor_z_m: float) -> dict[str, Any]:
-    """One storey, in JSON's types.
+    """Returns the drawing of one storey as JSON types.
 
-    `size`, `floor` (rectangles), `shapes` ([category, name, path]) from the lowest up, `rooms` ([name, x, y, width]).
+    Keys: `size`, `floor` (rectangles), `shapes` ([category, name, SVG path]) from the lowest up, and `rooms`
+    ([name, x, y, width]).
     """
     sheet = Sheet(truth.space(floor_z_m).frame)
     rooms = [room for room in truth.world.rooms if abs(room.floor_z_m - floor_z_m) < truth.world.rule.same_storey_m]
     return {
         "size": sheet.size_px,
         "floor": _rectangles(sheet, rooms),
-        "shapes": [*_things(truth, sheet, floor_z_m), *_structure(truth, sheet, floor_z_m)],
+        "shapes": [*_objects(truth, sheet, floor_z_m), *_structure(truth, sheet, floor_z_m)],
         "rooms": [[room.kind.replace("_", " "), *_label_place(sheet, room)] for room in rooms],
     }
 
 
 def draw_area(space: FreeSpace, mask: NDArray[np.bool_]) -> str:
-    """The outline of some cells of a free space, an SVG path; "" for none."""
+    """Returns the outline of some cells of a free space as an SVG path; "" for none."""
     sheet = Sheet(space.frame)
     scale = space.frame.cell_m * PX_M
     image = cv2.resize(mask.astype(np.uint8)[::-1], sheet.size_px, interpolation=cv2.INTER_NEAREST)
     return _outline(np.asarray(image, np.uint8), (0, 0), smooth_px=scale)
 
 
-def shortest_way(space: FreeSpace, target: Target, start_xy_m: Sequence[float]) -> NDArray[np.float64] | None:
-    """(k, 2) corners of the shortest way from a place to where a STOP succeeds, metres; None: there is no way.
+def shortest_path(space: FreeSpace, target: Target, start_xy_m: Sequence[float]) -> NDArray[np.float64] | None:
+    """Returns (k, 2) corners of the shortest path from a point to where a STOP succeeds, metres; None: no path.
 
-    The distances are descended cell by cell, then the way is pulled taut within the free cells.
+    It descends the distance field cell by cell and then straightens the path within the free cells.
     """
-    cell = _nearest_with_way(space, target, start_xy_m)
+    cell = _nearest_with_path(space, target, start_xy_m)
     if cell is None:
         return None
     cells = [cell]
@@ -101,12 +102,12 @@ def shortest_way(space: FreeSpace, target: Target, start_xy_m: Sequence[float]) 
         if further is None:
             break
         cells.append(further)
-    way = np.vstack([np.asarray(start_xy_m, np.float64), space.frame.to_metres(cells)])
-    return _taut(space, way)
+    path = np.vstack([np.asarray(start_xy_m, np.float64), space.frame.to_metres(cells)])
+    return _straightened(space, path)
 
 
-def _things(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
-    """What stands on or hangs above this floor, but not on the next storey's."""
+def _objects(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
+    """Returns the shapes of the objects on this storey."""
     model, labels = truth.world.model, truth.world.labels
     data, rendered = _at_rest(model), rendered_geoms(model)
     found: list[tuple[float, list[str]]] = []
@@ -124,7 +125,7 @@ def _things(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list
 
 
 def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[list[str]]:
-    """Walls, doors, windows and columns, cut; each category is one path."""
+    """Yields the cut walls, doors, windows and columns; each category is one SVG path."""
     model, labels = truth.world.model, truth.world.labels
     data, rendered = _at_rest(model), rendered_geoms(model)
     low_m, high_m = floor_z_m + CUT_M[0], floor_z_m + CUT_M[1]
@@ -143,7 +144,7 @@ def _structure(truth: GroundTruth, sheet: Sheet, floor_z_m: float) -> Iterable[l
 def _cut(
     model: mujoco.MjModel, data: mujoco.MjData, geom: int, low_m: float, high_m: float
 ) -> list[NDArray[np.float64]]:
-    """Polygons (k, 2) of a geom between two heights in plan; those of a hollow mesh may be lines."""
+    """Returns polygons (k, 2) in plan of a geom between two heights; those of a concave mesh may be lines."""
     if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom):
         triangles = mesh_triangles(model, data, geom)
         reach = (triangles[..., 2].min(axis=1) <= high_m) & (triangles[..., 2].max(axis=1) >= low_m)
@@ -153,7 +154,7 @@ def _cut(
 
 
 def _union(sheet: Sheet, polygons_m: Sequence[NDArray[np.float64]]) -> str:
-    """The outline of convex polygons (k, 2) together, an SVG path."""
+    """Returns the outline of the union of convex polygons (k, 2) as an SVG path."""
     if not polygons_m:
         return ""
     polygons = [sheet.place(polygon) for polygon in polygons_m]
@@ -169,7 +170,7 @@ def _union(sheet: Sheet, polygons_m: Sequence[NDArray[np.float64]]) -> str:
 
 
 def _outline(image: NDArray[np.uint8], corner_px: tuple[int, int], smooth_px: float = SMOOTH_PX) -> str:
-    """Contours of a mask, holes among them (fill-rule evenodd), as a path of relative lines."""
+    """Returns the contours of a mask, with holes (fill-rule evenodd), as an SVG path of relative lines."""
     contours, _ = cv2.findContours(image, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_SIMPLE, offset=corner_px)
     parts = []
     for contour in contours:
@@ -181,7 +182,7 @@ def _outline(image: NDArray[np.uint8], corner_px: tuple[int, int], smooth_px: fl
 
 
 def _rectangles(sheet: Sheet, rooms: Sequence[Room]) -> list[list[int]]:
-    """[x, y, width, height] of the rooms' boxes; of the whole sheet where no room is declared."""
+    """Returns [x, y, width, height] of the boxes of the rooms, or of the whole sheet if no room is declared."""
     rectangles = []
     for room in rooms:
         for (x, y, _), (hx, hy, _) in room.boxes:
@@ -191,7 +192,7 @@ def _rectangles(sheet: Sheet, rooms: Sequence[Room]) -> list[list[int]]:
 
 
 def _label_place(sheet: Sheet, room: Room) -> list[int]:
-    """The middle of the largest box of a room, and how wide that is."""
+    """Returns [x, y, width]: the middle of the largest box of a room, and its width."""
     (x, y, _), (half_m, _, _) = max(room.boxes, key=lambda box: box[1][0] * box[1][1])
     return [*sheet.place([(x, y)])[0].tolist(), round(2.0 * half_m * PX_M)]
 
@@ -202,8 +203,8 @@ def _at_rest(model: mujoco.MjModel) -> mujoco.MjData:
     return data
 
 
-def _nearest_with_way(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
-    """The nearest cell, within 0.3 m, from which there is a way."""
+def _nearest_with_path(space: FreeSpace, target: Target, xy_m: Sequence[float]) -> tuple[int, int] | None:
+    """Returns the nearest cell within 0.3 m from which there is a path; None if there is none."""
     x_m, y_m = float(xy_m[0]), float(xy_m[1])
     window = space.frame.index_of((x_m, y_m, x_m, y_m), 0.3)
     x, y = space.frame.axes(window)
@@ -216,7 +217,7 @@ def _nearest_with_way(space: FreeSpace, target: Target, xy_m: Sequence[float]) -
 
 
 def _descend(distance_m: NDArray[np.float32], cell: tuple[int, int]) -> tuple[int, int] | None:
-    """The neighbour to which the way falls most steeply; None where it falls to none."""
+    """Returns the neighbour with the steepest descent of the distance; None at a minimum."""
     near = np.asarray(cell) + _NEIGHBOURS
     near = near[np.all((near >= 0) & (near < distance_m.shape), axis=1)]
     slope = (distance_m[tuple(near.T)] - distance_m[cell]) / np.hypot(*(near - cell).T)
@@ -224,23 +225,23 @@ def _descend(distance_m: NDArray[np.float32], cell: tuple[int, int]) -> tuple[in
     return (int(near[best][0]), int(near[best][1])) if slope[best] < 0.0 else None
 
 
-def _taut(space: FreeSpace, way_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The corners that are left when a way (n, 2) is pulled taut within the free cells."""
+def _straightened(space: FreeSpace, path_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the corners that remain when a path (n, 2) is straightened within the free cells."""
     kept, here = [0], 0
-    while here < len(way_m) - 1:
+    while here < len(path_m) - 1:
         ahead = here + 1
-        for further in range(here + 2, len(way_m)):
-            if _is_free_between(space, way_m[here], way_m[further]):
+        for further in range(here + 2, len(path_m)):
+            if _is_free_between(space, path_m[here], path_m[further]):
                 ahead = further
-            elif further - ahead > 20:  # half a metre on, the corner is not passed any more
+            elif further - ahead > 20:  # half a metre further on, the line stays blocked by the corner
                 break
         kept.append(ahead)
         here = ahead
-    return way_m[kept]
+    return path_m[kept]
 
 
 def _is_free_between(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
     count = 2 + int(np.hypot(*(end_m - begin_m)) / (0.5 * space.frame.cell_m))
     cells = space.frame.to_cells(begin_m + np.linspace(0.0, 1.0, count)[:, None] * (end_m - begin_m))
     cells = np.clip(cells, 0, np.array(space.frame.shape) - 1)
-    return bool(space.free[tuple(cells[1:].T)].all())  # the start itself may lie beside a free cell
+    return bool(space.free[tuple(cells[1:].T)].all())  # the start may lie beside a free cell

@@ -1,4 +1,4 @@
-"""Paired differences against numbers by hand, and runs read back."""
+"""Paired differences against known numbers, runs that are read back, and fields in which runs differ."""
 
 from __future__ import annotations
 
@@ -10,26 +10,32 @@ import numpy as np
 import pytest
 
 from sim.analysis.comparison import (
-    MIN_PAIRS,
-    Estimate,
     code_of,
-    estimate,
-    paired_difference,
+    config_differences,
+    differences_table,
+    differing_fields,
     read_run,
     require_same_episodes,
 )
-from sim.analysis.tables import Cell, ResultTable, to_markdown, write_csv
+from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_markdown, to_rich, write_csv
+from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
+from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
+
+
+def houses(count: int) -> list[str]:
+    """One house for each episode: then intervals over houses are those over episodes."""
+    return [f"house_{i:03d}" for i in range(count)]
 
 
 def test_two_pairs_that_differ_by_nothing_and_by_one() -> None:
     # Resamples of (0, 1): means 0, 1/2, 1 with chances 1/4, 1/2, 1/4.
-    assert paired_difference([1.0, 0.0], [1.0, 1.0]) == Estimate(0.5, 0.0, 1.0, 2)
+    assert paired_difference([1.0, 0.0], [1.0, 1.0], houses(2)) == Estimate(0.5, 0.0, 1.0, 2, 2)
 
 
 def test_a_fifth_of_a_hundred_pairs_gained() -> None:
     first, second = [0.0] * 100, [1.0] * 20 + [0.0] * 80
-    difference = paired_difference(first, second)
+    difference = paired_difference(first, second, houses(100))
     assert difference.mean == pytest.approx(0.2)
     # Binomial(100, 0.2): 2.5 % and 97.5 % quantiles are 12 and 28.
     assert (difference.low, difference.high) == (pytest.approx(0.12, abs=0.011), pytest.approx(0.28, abs=0.011))
@@ -38,26 +44,26 @@ def test_a_fifth_of_a_hundred_pairs_gained() -> None:
 
 def test_the_difference_has_the_sign_of_second_minus_first() -> None:
     first, second = [1.0, 2.0, 4.0], [2.0, 2.0, 6.0]
-    assert paired_difference(first, second).mean == pytest.approx(1.0)
-    assert paired_difference(second, first).mean == pytest.approx(-1.0)
+    assert paired_difference(first, second, houses(3)).mean == pytest.approx(1.0)
+    assert paired_difference(second, first, houses(3)).mean == pytest.approx(-1.0)
 
 
 def test_pairing_resolves_what_separate_intervals_do_not() -> None:
     rng = np.random.default_rng(0)
     first = rng.random(60)
     second = first + 0.02 + 0.01 * rng.random(60)
-    separate = estimate(list(first)), estimate(list(second))
+    separate = estimate(list(first), houses(60)), estimate(list(second), houses(60))
     assert separate[0].high is not None
     assert separate[1].low is not None
     assert separate[1].low < separate[0].high
-    assert paired_difference(list(first), list(second)).resolved
+    assert paired_difference(list(first), list(second), houses(60)).resolved
 
 
 def test_a_pair_without_one_of_its_values_does_not_count() -> None:
-    assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None]) == Estimate(1.0, 1.0, 1.0, 1)
-    assert paired_difference([None], [1.0]) == Estimate(None, None, None, 0)
+    assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None], houses(3)) == Estimate(1.0, 1.0, 1.0, 1, 1)
+    assert paired_difference([None], [1.0], houses(1)) == Estimate(None, None, None, 0, 0)
     with pytest.raises(ValueError, match="shorter"):
-        paired_difference([1.0, 2.0], [1.0])
+        paired_difference([1.0, 2.0], [1.0], houses(2))
 
 
 @pytest.mark.parametrize(
@@ -75,7 +81,7 @@ def test_a_pair_without_one_of_its_values_does_not_count() -> None:
 def test_an_interval_that_holds_zero_and_one_of_few_pairs_resolve_nothing(
     low: float | None, high: float | None, pairs: int, resolved: bool
 ) -> None:
-    cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs), difference=True)
+    cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs, pairs), difference=True)
     assert cell.estimate.resolved == resolved
     assert ("unresolved" in cell.text()) == (not resolved and low is not None)
 
@@ -152,8 +158,8 @@ def test_reading_a_run_that_is_being_written_leaves_its_last_line_alone(tmp_path
 
 
 def test_a_cell_is_shown_in_percent_and_written_as_a_share(tmp_path: Path) -> None:
-    mean = Cell(Estimate(0.5, 0.25, 0.75, 40), percent=True)
-    difference = Cell(Estimate(-0.125, -0.25, 0.0, 40), percent=True, difference=True)
+    mean = Cell(Estimate(0.5, 0.25, 0.75, 40, 8), percent=True)
+    difference = Cell(Estimate(-0.125, -0.25, 0.0, 40, 8), percent=True, difference=True)
     table = ResultTable(
         "t", "A title", ("who", "a|b", "gain"), [("stubborn", [mean, difference]), ("none", ["-", "-"])]
     )
@@ -161,7 +167,42 @@ def test_a_cell_is_shown_in_percent_and_written_as_a_share(tmp_path: Path) -> No
     assert "| stubborn | 50.0 [25.0, 75.0] | -12.5 [-25.0, +0.0] unresolved |" in to_markdown([table])
     write_csv(tmp_path / "t.csv", [table])
     assert (tmp_path / "t.csv").read_text().splitlines() == [
-        "table,row,column,value,low95,high95,episodes,verdict",
-        "t,stubborn,a|b,0.5,0.25,0.75,40,",
-        "t,stubborn,gain,-0.125,-0.25,0.0,40,unresolved",
+        "table,row,column,value,low95,high95,episodes,houses,verdict",
+        "t,stubborn,a|b,0.5,0.25,0.75,40,8,",
+        "t,stubborn,gain,-0.125,-0.25,0.0,40,8,unresolved",
     ]
+
+
+def test_an_interval_over_one_house_has_an_asterisk_and_a_note() -> None:
+    one = Cell(Estimate(0.5, 0.25, 0.75, 40, 1), percent=True)
+    page = to_markdown([ResultTable("t", "A title", ("who", "success"), [("a", [one])], ["A note."])])
+    assert "50.0 [25.0, 75.0]*" in page
+    assert f"\n{ONE_HOUSE_NOTE}\n" in page
+    two = Cell(Estimate(0.5, 0.25, 0.75, 40, 2), percent=True)
+    assert "*" not in to_markdown([ResultTable("t", "title", ("who", "success"), [("a", [two])])]).replace("**", "")
+
+
+def test_differing_fields_name_nested_fields_by_dotted_paths() -> None:
+    a = {"seed": 0, "config": {"camera": {"width_px": 640, "height_px": 480}, "agent": None, "noise": {"gain": [1, 2]}}}
+    b = {"seed": 0, "config": {"camera": {"width_px": 320, "height_px": 480}, "agent": {"x": 1}, "task": {"steps": 9}}}
+    assert differing_fields(a, b) == [
+        ("config.agent", None, {"x": 1}),
+        ("config.camera.width_px", 640, 320),
+        ("config.noise.gain", [1, 2], ABSENT),
+        ("config.task.steps", ABSENT, 9),
+    ]
+    assert differing_fields(a, a) == []
+    assert differing_fields({"a": {}}, {}) == [("a", {}, ABSENT)]
+    assert differing_fields({"a": True}, {"a": 1}) == [("a", True, 1)]
+
+
+def test_options_that_change_no_result_are_no_difference_between_runs(tmp_path: Path) -> None:
+    first, second = run_folder(tmp_path / "a", "ab"), run_folder(tmp_path / "b", "ab")
+    config = json.loads((second / "config.json").read_text())
+    changes = {"workers": 8, "out": "elsewhere", "video": True, "config": {"robot": {"radius_m": 0.2}}}
+    (second / "config.json").write_text(json.dumps(config | changes))
+    runs = read_run(first), read_run(second)
+    assert config_differences(*runs) == [("config.robot.radius_m", ABSENT, 0.2)]
+    assert differences_table(*runs).rows == [("config.robot.radius_m", ["(absent)", "0.2"])]
+    assert differences_table(runs[0], runs[0]).notes == ("The configurations are equal.",)
+    to_rich(differences_table(*runs))

@@ -1,4 +1,4 @@
-"""The report: one page that says what the files say, draws what was recorded, and works in a real browser."""
+"""The report: its page agrees with the files, draws the recorded paths, and works in a real browser."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ import pytest
 from sim import run
 from sim.analysis.comparison import read_run
 from sim.analysis.report.build import command_of
-from sim.analysis.report.drawings import split_of, way
-from sim.analysis.report.figures import Share
-from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_way
+from sim.analysis.report.drawings import path_on, split_of
+from sim.analysis.report.figures import wilson
+from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
 from sim.analysis.report.words import explain, marks
 from sim.interface import ConfigError
 from sim.report import Args, main
@@ -88,13 +88,13 @@ def _points(numbers: list[int]) -> np.ndarray:
     return np.array(numbers).reshape(-1, 2)
 
 
-def test_a_way_on_the_page_is_the_recorded_one(played: Path) -> None:
+def test_a_path_on_the_page_is_the_recorded_one(played: Path) -> None:
     run_read = read_run(played / "found")
     data = _data(_page(played / "found"))
     sheet = Sheet(GroundTruth(World(split_of(run_read).load_house("lounge"))).space().frame)
     for episode in data["episodes"]:
         recorded = read_trajectory(trajectory_file(played / "found", episode["id"]))
-        drawn = episode["ways"][0]
+        drawn = episode["paths"][0]
         places_m = np.cumsum([drawn["x"], drawn["y"]], axis=1).T / PX_M * (1, -1)
         places_m += (sheet.frame.origin_xy_m[0], sheet.frame.origin_xy_m[1] + sheet.size_px[1] / PX_M)
         np.testing.assert_allclose(places_m, recorded.positions_m, atol=0.006)
@@ -102,10 +102,10 @@ def test_a_way_on_the_page_is_the_recorded_one(played: Path) -> None:
         assert len(drawn["actions"]) == len(drawn["d"]) - 1 == recorded.num_steps
 
 
-def test_the_shortest_way_is_as_long_as_the_one_that_was_measured_and_goes_round_the_wall(played: Path) -> None:
+def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(played: Path) -> None:
     run_read = read_run(played / "found")
     truth = GroundTruth(World(split_of(run_read).load_house("lounge")))
-    corners = shortest_way(truth.space(), truth.target("sofa"), (-2.0, 1.0))
+    corners = shortest_path(truth.space(), truth.target("sofa"), (-2.0, 1.0))
     assert corners is not None
     length_m = float(np.hypot(*np.diff(corners, axis=0).T).sum())
     assert length_m == pytest.approx(next(iter(run_read.lines.values()))["shortest_path"], rel=0.02)
@@ -113,14 +113,14 @@ def test_the_shortest_way_is_as_long_as_the_one_that_was_measured_and_goes_round
     assert truth.space().free[tuple(truth.space().frame.to_cells(samples).T)].all()
 
 
-def test_no_way_is_drawn_where_there_is_none() -> None:
+def test_no_path_is_drawn_where_there_is_none() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     truth = GroundTruth(World(house))
-    assert shortest_way(truth.space(), truth.target("sofa"), (-2.0, 0.0)) is None
+    assert shortest_path(truth.space(), truth.target("sofa"), (-2.0, 0.0)) is None
 
 
-def test_the_plan_shows_things_where_they_stand_and_leaves_doorways_open() -> None:
+def test_the_plan_shows_objects_at_their_positions_and_leaves_doorways_open() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0, 1.0, 1.25), half_m=(0.05, 1.0, 1.25))
     house = with_box(house, "wall_11", centre_m=(0, -1.0, 2.3), half_m=(0.05, 1.0, 0.2))  # a lintel
@@ -187,7 +187,7 @@ def test_a_hundred_long_episodes_fit_into_five_megabytes() -> None:
         success=False,
         end_reason="max_steps",
     )
-    drawn = json.dumps(way(sheet_around(walk), trajectory, radius_m=0.18), separators=(",", ":"))
+    drawn = json.dumps(path_on(sheet_around(walk), trajectory, radius_m=0.18), separators=(",", ":"))
     assert 100 * len(drawn) < 4_000_000  # 20 houses take 0.3 MB
 
 
@@ -231,7 +231,7 @@ def test_a_run_without_trajectories_has_a_report_that_says_how_to_get_pictures(p
     assert _data(page)["episodes"][0]["words"] == ["Found."]
 
 
-def test_a_house_that_has_changed_is_not_drawn_and_the_ways_are(played: Path, tmp_path: Path) -> None:
+def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(played: Path, tmp_path: Path) -> None:
     shutil.copytree(played / "found", tmp_path / "run")
     config = json.loads((tmp_path / "run/config.json").read_text())
     config["split_identity"]["sha256"] = "0" * 64
@@ -239,7 +239,7 @@ def test_a_house_that_has_changed_is_not_drawn_and_the_ways_are(played: Path, tm
     page = _page(tmp_path / "run")
     assert "was played in another version of &#39;lounge&#39;" in page
     assert _data(page)["plans"] == {}
-    assert len(_data(page)["episodes"][0]["ways"][0]["x"]) > 5
+    assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
 
 def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path]) -> None:
@@ -247,8 +247,8 @@ def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path])
     _write_lines(folder, _lines(folder)[:3])
     page = _page(folder)
     assert "Not finished: 3 of 4 episodes have ended." in page
-    assert "1 of 3 episodes broke" in page
-    assert "Episodes that broke" in page
+    assert "1 of 3 episodes ended with an error" in page
+    assert "Episodes that ended with an error" in page
 
 
 @pytest.mark.parametrize(
@@ -273,7 +273,7 @@ def test_a_trajectory_that_cannot_be_read_is_told_and_the_rest_is_drawn(played: 
     trajectory_file(tmp_path / "run", first).write_bytes(b"PK rubbish")
     page = _page(tmp_path / "run")
     assert "is no trajectory" in page
-    drawn = ["ways" in episode for episode in _data(page)["episodes"]]
+    drawn = ["paths" in episode for episode in _data(page)["episodes"]]
     assert drawn == [False, True, True, True]
 
 
@@ -281,10 +281,26 @@ def test_two_runs_are_shown_side_by_side_with_paired_differences(pair: tuple[Pat
     page = _page(*pair)
     data = _data(page)
     assert data["runs"] == ["A", "B"]
-    assert [way is None for way in data["episodes"][0]["ways"]] == [False, False]
-    assert [way is None for way in data["episodes"][1]["ways"]] == [False, True]
-    assert '-50.0</span> <span class="ci">[-100.0, +0.0]' in page.replace("\n", "")
+    assert [path is None for path in data["episodes"][0]["paths"]] == [False, False]
+    assert [path is None for path in data["episodes"][1]["paths"]] == [False, True]
+    assert '-50.0</span> <span class="ci">[-100.0, +0.0]*</span>' in page.replace("\n", "")
     assert page.count('data-outcome="only-a') == 2
+
+
+def test_the_page_of_two_runs_lists_the_fields_in_which_they_differ(pair: tuple[Path, Path]) -> None:
+    assert "The configurations are equal." in _page(*pair)
+    file = pair[1] / "config.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"workers": 7, "seed": 3}))
+    page = _page(*pair)
+    assert re.search(r"<code>seed</code></th><td>0</td><td>3</td>", page)
+    assert "<code>workers</code>" not in page
+    assert "Fields in which the runs differ" not in _page(pair[0])
+
+
+def test_the_page_says_over_what_its_intervals_are(pair: tuple[Path, Path]) -> None:
+    assert "There is one house: its episodes are resampled" in _page(pair[0])
+    _write_lines(pair[0], [line | {"house": f"h{i}"} for i, line in enumerate(_lines(pair[0]))])
+    assert "houses are resampled, then the episodes of each house." in _page(pair[0])
 
 
 def test_runs_of_other_episodes_are_refused(played: Path, pair: tuple[Path, Path]) -> None:
@@ -303,7 +319,7 @@ def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> No
     assert f"never covered 0.8 % of a frame in {unseen.num_steps} steps" in words
     assert [mark.kind for mark in marks(line, unseen)][-1] == "end"
     other = explain(line | {"failure": "loop"}, unseen)
-    assert "By the rules of the code that wrote this report the cause would be explore." in other
+    assert "By the rules of the code that wrote this report the cause is explore." in other
 
 
 def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Path]) -> None:
@@ -313,15 +329,15 @@ def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Pa
     share, distance_m = np.zeros_like(trajectory.goal_share), np.full_like(trajectory.distance_m, 2.0)
     share[5:7], distance_m[[2, 8]] = 0.1, 0.0
     missed = Trajectory(**{**vars(trajectory), "goal_share": share, "distance_m": distance_m})
-    assert "in view from step 5 on, in 2 frames. At step 8 a STOP would have counted" in explain(line, missed)
+    assert "in view from step 5 on, in 2 frames. At step 8 a STOP would have succeeded" in explain(line, missed)
     assert [mark.step for mark in marks(line, missed)] == [5, 8, missed.num_steps]
 
 
 def test_an_interval_has_a_width_where_all_episodes_ended_alike() -> None:
-    low, high = Share(10, 10).interval
+    low, high = wilson(10, 10).interval
     assert low == pytest.approx(0.7225, abs=1e-4)  # Wilson: n / (n + z^2)
     assert high == pytest.approx(1.0)
-    assert Share(3, 12).interval == pytest.approx(tuple(1 - v for v in reversed(Share(9, 12).interval)))
+    assert wilson(3, 12).interval == pytest.approx(tuple(1 - v for v in reversed(wilson(9, 12).interval)))
 
 
 def test_the_command_of_a_run_makes_the_same_run(played: Path) -> None:

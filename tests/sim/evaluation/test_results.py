@@ -116,8 +116,8 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
 
 def test_a_summary_says_over_what_its_intervals_resample() -> None:
     two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
-    assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then episodes of each")
-    assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "episodes of the one house")
+    assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then the episodes of each")
+    assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "the episodes of the one house")
 
 
 def test_the_intervals_of_a_summary_are_over_houses() -> None:

@@ -1,5 +1,5 @@
 "use strict";
-// The table (sort, filter, expand) and the pictures of the episodes. All text goes in as textContent.
+// The table (sort, filter, expand) and the pictures of the episodes. Text is only set as textContent.
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const table = document.getElementById("table");
@@ -37,7 +37,7 @@
     const keyed = rows.map((row) => [value(row, column), row]);
     keyed.sort(([a, rowA], [b, rowB]) => {
       const order = compare(a, b);
-      const known = a !== null && b !== null;  // what has no value stays at the end either way
+      const known = a !== null && b !== null;  // rows without a value stay at the end in both orders
       return (down && known ? -order : order) || rowA.dataset.index - rowB.dataset.index;
     });
     const fragment = document.createDocumentFragment();
@@ -101,7 +101,7 @@
     return html("tr", { class: "detail", "data-of": row.dataset.index }, cell);
   }
 
-  // What the columns hold that a narrow window has no room for.
+  // The values of the columns that a narrow window hides.
   function makeNumbers(row) {
     const numbers = html("p", { class: "facts only-narrow" });
     [...table.tHead.rows[0].cells].forEach((head, i) => {
@@ -113,85 +113,85 @@
   }
 
   function makeSide(episode, run, label) {
-    const side = html("div", { class: "way" });
+    const side = html("div", { class: "path" });
     if (label) side.append(html("h3", {}, html("span", { class: "badge" }, label), ` ${plain(episode.outcomes[run])}`));
     const why = html("p", { class: "why" }, episode.words[run]);
     const links = html("p", { class: "why" });
     if (episode.videos[run]) links.append(html("a", { href: episode.videos[run] }, "Watch the video"));
-    const way = episode.ways && episode.ways[run] ? decode(episode.ways[run]) : null;
-    if (!way) {
+    const path = episode.paths && episode.paths[run] ? decode(episode.paths[run]) : null;
+    if (!path) {
       side.append(html("div", {}, why, html("p", { class: "small" }, data.why_no_picture), links));
       return side;
     }
-    const picture = makePicture(episode, way);
-    const chart = makeChart(way);
+    const picture = makePicture(episode, path);
+    const chart = makeChart(path);
     const told = html("output", {});
-    const slider = html("input", { type: "range", min: 0, max: way.n, value: way.n, "aria-label": "Step of the episode" });
+    const slider = html("input", { type: "range", min: 0, max: path.n, value: path.n, "aria-label": "Step of the episode" });
     const show = (step) => {
       slider.value = step;
       picture.show(step);
       chart.show(step);
-      told.textContent = tell(way, step);
+      told.textContent = tell(path, step);
     };
     slider.addEventListener("input", () => show(Number(slider.value)));
     const marks = html("ol", { class: "marks" });
-    way.marks.forEach(([, step, until, words], i) => {
+    path.marks.forEach(([, step, until, words], i) => {
       const span = until === null ? `step ${step}` : `steps ${step} to ${until}`;
       const button = html("button", { type: "button", class: "link" }, `${i + 1}. ${span}: ${words}`);
       button.addEventListener("click", () => show(until === null ? step : until));
       marks.append(html("li", {}, button));
     });
     const scrub = html("div", { class: "scrub" }, chart.svg, slider, told);
-    side.append(html("div", {}, picture.svg, makeLegend(episode, way)), html("div", {}, why, marks, scrub, links));
-    show(way.n);
+    side.append(html("div", {}, picture.svg, makeLegend(episode, path)), html("div", {}, why, marks, scrub, links));
+    show(path.n);
     return side;
   }
 
-  function decode(way) {
+  function decode(path) {
     const sum = (steps) => { let total = 0; return steps.map((step) => (total += step)); };
-    const x = sum(way.x), y = sum(way.y);
-    return { ...way, x, y, a: sum(way.a), n: way.actions.length, stops: new Set(way.stopped) };
+    const x = sum(path.x), y = sum(path.y);
+    return { ...path, x, y, a: sum(path.a), n: path.actions.length, stops: new Set(path.stopped) };
   }
 
-  function tell(way, step) {
-    const parts = [`Step ${step} of ${way.n}`];
+  function tell(path, step) {
+    const parts = [`Step ${step} of ${path.n}`];
     if (step > 0) {
-      const hit = way.stops.has(step - 1) ? ", stopped by a contact" : "";
-      parts.push(`${ACTIONS[way.actions[step - 1]]}${hit}`);
+      const hit = path.stops.has(step - 1) ? ", stopped by a contact" : "";
+      parts.push(`${ACTIONS[path.actions[step - 1]]}${hit}`);
     }
-    parts.push(way.d[step] === null ? "no way to the goal" : `${(way.d[step] / 10).toFixed(1)} m to go`);
-    if (way.seen.some(([first, last]) => step >= first && step <= last)) parts.push("goal in view");
+    parts.push(path.d[step] === null ? "no path to the goal" : `${(path.d[step] / 10).toFixed(1)} m to go`);
+    if (path.seen.some(([first, last]) => step >= first && step <= last)) parts.push("goal in view");
     return `${parts.join("; ")}.`;
   }
 
-  const points = (way, from, to) => {
+  const points = (path, from, to) => {
     const found = [];
-    for (let i = from; i <= to; i++) found.push(`${way.x[i]},${way.y[i]}`);
+    for (let i = from; i <= to; i++) found.push(`${path.x[i]},${path.y[i]}`);
     return found.join(" ");
   };
 
-  function makePicture(episode, way) {
+  function makePicture(episode, path) {
     const plan = data.plans[episode.plan];
     const [width, height] = plan ? plan.size : episode.size;
     const unit = Math.max(width, height) / Math.min(100, Math.max(55, innerWidth / 7));  // of text and symbols
-    const name = `Plan of the house with the way of the robot in ${episode.id}`;
+    const name = `Plan of the house with the path of the robot in ${episode.id}`;
     const picture = svg("svg", { class: "plan", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": name });
     if (plan) drawPlan(picture, plan, episode, unit);
     if (episode.shortest && episode.shortest.length) {
       picture.append(svg("polyline", { class: "shortest", points: episode.shortest.join(" ") }));
     }
-    for (const [kind, step, until] of way.marks) {
-      if (until !== null) picture.append(svg("polyline", { class: `wrong ${kind}`, points: points(way, step, until) }));
+    for (const [kind, step, until] of path.marks) {
+      if (until !== null) picture.append(svg("polyline", { class: `wrong ${kind}`, points: points(path, step, until) }));
     }
-    const trail = drawTrail(picture, way);
-    for (const [step, x, y] of way.hits) drawHit(picture, x, y, unit, `stopped by a contact in step ${step + 1}`);
-    picture.append(svg("circle", { class: "start", cx: way.x[0], cy: way.y[0], r: 1.1 * unit }));
-    drawMarks(picture, way, unit);
-    const nose = svg("path", { d: `M0 0H${way.robot}` });
-    const robot = svg("g", { class: "robot" }, svg("circle", { r: way.robot }), nose);
+    const trail = drawTrail(picture, path);
+    for (const [step, x, y] of path.hits) drawHit(picture, x, y, unit, `stopped by a contact in step ${step + 1}`);
+    picture.append(svg("circle", { class: "start", cx: path.x[0], cy: path.y[0], r: 1.1 * unit }));
+    drawMarks(picture, path, unit);
+    const nose = svg("path", { d: `M0 0H${path.robot}` });
+    const robot = svg("g", { class: "robot" }, svg("circle", { r: path.robot }), nose);
     picture.append(robot);
     const show = (step) => {
-      robot.setAttribute("transform", `translate(${way.x[step]} ${way.y[step]}) rotate(${way.a[step]})`);
+      robot.setAttribute("transform", `translate(${path.x[step]} ${path.y[step]}) rotate(${path.a[step]})`);
       trail(step);
     };
     return { svg: picture, show };
@@ -203,7 +203,7 @@
     for (const [category, name, d] of plan.shapes) {
       const structure = ["wall", "door", "window", "column"].includes(category);
       const goal = category === episode.goal;
-      const shape = svg("path", { class: goal ? "goal" : structure ? category : "thing", d });
+      const shape = svg("path", { class: goal ? "goal" : structure ? category : "object", d });
       shape.append(svg("title", {}, plain(name)));
       if (goal) late.push(shape);
       else picture.append(shape);
@@ -216,16 +216,16 @@
     picture.append(...late);
   }
 
-  function drawTrail(picture, way) {
+  function drawTrail(picture, path) {
     const pieces = Array.from({ length: PIECES }, (_, i) => {
       const share = `${(100 * (i + 0.5)) / PIECES}%`;
-      const colour = `color-mix(in oklab, rgb(var(--way-end)) ${share}, rgb(var(--way-begin)))`;
+      const colour = `color-mix(in oklab, rgb(var(--path-end)) ${share}, rgb(var(--path-begin)))`;
       return svg("polyline", { class: "trail", style: `stroke:${colour}` });
     });
     picture.append(...pieces);
     return (step) => pieces.forEach((piece, i) => {
-      const from = Math.floor((way.n * i) / PIECES), to = Math.min(step, Math.floor((way.n * (i + 1)) / PIECES));
-      piece.setAttribute("points", to > from ? points(way, from, to) : "");
+      const from = Math.floor((path.n * i) / PIECES), to = Math.min(step, Math.floor((path.n * (i + 1)) / PIECES));
+      piece.setAttribute("points", to > from ? points(path, from, to) : "");
     });
   }
 
@@ -235,10 +235,10 @@
     picture.append(svg("path", { class: "hit", d }, svg("title", {}, words)));
   }
 
-  function drawMarks(picture, way, unit) {
+  function drawMarks(picture, path, unit) {
     const taken = [];
-    way.marks.forEach(([kind, step, , words], i) => {
-      let x = way.x[step], y = way.y[step] - 2.6 * unit;
+    path.marks.forEach(([kind, step, , words], i) => {
+      let x = path.x[step], y = path.y[step] - 2.6 * unit;
       while (taken.some(([u, v]) => Math.hypot(u - x, v - y) < 3.2 * unit)) x += 3.3 * unit;
       taken.push([x, y]);
       const label = svg("text", { x, y: y + 0.75 * unit, "font-size": 2.1 * unit }, String(i + 1));
@@ -247,47 +247,47 @@
     });
   }
 
-  function makeLegend(episode, way) {
+  function makeLegend(episode, path) {
     const legend = html("ul", { class: "legend" });
     const add = (words, ...shapes) => {
       const swatch = svg("svg", { viewBox: "0 0 22 12", "aria-hidden": "true" }, ...shapes);
       legend.append(html("li", {}, swatch, words));
     };
     const line = (attributes) => svg("path", { d: "M1 6H21", ...attributes });
-    const late = line({ class: "trail", style: "stroke:rgb(var(--way-end))", d: "M11 6H21" });
-    add("its way, early to late", line({ class: "trail", style: "stroke:rgb(var(--way-begin))", d: "M1 6H11" }), late);
-    if (episode.shortest && episode.shortest.length) add("shortest way", line({ class: "shortest" }));
-    if (way.hits.length) add("collision", svg("path", { class: "hit", d: "M7 2l8 8m0 -8l-8 8" }));
-    if (way.marks.some(([, , until]) => until !== null)) add("loop or trapped", line({ class: "wrong" }));
+    const late = line({ class: "trail", style: "stroke:rgb(var(--path-end))", d: "M11 6H21" });
+    add("path of the robot, early to late", line({ class: "trail", style: "stroke:rgb(var(--path-begin))", d: "M1 6H11" }), late);
+    if (episode.shortest && episode.shortest.length) add("shortest path", line({ class: "shortest" }));
+    if (path.hits.length) add("collision", svg("path", { class: "hit", d: "M7 2l8 8m0 -8l-8 8" }));
+    if (path.marks.some(([, , until]) => until !== null)) add("loop or trapped", line({ class: "wrong" }));
     if (episode.plan) add(plain(episode.goal), svg("rect", { class: "goal", x: 4, y: 1, width: 14, height: 10 }));
-    if (data.areas[episode.area]) add("a STOP counts", svg("rect", { class: "area", x: 4, y: 1, width: 14, height: 10 }));
+    if (data.areas[episode.area]) add("a STOP succeeds", svg("rect", { class: "area", x: 4, y: 1, width: 14, height: 10 }));
     add("start", svg("circle", { class: "start", cx: 11, cy: 6, r: 4 }));
     return legend;
   }
 
-  function makeChart(way) {
-    const known = way.d.filter((d) => d !== null);
+  function makeChart(path) {
+    const known = path.d.filter((d) => d !== null);
     const top = Math.max(10, ...known);
-    const words = `Distance to the goal over ${way.n} steps, from ${(top / 10).toFixed(1)} m at the top to 0`;
-    const chart = svg("svg", { class: "chart", viewBox: `0 0 ${Math.max(1, way.n)} 100`, preserveAspectRatio: "none", role: "img", "aria-label": words });
+    const words = `Distance to the goal over ${path.n} steps, from ${(top / 10).toFixed(1)} m at the top to 0`;
+    const chart = svg("svg", { class: "chart", viewBox: `0 0 ${Math.max(1, path.n)} 100`, preserveAspectRatio: "none", role: "img", "aria-label": words });
     chart.append(svg("title", {}, words));
-    for (const [first, last] of way.seen) {
+    for (const [first, last] of path.seen) {
       chart.append(svg("rect", { class: "in-view", x: first, y: 0, width: last - first + 1, height: 100 }));
     }
-    for (const step of way.stopped) chart.append(svg("path", { class: "tick", d: `M${step + 1} 100v-12` }));
+    for (const step of path.stopped) chart.append(svg("path", { class: "tick", d: `M${step + 1} 100v-12` }));
     let piece = [];
     const flush = () => {
       if (piece.length > 1) chart.append(svg("polyline", { points: piece.join(" ") }));
       piece = [];
     };
-    way.d.forEach((d, step) => (d === null ? flush() : piece.push(`${step},${96 - (92 * d) / top}`)));
+    path.d.forEach((d, step) => (d === null ? flush() : piece.push(`${step},${96 - (92 * d) / top}`)));
     flush();
     const now = svg("path", { class: "now" });
     chart.append(now);
     return { svg: chart, show: (step) => now.setAttribute("d", `M${step} 0V100`) };
   }
 
-  // ---- what the reader does
+  // ---- events
   table.tHead.addEventListener("click", (event) => {
     const button = event.target.closest("button");
     if (!button) return;
@@ -324,6 +324,6 @@
     row.scrollIntoView();
   }
   addEventListener("hashchange", followHash);
-  filter();  // a form that the browser filled in again
+  filter();  // the browser may have restored the form
   followHash();
 })();
