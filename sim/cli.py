@@ -1,4 +1,4 @@
-"""Command lines from dataclasses, with one clear line and exit status 2 where a value will not do."""
+"""Command lines from dataclasses; a user's error is one line on stderr and exit status 2."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from sim.errors import ConfigError, EpisodeError, HouseError, RenderError, Worke
 
 ArgsT = TypeVar("ArgsT")
 USAGE_ERRORS = (ConfigError, EpisodeError, HouseError, RenderError, WorkersError)
-"""What a user can mend: told in one line, without a traceback."""
+"""Errors that the user can correct; they are printed in one line, without a traceback."""
 
 
 def run(args_type: type[ArgsT], main: Callable[[ArgsT], int], argv: Sequence[str] | None = None) -> int:
-    """Parse the command line into `args_type`, call `main` and return its exit status; 2 for what a user can mend."""
+    """Parses the command line into `args_type` and returns the exit status of `main`; 2 after a `USAGE_ERRORS`."""
     try:
         return main(parse(args_type, argv))
     except USAGE_ERRORS as error:
@@ -28,24 +28,24 @@ def run(args_type: type[ArgsT], main: Callable[[ArgsT], int], argv: Sequence[str
 
 
 def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
-    """The command line as an `args_type`.
+    """Returns the command line as an `args_type`.
 
     Raises:
-        ConfigError: an option that does not exist or cannot be read.
+        ConfigError: an option does not exist or its value cannot be read.
         SystemExit: status 0 after `--help`.
     """
-    complaints = io.StringIO()
+    messages = io.StringIO()
     try:
-        with contextlib.redirect_stderr(complaints):
+        with contextlib.redirect_stderr(messages):
             return tyro.cli(args_type, args=argv, config=(tyro.conf.FlagCreatePairsOff,))
     except SystemExit as stop:
         if stop.code in (0, None):
             raise
-        raise ConfigError(_first_sentences(complaints.getvalue())) from None
+        raise ConfigError(_message_in_box(messages.getvalue())) from None
 
 
-def _first_sentences(box: str) -> str:
-    """The message out of the frame that tyro draws around it."""
+def _message_in_box(box: str) -> str:
+    """Returns the message inside the frame that tyro prints around it."""
     lines = [re.sub(r"^\W*│|│\W*$", "", line).strip() for line in box.splitlines()]
     body = [
         line for line in lines if line and not line.startswith(("╭", "╰", "For full helptext", "Argument helptext"))

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Writes files atomically: a reader finds the complete file or none."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from sim.errors import ConfigError
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file so that whoever looks sees all of it or nothing; makes its folder.
+    """Writes a file atomically and creates its folder.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: the file cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
-        os.chmod(part, 0o644)  # mkstemp's files are the owner's alone
+        os.chmod(part, 0o644)  # mkstemp gives permissions to the owner only
         os.replace(part, path)
-    except BaseException:  # Ctrl-C too: nothing is left behind
+    except BaseException:  # also on Ctrl-C: the part file is removed
         with contextlib.suppress(OSError):
             os.unlink(part)
         raise
 
 
 def part_file(file: Path, *, what: str) -> Path:
-    """An empty file beside `file` to write to, and to move there once it is whole; makes their folder.
+    """Creates an empty part file beside `file`, for the caller to write and then to rename to `file`; returns its path.
 
-    What killed processes have left of earlier tries is removed.
+    Part files of earlier, killed processes are removed. The folder is created.
 
     Args:
-        file: where the whole will be.
-        what: it is, in words.
+        file: path of the complete file.
+        what: kind of the file for the error message, for example "video".
 
     Raises:
-        ConfigError: nothing can be written there.
+        ConfigError: the folder is not writable.
     """
     part = file.with_name(f".{file.stem}.part-{os.getpid()}{file.suffix}")
     try:

@@ -1,7 +1,7 @@
-"""The one door to MuJoCo: an OpenGL that works without a display is chosen before `mujoco` is imported.
+"""Imports MuJoCo after choosing an OpenGL backend that works without a display.
 
-`MUJOCO_GL` is read while `mujoco` is imported, so the choice has to come first. Every module of `sim` therefore
-writes `from sim.gl import mujoco` and never `import mujoco`.
+MuJoCo reads `MUJOCO_GL` while it is imported. Every module of `sim` therefore writes `from sim.gl import mujoco` and
+never `import mujoco`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import os
 from sim.errors import RenderError
 
 INSTALL_HINT = "apt-get install -y libegl1 libegl-mesa0 libgl1-mesa-dri"
-"""The one line that makes offscreen rendering work on Debian and Ubuntu."""
+"""Command that installs offscreen rendering on Debian and Ubuntu."""
 
 
 def _loads(library: str) -> bool:
@@ -24,7 +24,7 @@ def _loads(library: str) -> bool:
 
 
 def choose_backend() -> str:
-    """Name of the OpenGL backend to take: the user's `MUJOCO_GL` if set, else EGL, else OSMesa.
+    """Returns the OpenGL backend: the user's `MUJOCO_GL` if set, else `egl`, else `osmesa`.
 
     Raises:
         RenderError: neither library is installed.
@@ -41,31 +41,32 @@ def choose_backend() -> str:
     )
 
 
-_drawing_pid: int | None = None
-"""The process that made the first OpenGL context."""
+_rendering_pid: int | None = None
+"""The process that created the first OpenGL context."""
 
 
-def begin_drawing() -> None:
-    """To be called before an OpenGL context is made.
+def begin_rendering() -> None:
+    """Must be called before an OpenGL context is created.
 
     Raises:
-        RenderError: this process was forked from one that had drawn; its driver's threads are gone and it would hang.
+        RenderError: this process was forked from one with an OpenGL context. The threads of its driver are missing, so
+            rendering would hang.
     """
-    global _drawing_pid
-    if _drawing_pid not in (None, os.getpid()):
+    global _rendering_pid
+    if _rendering_pid not in (None, os.getpid()):
         raise RenderError(
-            "OpenGL does not survive a fork, and this process was forked from one that had drawn. Start workers with "
-            'spawn; for Gymnasium: make_vec(..., vector_kwargs={"context": "spawn"}).'
+            "OpenGL does not survive a fork, and this process was forked from one that had rendered. Start workers "
+            'with spawn; for Gymnasium: make_vec(..., vector_kwargs={"context": "spawn"}).'
         )
-    _drawing_pid = os.getpid()
+    _rendering_pid = os.getpid()
 
 
 os.environ["MUJOCO_GL"] = choose_backend()
 if os.environ["MUJOCO_GL"] in ("egl", "osmesa"):
     os.environ.setdefault("PYOPENGL_PLATFORM", os.environ["MUJOCO_GL"])
-# llvmpipe spreads one small frame over all cores and loses more in waiting than it gains.
+# llvmpipe divides each small frame among all cores and loses more by waiting than it gains.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 
 import mujoco  # noqa: E402
 
-__all__ = ["INSTALL_HINT", "begin_drawing", "choose_backend", "mujoco"]
+__all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "mujoco"]

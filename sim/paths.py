@@ -1,4 +1,4 @@
-"""Where the shipped houses lie, in the repository or in the installed wheel; and which code this is."""
+"""The folder of shipped houses, in the repository or in the installed wheel, and the hash of the code."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 def assets_dir() -> Path:
-    """The folder of shipped houses, a folder a split: `assets/mjcf_houses` of a checkout, else the wheel's.
+    """Returns the folder with one folder per shipped split: `assets/mjcf_houses` of a checkout, else of the wheel.
 
     Raises:
-        HouseError: neither is there.
+        HouseError: neither exists.
     """
-    places = (_PACKAGE.parent / "assets" / "mjcf_houses", _PACKAGE / "assets" / "mjcf_houses")
-    for place in places:
-        if place.is_dir():
-            return place
-    raise HouseError(f"The shipped houses are missing: neither {places[0]} nor {places[1]} is there.")
+    folders = (_PACKAGE.parent / "assets" / "mjcf_houses", _PACKAGE / "assets" / "mjcf_houses")
+    for folder in folders:
+        if folder.is_dir():
+            return folder
+    raise HouseError(f"The shipped houses are missing: neither {folders[0]} nor {folders[1]} exists.")
 
 
 @functools.cache
 def code_hash(*, parameters: bool = True) -> str:
-    """12 hex digits over the modules and parameters of `sim` and `stubborn`: the same code, the same digits.
+    """Returns 12 hex digits that identify the code: a hash of the modules and parameters of `sim` and `stubborn`.
 
     Args:
-        parameters: False takes the modules only, for who does not use what was fitted.
+        parameters: whether the fitted parameters (JSON files) count, or the modules only.
     """
     return hash_of_packages(_PACKAGE, _PACKAGE.parent / "stubborn", parameters=parameters)
 
 
 def hash_of_packages(*packages: Path, parameters: bool = True) -> str:
-    """12 hex digits over the `.py` and `.json` files of some folders.
+    """Returns 12 hex digits, a hash of the `.py` and `.json` files of some folders.
 
-    Their folder `assets` does not count: the shipped houses lie there in a wheel and elsewhere in a checkout, and a
-    split has a checksum of its own.
+    Their folder `assets` does not count: it holds the shipped houses in a wheel but not in a checkout, and each split
+    has its own checksum.
     """
     digest = hashlib.sha256()
     for package in packages:

@@ -1,7 +1,7 @@
-"""Convex bodies and polygons: plan projections between two heights, and which lines in plan they block.
+"""Convex polytopes and polygons: plan projections between two heights, and line segments that polygons block.
 
 The projection of a convex polytope between two heights is the convex hull of the vertices in between and of the points
-where edges cross the two heights. Pure mathematics: MuJoCo's geoms become polytopes in `sim.houses.geoms`.
+where edges cross the two heights. `sim.houses.geoms` makes polytopes of MuJoCo geoms.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 MIN_CROSSING_M = 0.001
-"""A segment crosses a polygon when it stays inside for longer than this; touching the boundary is not enough."""
+"""A segment crosses a polygon when the part inside is longer than this; touching the boundary is not enough."""
 JOINT_M = 1e-6
-"""Growth of a polygon against segments, so that none passes through the joint of two adjacent polygons."""
+"""Polygons are grown by this much for segments, so that none passes between two adjacent polygons."""
 _MIN_AREA_M2 = 1e-8
 _MIN_EDGE_M = 1e-7
 
 
 class Polytope(NamedTuple):
-    """A convex body in the world."""
+    """A convex polytope in the world."""
 
     vertices_m: NDArray[np.float64]  # (n, 3)
     edges: NDArray[np.int64]  # (m, 2) indices of vertices
@@ -42,7 +42,7 @@ class ConvexPolygon:
 
     @classmethod
     def around(cls, points_m: NDArray[np.float64]) -> ConvexPolygon | None:
-        """The convex hull of points (n, 2); None when it has no area."""
+        """Returns the convex hull of points (n, 2); None when it has no area."""
         if len(points_m) < 3:
             return None
         middle = points_m[0]
@@ -51,7 +51,7 @@ class ConvexPolygon:
 
     @classmethod
     def of_corners(cls, corners_m: NDArray[np.float64]) -> ConvexPolygon | None:
-        """The polygon with these corners (k, 2), in order either way round; None when it has no area."""
+        """Returns the polygon with these corners (k, 2), in either orientation; None when it has no area."""
         along = np.concatenate((corners_m[1:], corners_m[:1])) - corners_m
         about = corners_m - corners_m[0]
         area_m2 = 0.5 * float(about[:, 0] @ along[:, 1] - about[:, 1] @ along[:, 0])
@@ -67,11 +67,11 @@ class ConvexPolygon:
         return cls(corners_m, normals, np.einsum("ij,ij->i", normals, corners_m), (*low, *high))
 
     def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) which of the points (n, 2) lie in the polygon or on its edge."""
+        """Returns (n,) True for those of the points (n, 2) that lie in the polygon or on its edge."""
         return np.all(xy_m @ self.normals.T <= self.offsets_m + 1e-9, axis=1)
 
     def distance(self, xy_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n,) metres from the points (n, 2) to the polygon; 0 inside."""
+        """Returns the distances (n,) in metres from the points (n, 2) to the polygon; 0 inside."""
         along = np.roll(self.vertices_m, -1, axis=0) - self.vertices_m
         nearest_sq = np.full(len(xy_m), np.inf)
         for start, edge in zip(self.vertices_m, along, strict=True):
@@ -83,21 +83,21 @@ class ConvexPolygon:
         return np.sqrt(nearest_sq)
 
     def crossed_by(self, start_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) which of the segments from (n, 2) to (n, 2) run through the polygon (clipping of Cyrus and Beck)."""
+        """Returns (n,) True for the segments from (n, 2) to (n, 2) that cross the polygon (Cyrus-Beck clipping)."""
         step = end_m - start_m
         entry, leave = np.zeros(len(step)), np.ones(len(step))
         for normal, offset in zip(self.normals, self.offsets_m, strict=True):
-            room, speed = offset + JOINT_M - start_m @ normal, step @ normal
-            outward, inward = speed > 1e-12, speed < -1e-12
-            t = room / np.where(outward | inward, speed, 1.0)
+            depth_m, slope = offset + JOINT_M - start_m @ normal, step @ normal
+            outward, inward = slope > 1e-12, slope < -1e-12
+            t = depth_m / np.where(outward | inward, slope, 1.0)
             leave = np.where(outward, np.minimum(leave, t), leave)
             entry = np.where(inward, np.maximum(entry, t), entry)
-            leave = np.where(~(outward | inward) & (room < 0.0), -1.0, leave)
+            leave = np.where(~(outward | inward) & (depth_m < 0.0), -1.0, leave)
         return (leave - entry) * np.linalg.norm(step, axis=1) > MIN_CROSSING_M
 
 
 def plan_polygon(body: Polytope, low_m: float = -math.inf, high_m: float = math.inf) -> ConvexPolygon | None:
-    """What a convex body covers in plan between two heights (which may be equal); None: nothing."""
+    """Returns the plan projection of the part of a body between two heights, which may be equal; None if empty."""
     z = body.vertices_m[:, 2]
     if float(z.max()) < low_m or float(z.min()) > high_m:
         return None
@@ -115,7 +115,7 @@ def plan_polygon(body: Polytope, low_m: float = -math.inf, high_m: float = math.
 def lines_blocked(
     start_m: NDArray[np.float64], end_m: NDArray[np.float64], polygons: Iterable[ConvexPolygon]
 ) -> NDArray[np.bool_]:
-    """(n,) which of the segments from (n, 2) to (n, 2) run through some polygon."""
+    """Returns (n,) True for the segments from (n, 2) to (n, 2) that cross at least one polygon."""
     blocked = np.zeros(len(start_m), dtype=np.bool_)
     low, high = np.minimum(start_m, end_m), np.maximum(start_m, end_m)
     for polygon in polygons:

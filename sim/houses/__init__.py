@@ -1,3 +1,3 @@
-"""The house file format: read, label, check and write a house file.
+"""The house file format: reading, labelling, checking and writing house files.
 
 Imports `sim.geometry` and the base modules of `sim`."""

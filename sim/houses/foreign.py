@@ -1,8 +1,8 @@
-"""What is left out of a scene from elsewhere so that it can be a house (with `--labels`), and said to be left out.
+"""Removes from third-party scenes (`--labels`) what the house format does not allow, and reports it.
 
-A house is things that stand, and things that can be pushed. Scenes from elsewhere also bring cameras, a robot's motors,
-saved states, hinged doors. Cameras and all that drives or measures is dropped; what hangs on a hinge or a slide stands
-still where the file has it; a free joint stays, so chairs and balls can be pushed.
+A house consists of static and of freely movable objects. Other scenes also contain cameras, actuators, saved states and
+hinged doors. Cameras, actuators, sensors and constraints are removed. Hinge, slide and ball joints are removed too, so
+that their bodies stay in the pose of the file. Free joints remain, so that chairs and balls can be pushed.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ import numpy as np
 from sim.gl import mujoco
 from sim.houses.labels import Labels, rendered_geoms
 
-MOST_NAMES = 8
-"""Names that a sentence lists."""
+MAX_NAMES = 8
+"""Most names that a sentence lists."""
 
 
-def adopt(spec: mujoco.MjSpec) -> tuple[str, ...]:
-    """Drop from a specification what no house holds; returns a sentence for each kind of thing that was changed."""
-    dropped = [
-        _dropped(spec, what, elements)
-        for what, elements in (  # what refers to others goes before them
+def remove_unsupported(spec: mujoco.MjSpec) -> tuple[str, ...]:
+    """Removes the elements that a house may not contain; returns a sentence for each kind of change."""
+    removed = [
+        _remove(spec, kind, elements)
+        for kind, elements in (  # an element goes before those that it refers to
             ("keyframe", spec.keys),
             ("sensor", spec.sensors),
             ("actuator", spec.actuators),
@@ -32,28 +32,28 @@ def adopt(spec: mujoco.MjSpec) -> tuple[str, ...]:
             ("camera", spec.cameras),
         )
     ]
-    there = ", ".join(words for words in dropped if words)
-    notes = [f"Left out: {there}."] if there else []
+    counts = ", ".join(count for count in removed if count)
+    notes = [f"Removed: {counts}."] if counts else []
     fixed = [joint for joint in spec.joints if joint.type != mujoco.mjtJoint.mjJNT_FREE]
     names = [joint.name or joint.parent.name for joint in fixed]
     for joint in fixed:
         spec.delete(joint)
     if fixed:
-        notes.append(f"Standing still where the file has them: what hangs on {_counted('joint', names)}.")
+        notes.append(f"Fixed in the pose of the file: {_count('joint', names)}.")
     return tuple(notes)
 
 
-def tell_void(model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:
-    """A sentence on what no rule gives a label, with the names that a rule could go by; none where all have one."""
+def void_notes(model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:
+    """Returns a sentence that lists the visible geoms without a label; nothing when all have one."""
     if not labels.void_geoms:
         return ()
     void = np.flatnonzero(rendered_geoms(model) & (labels.geom_category == 0))
     geoms = "1 visible geom has" if len(void) == 1 else f"{len(void)} visible geoms have"
-    return (f"{geoms} no label and became void: {_listed(name_of(model, geom) for geom in void.tolist())}.",)
+    return (f"{geoms} no label and became void: {_list(_first_name(model, geom) for geom in void.tolist())}.",)
 
 
-def name_of(model: mujoco.MjModel, geom: int) -> str:
-    """The first name among a geom, its body and the body's ancestors; "(unnamed)" without one."""
+def _first_name(model: mujoco.MjModel, geom: int) -> str:
+    """Returns the first name among a geom, its body and the body's ancestors; "(unnamed)" when there is none."""
     if name := model.geom(geom).name:
         return name
     body = int(model.geom_bodyid[geom])
@@ -64,26 +64,26 @@ def name_of(model: mujoco.MjModel, geom: int) -> str:
     return "(unnamed)"
 
 
-def _dropped(spec: mujoco.MjSpec, what: str, elements: Iterable[Any]) -> str:
-    """Delete elements; "2 cameras (front, top)", "" for none."""
+def _remove(spec: mujoco.MjSpec, kind: str, elements: Iterable[Any]) -> str:
+    """Deletes elements; returns, for example, "2 cameras (front, top)", or "" when there are none."""
     elements = list(elements)
     names = [element.name for element in elements]
     for element in elements:
         spec.delete(element)
-    return _counted(what, names) if names else ""
+    return _count(kind, names) if names else ""
 
 
-def _counted(what: str, names: list[str]) -> str:
-    number = f"{len(names)} {what}{'' if len(names) == 1 else 's'}"
+def _count(kind: str, names: list[str]) -> str:
+    number = f"{len(names)} {kind}{'' if len(names) == 1 else 's'}"
     named = [name for name in names if name]
-    return f"{number} ({_listed(named)})" if named else number
+    return f"{number} ({_list(named)})" if named else number
 
 
-def _listed(names: Iterable[str]) -> str:
-    """Each name once, with how often it comes; the first few."""
+def _list(names: Iterable[str]) -> str:
+    """Returns the first `MAX_NAMES` different names, each with its number of occurrences."""
     counts: dict[str, int] = {}
     for name in names:
         counts[name] = counts.get(name, 0) + 1
     shown = [name if count == 1 else f"{name} ({count} x)" for name, count in counts.items()]
-    more = f" and {len(shown) - MOST_NAMES} more" if len(shown) > MOST_NAMES else ""
-    return ", ".join(shown[:MOST_NAMES]) + more
+    more = f" and {len(shown) - MAX_NAMES} more" if len(shown) > MAX_NAMES else ""
+    return ", ".join(shown[:MAX_NAMES]) + more

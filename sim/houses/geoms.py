@@ -1,7 +1,7 @@
-"""MuJoCo's geoms as convex polytopes, and what their meshes show.
+"""Converts MuJoCo geoms to convex polytopes and reads the triangles of mesh geoms.
 
-Every MuJoCo collision geom is convex (a mesh collides as its hull), so each becomes a polytope of vertices and edges.
-Curved shapes are circumscribed, at most `CURVE_TOLERANCE_M` too large.
+Every MuJoCo collision geom is convex (a mesh collides as its convex hull), so each becomes a polytope of vertices and
+edges. Polytopes of curved shapes are circumscribed, at most `CURVE_TOLERANCE_M` too large.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from sim.geometry.convex import Polytope
 from sim.gl import mujoco
 
 CURVE_TOLERANCE_M = 0.002
-"""How much larger than the true shape the polytope of a curved geom may be."""
+"""Largest distance by which the polytope of a curved geom exceeds the geom."""
 UNBOUNDED_M = 100.0
-"""Half extent that stands for an infinite plane."""
+"""Half extent that represents an infinite plane."""
 PLANE_DEPTH_M = 0.01
-"""Thickness given to a rendered plane, so that a line can cross it."""
-_MIN_EDGE_M = 1e-7
+"""Thickness of a rendered plane, so that a line can cross it."""
 _CONVEX_SHARE = 0.995
+"""A mesh is convex when its volume is at least this share of its hull's volume."""
 _GEOM = mujoco.mjtGeom
 
 
 def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rendered: bool = False) -> Polytope:
-    """The convex body of a geom where it stands.
+    """Returns the convex polytope of a geom in the world.
 
     Args:
         model: the compiled model.
-        data: its state, kinematics computed.
-        geom: index of the geom; a height field or a signed distance field is no convex body.
-        rendered: a plane is what a camera sees of it (its size, a thin sheet) instead of the half space it blocks.
+        data: its state; kinematics must be computed.
+        geom: id of the geom.
+        rendered: a plane is the thin rectangle that is rendered, not the half space that blocks collisions.
 
     Raises:
-        ValueError: the geom's shape is none of MuJoCo's convex ones.
+        ValueError: the geom is a height field or a signed distance field, which is not convex.
     """
     shape, size = int(model.geom_type[geom]), model.geom_size[geom]
     if shape == _GEOM.mjGEOM_BOX:
@@ -55,7 +55,7 @@ def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rend
     elif shape == _GEOM.mjGEOM_MESH:
         vertices, edges = _mesh_hull(_mesh_vertices(model, int(model.geom_dataid[geom])))
     else:
-        raise ValueError(f"geom {geom} is of type {_GEOM(shape).name}, which is no convex shape.")
+        raise ValueError(f"geom {geom} is of type {_GEOM(shape).name}, which is not convex.")
     rotation = data.geom_xmat[geom].reshape(3, 3)
     return Polytope(vertices @ rotation.T + data.geom_xpos[geom], edges)
 
@@ -63,14 +63,14 @@ def geom_polytope(model: mujoco.MjModel, data: mujoco.MjData, geom: int, *, rend
 def geoms_between(
     model: mujoco.MjModel, data: mujoco.MjData, geoms: NDArray[np.int64], low_m: float, high_m: float
 ) -> NDArray[np.int64]:
-    """Those of the geoms whose bounding sphere reaches between two heights; planes always."""
+    """Returns those of the geoms whose bounding sphere has a part between two heights, and all planes."""
     z, radius = data.geom_xpos[geoms, 2], model.geom_rbound[geoms]
     reaches = (z - radius <= high_m) & (z + radius >= low_m)
     return geoms[reaches | (model.geom_type[geoms] == _GEOM.mjGEOM_PLANE)]
 
 
 def mesh_triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDArray[np.float64]:
-    """(n, 3, 3) the rendered triangles of a mesh geom in the world: triangle, corner, xyz."""
+    """Returns the triangles (n, 3, 3) of a mesh geom in the world: triangle, corner, xyz."""
     mesh = int(model.geom_dataid[geom])
     start = int(model.mesh_faceadr[mesh])
     faces = model.mesh_face[start : start + int(model.mesh_facenum[mesh])]
@@ -79,7 +79,7 @@ def mesh_triangles(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> NDA
 
 
 def mesh_is_convex(model: mujoco.MjModel, geom: int) -> bool:
-    """Whether a mesh geom looks like the hull that it collides as: its volume is the hull's."""
+    """Returns whether a mesh geom is convex: its volume is that of its convex hull."""
     mesh = int(model.geom_dataid[geom])
     start = int(model.mesh_faceadr[mesh])
     faces = model.mesh_face[start : start + int(model.mesh_facenum[mesh])]
@@ -98,7 +98,7 @@ def _is_convex(points: bytes, faces: bytes) -> bool:
 
 
 def _box(low: NDArray[np.float64], high: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Vertices and edges of an axis-aligned box."""
+    """Returns vertices and edges of an axis-aligned box."""
     corner = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)])
     return np.where(corner == 1, high, low), _BOX_EDGES
 
@@ -107,7 +107,7 @@ _BOX_EDGES = np.array([(i, i | bit) for i in range(8) for bit in (1, 2, 4) if no
 
 
 def _plane(size: NDArray[np.float64], rendered: bool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The half space under a plane, or the sheet that is seen of it."""
+    """Returns vertices and edges of the half space below a plane, or of the rendered rectangle."""
     if not rendered:
         half = np.array([UNBOUNDED_M, UNBOUNDED_M])
         return _box(np.array([*-half, -UNBOUNDED_M]), np.array([*half, 0.0]))
@@ -117,25 +117,25 @@ def _plane(size: NDArray[np.float64], rendered: bool) -> tuple[NDArray[np.float6
 
 @functools.lru_cache(maxsize=256)
 def _cylinder(radius: float, half_length: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A circumscribed prism: 1 / cos(pi / n) - 1 < tolerance / radius."""
+    """Returns vertices and edges of a circumscribed prism: 1 / cos(pi / n) - 1 < tolerance / radius."""
     n = max(8, math.ceil(math.pi / math.sqrt(2.0 * CURVE_TOLERANCE_M / radius)))
     angle = np.arange(n) * (math.tau / n)
     ring = radius / math.cos(math.pi / n) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     vertices = np.concatenate([np.c_[ring, np.full(n, -half_length)], np.c_[ring, np.full(n, half_length)]])
     i = np.arange(n)
-    ahead = (i + 1) % n
-    return vertices, np.concatenate([np.c_[i, i + n], np.c_[i, ahead], np.c_[i + n, ahead + n]])
+    following = (i + 1) % n
+    return vertices, np.concatenate([np.c_[i, i + n], np.c_[i, following], np.c_[i + n, following + n]])
 
 
 @functools.lru_cache(maxsize=256)
 def _ball(radii: tuple[float, float, float], half_length: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A circumscribed ellipsoid, or a capsule when its halves are pulled apart along z.
+    """Returns vertices and edges around an ellipsoid, or around a capsule when `half_length` is not 0.
 
-    Meridians and parallels both cut the corner by about (pi / n)^2 / 2 of the radius.
+    Meridians and parallels both exceed the shape by about (pi / n)^2 / 2 of the radius.
     """
     n = max(8, 4 * math.ceil(0.25 * math.pi / math.sqrt(CURVE_TOLERANCE_M / max(radii))))
     quarter = np.linspace(0.0, 0.5 * math.pi, n // 4 + 1)
-    polar = np.concatenate([quarter, math.pi - quarter[::-1]])  # the equator twice: the seam of a capsule
+    polar = np.concatenate([quarter, math.pi - quarter[::-1]])  # the equator twice: both ends of a capsule's cylinder
     upper = np.arange(len(polar)) < len(quarter)
     angle = np.arange(n) * (math.tau / n)
     sphere = np.stack(
@@ -155,23 +155,23 @@ def _ball(radii: tuple[float, float, float], half_length: float = 0.0) -> tuple[
 
 
 def _mesh_vertices(model: mujoco.MjModel, mesh: int) -> NDArray[np.float64]:
-    """(n, 3) vertices in the frame of the geoms that show the mesh."""
+    """Returns the vertices (n, 3) of a mesh in the frame of its geoms."""
     start = int(model.mesh_vertadr[mesh])
     return model.mesh_vert[start : start + int(model.mesh_vertnum[mesh])].astype(np.float64)
 
 
 def _mesh_hull(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Vertices and edges of the convex hull of points (n, 3)."""
+    """Returns vertices and edges of the convex hull of points (n, 3)."""
     return _hull_of_bytes(vertices.tobytes())
 
 
 @functools.lru_cache(maxsize=1024)
 def _hull_of_bytes(points: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Convex hull, remembered by content: houses repeat their meshes."""
+    """Computes a convex hull; results are cached by content, since meshes repeat within a house."""
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     try:
         hull = ConvexHull(vertices)
-    except QhullError:  # a flat mesh: every pair of vertices may be an edge
+    except QhullError:  # a flat mesh: any pair of vertices may be an edge
         first, second = np.triu_indices(len(vertices), 1)
         return vertices, np.c_[first, second]
     kept = np.sort(hull.vertices)

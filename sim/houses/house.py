@@ -1,4 +1,4 @@
-"""A house as the rest of `sim` knows it: a specification to compose a world from, and its rooms."""
+"""A loaded house: a MuJoCo specification without a robot, and its rooms."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ _ROOM = re.compile(r"(?P<room>room_(?P<kind>[a-z][a-z_]*?)_\d+)(?:_\d+)?")
 
 @dataclass(frozen=True)
 class House:
-    """A house that keeps the house format, before a robot stands in it."""
+    """A house in the house format, without a robot."""
 
     name: str
     spec: mujoco.MjSpec
-    """Never changed: whoever composes a world takes `spec.copy()`."""
+    """It is never changed; a caller that needs another one takes `spec.copy()`."""
     rules: Mapping[str, str] | None = None
-    """Label rules of a house from elsewhere, as `read_labels` takes them."""
+    """Label rules of a third-party scene, in the form that `read_labels` takes; None for a house in our format."""
     path: Path | None = None
     notes: tuple[str, ...] = ()
-    """Sentences on what was left out of a house from elsewhere (`sim.houses.foreign`)."""
+    """Sentences on what was removed from a third-party scene (`sim.houses.foreign`)."""
 
 
 @dataclass(frozen=True)
 class Room:
-    """The extent of one room; its floor is the bottom of its boxes."""
+    """The extent of one room as a union of boxes."""
 
     name: str
-    """`room_bedroom_00`"""
+    """Name of the room's site, for example `room_bedroom_00`."""
     kind: str
-    """`bedroom`"""
+    """Kind of the room, for example `bedroom`."""
     boxes: tuple[Box, ...]
 
     @property
     def floor_z_m(self) -> float:
-        """Height of the room's floor."""
+        """Height of the room's floor: the bottom of its lowest box."""
         return min(centre[2] - half[2] for centre, half in self.boxes)
 
     @property
@@ -61,12 +61,12 @@ class Room:
         )
 
     def contains(self, x_m: float, y_m: float) -> bool:
-        """Whether a place lies in the room in plan, its edge included."""
+        """Returns whether a position lies in the room in plan, its edge included."""
         return any(x0 <= x_m <= x1 and y0 <= y_m <= y1 for x0, x1, y0, y1 in map(_plan, self.boxes))
 
 
 def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
-    """The rooms that the world sites of a compiled house or world declare, in the model's order."""
+    """Returns the rooms that sites of the world body declare, in the model's order."""
     boxes: dict[str, tuple[str, list[Box]]] = {}
     for site in range(model.nsite):
         match = _ROOM.fullmatch(model.site(site).name)
@@ -77,7 +77,7 @@ def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
 
 
 def _site_box(model: mujoco.MjModel, site: int) -> Box:
-    """The axis-aligned box around a box site of the world body."""
+    """Returns the axis-aligned box around a box site of the world body."""
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, model.site_quat[site])
     half = np.abs(rotation.reshape(3, 3)) @ model.site_size[site]
@@ -87,6 +87,6 @@ def _site_box(model: mujoco.MjModel, site: int) -> Box:
 
 
 def _plan(box: Box) -> tuple[float, float, float, float]:
-    """Smallest and largest x, smallest and largest y."""
+    """Returns the smallest and largest x, the smallest and largest y."""
     (x, y, _), (hx, hy, _) = box
     return x - hx, x + hx, y - hy, y + hy

@@ -1,8 +1,8 @@
-"""Which geom shows what: labels read from the names of geoms and bodies (contract, section 3).
+"""Reads the category and the instance of each geom from the names of geoms and bodies (contract, section 3).
 
-A label is a name `<category>_<number>` (`chair_03`, `chest_of_drawers_00`), its category from mpcat40 with
-underscores. A geom takes the first label among its own name, its body's and its body's ancestors'; the bearer of that
-name is the instance. Houses from elsewhere bring rules, `{regex: category}`, that are tried before the pattern.
+A label is a name `<category>_<number>` (`chair_03`, `chest_of_drawers_00`), with a category of mpcat40 in underscores.
+A geom gets the first label among its own name, its body's name and the names of the body's ancestors; that name is its
+instance. For third-party scenes, rules `{regex: category}` are tried before this pattern.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from sim.gl import mujoco
 from sim.interface import MPCAT40, MPCAT40_ID
 
 RENDERED_GROUPS = 3
-"""Geoms of groups 0, 1 and 2 are rendered; one of group 3 or above only collides."""
+"""Geoms of groups 0, 1 and 2 are rendered; those of group 3 and above are collision geoms only."""
 VOID = "void"
 _LABEL = re.compile(r"(?P<category>[A-Za-z][A-Za-z_]*)_(?P<number>\d+)")
 
 
 @dataclass(frozen=True)
 class Instance:
-    """One labelled thing: the bearer of a label and the geoms that belong to it, rendered or not."""
+    """One labelled object: its name, its category and all its geoms, visual or not."""
 
     name: str
     category: str
@@ -36,7 +36,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Labels:
-    """What each geom of one compiled model shows."""
+    """Category and instance of each geom of one compiled model."""
 
     instances: tuple[Instance, ...]
     geom_category: NDArray[np.uint8]  # (ngeom,) mpcat40 id; 0: void
@@ -45,11 +45,11 @@ class Labels:
     """Visible geoms without a label, other than the robot's; more than 0 only with rules."""
 
     def of_category(self, category: str) -> tuple[Instance, ...]:
-        """The instances of one category, in the model's order."""
+        """Returns the instances of one category, in the model's order."""
         return tuple(instance for instance in self.instances if instance.category == category)
 
     def categories(self) -> tuple[str, ...]:
-        """The categories that have an instance, in mpcat40's order."""
+        """Returns the categories that have an instance, in the order of mpcat40."""
         present = {instance.category for instance in self.instances}
         return tuple(name for name in MPCAT40 if name in present)
 
@@ -57,16 +57,16 @@ class Labels:
 def read_labels(
     model: mujoco.MjModel, *, rules: Mapping[str, str] | None = None, ignore_prefix: str = "robot/"
 ) -> Labels:
-    """Labels of a compiled house, or of a world whose robot's names begin with `ignore_prefix`.
+    """Returns the labels of a compiled house or world.
 
     Args:
         model: the compiled model.
-        rules: regular expressions searched for in names, in order, and the category each gives ("void" too).
-            With rules a visible geom without a label becomes void and is counted.
-        ignore_prefix: geoms whose name or body's name begins so are nobody's; "" to ignore none.
+        rules: regular expressions to search for in names, in this order, and the category of each ("void" is allowed).
+            With rules, a visible geom without a label becomes void and is counted.
+        ignore_prefix: geoms whose name or body name begins with it (the robot's) get no label; "" to ignore none.
 
     Raises:
-        HouseError: a visible geom has no label and there are no rules, or a rule is wrong.
+        HouseError: a visible geom has no label and there are no rules, or a rule is not valid.
     """
     compiled_rules = _compile_rules(rules)
     category_of_geom = np.zeros(model.ngeom, dtype=np.uint8)
@@ -77,14 +77,14 @@ def read_labels(
     ignored = geoms_of(model, ignore_prefix) if ignore_prefix else np.zeros(model.ngeom, dtype=np.bool_)
     for geom in np.flatnonzero(~ignored).tolist():
         names = tuple(_names(model, geom))
-        bearer, category = _first_label(names, compiled_rules)
+        owner, category = _first_label(names, compiled_rules)
         if category == VOID:
             if visible[geom]:
                 if rules is None:
                     raise HouseError(_unlabelled(model, geom, names))
                 void_geoms += 1
             continue
-        members.setdefault(bearer, (category, []))[1].append(geom)
+        members.setdefault(owner, (category, []))[1].append(geom)
         category_of_geom[geom] = MPCAT40_ID[category]
     instances = tuple(Instance(name, category, tuple(ids)) for name, (category, ids) in members.items())
     for index, instance in enumerate(instances):
@@ -93,24 +93,24 @@ def read_labels(
 
 
 def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """(ngeom,) True for geoms that a camera sees: group below 3 and not wholly transparent."""
+    """Returns (ngeom,) True for visual geoms: group below 3 and not fully transparent."""
     return (model.geom_group < RENDERED_GROUPS) & (_alpha(model) > 0.0)
 
 
 def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
-    """(ngeom,) True for geoms that can touch something."""
+    """Returns (ngeom,) True for collision geoms."""
     return (model.geom_contype != 0) | (model.geom_conaffinity != 0)
 
 
 def geoms_of(model: mujoco.MjModel, prefix: str) -> NDArray[np.bool_]:
-    """(ngeom,) True for geoms whose name or body's name begins with `prefix`, such as the robot's."""
+    """Returns (ngeom,) True for geoms whose name or body name begins with `prefix`, such as the robot's."""
     bodies = np.array([model.body(body).name.startswith(prefix) for body in range(model.nbody)], dtype=np.bool_)
     named = np.array([model.geom(geom).name.startswith(prefix) for geom in range(model.ngeom)], dtype=np.bool_)
     return bodies[model.geom_bodyid] | named
 
 
 def parse_label(name: str) -> str | None:
-    """The category of a name that is a label, else None."""
+    """Returns the category of a name that is a label, else None."""
     match = _LABEL.fullmatch(name)
     if match is None or match["category"] not in MPCAT40_ID or match["category"] == VOID:
         return None
@@ -118,14 +118,14 @@ def parse_label(name: str) -> str | None:
 
 
 def suggest(category: str) -> str:
-    """`Did you mean 'chair'?`, or what there is when nothing is near."""
+    """Returns `Did you mean 'chair'?`, or the list of categories when no category is similar."""
     names = [name for name in MPCAT40 if name != VOID]
-    near = difflib.get_close_matches(category.lower().replace("-", "_"), names, n=1)
-    return f"Did you mean '{near[0]}'?" if near else f"The categories are mpcat40's: {', '.join(names)}."
+    similar = difflib.get_close_matches(category.lower().replace("-", "_"), names, n=1)
+    return f"Did you mean '{similar[0]}'?" if similar else f"The categories of mpcat40 are: {', '.join(names)}."
 
 
 def describe_geom(model: mujoco.MjModel, geom: int) -> str:
-    """A geom as an error message names it, also when it has no name."""
+    """Returns a description of a geom for error messages, also when it has no name."""
     name = model.geom(geom).name
     if name:
         return f"geom '{name}'"
@@ -136,7 +136,7 @@ def describe_geom(model: mujoco.MjModel, geom: int) -> str:
 
 
 def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
-    """(ngeom,) opacity as rendered: a geom's own colour, else its material's."""
+    """Returns the rendered opacity (ngeom,): that of a geom's own colour, else of its material."""
     alpha = model.geom_rgba[:, 3].copy()
     default = np.all(model.geom_rgba == np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32), axis=1)
     by_material = default & (model.geom_matid >= 0)
@@ -145,7 +145,7 @@ def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
 
 
 def _names(model: mujoco.MjModel, geom: int) -> Iterator[str]:
-    """Names of a geom, its body and the body's ancestors below the world; "" for the unnamed."""
+    """Yields the names of a geom, its body and the body's ancestors below the world; "" for unnamed ones."""
     yield model.geom(geom).name
     body = int(model.geom_bodyid[geom])
     while body != 0:
@@ -154,7 +154,7 @@ def _names(model: mujoco.MjModel, geom: int) -> Iterator[str]:
 
 
 def _first_label(names: tuple[str, ...], rules: list[tuple[re.Pattern[str], str]]) -> tuple[str, str]:
-    """Bearer's name and category of the first label among `names`; ("", "void") without one."""
+    """Returns the first name that is a label and its category; ("", "void") when none is."""
     for name in names:
         if not name:
             continue
@@ -171,22 +171,22 @@ def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[re.Pattern[str
     compiled = []
     for regex, category in (rules or {}).items():
         if category not in MPCAT40_ID:
-            raise HouseError(f"label rule '{regex}' gives '{category}', which is no category. {suggest(category)}")
+            raise HouseError(f"label rule '{regex}' gives '{category}', which is not a category. {suggest(category)}")
         try:
             compiled.append((re.compile(regex), category))
         except re.error as error:
-            raise HouseError(f"label rule '{regex}' is no regular expression: {error}.") from None
+            raise HouseError(f"label rule '{regex}' is not a regular expression: {error}.") from None
     return compiled
 
 
 def _unlabelled(model: mujoco.MjModel, geom: int, names: tuple[str, ...]) -> str:
-    """The sentence that refuses a visible geom without a label."""
+    """Returns the error message for a visible geom without a label."""
     where = describe_geom(model, geom)
     for name in names:
         match = _LABEL.fullmatch(name)
         if match is not None:
             category = match["category"]
-            return f"{where} is visible and named '{name}', but '{category}' is no category. {suggest(category)}"
+            return f"{where} is visible and named '{name}', but '{category}' is not a category. {suggest(category)}"
     return (
         f"{where} is visible and has no label: name it, its body or an ancestor <category>_<number>, for example "
         "chair_03, or give rules with --labels."

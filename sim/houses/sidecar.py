@@ -1,4 +1,4 @@
-"""What a scene fixes about itself in `<name>.json` beside `<name>.xml`: start, goal, sensor noise, why it is there."""
+"""Reads and writes `<name>.json` beside `<name>.xml`: the start, goal and sensor noise that a scene prescribes."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ from sim.interface import GOAL_CATEGORIES
 
 @dataclass(frozen=True, kw_only=True)
 class Sidecar:
-    """A scene's own start, goal and noise; None or empty: not fixed."""
+    """The start, goal and noise that a scene prescribes; None or empty: not prescribed."""
 
     start: Pose | None = None
     goal: str | None = None
     noise: Mapping[str, Any] = field(default_factory=dict)
-    """Sensor noise of every episode in this scene, as `sim.sensors.noise` reads it."""
+    """Sensor noise of every episode in this scene, in the form that `sim.sensors.noise` reads."""
     reason: str = ""
-    """What the scene is for, in one line."""
+    """Purpose of the scene, in one line."""
     zone_m: tuple[float, float, float, float] | None = None
-    """x0, y0, x1, y1 of the trap itself: steps inside it are steps in the trap."""
+    """x0, y0, x1, y1 of the trap: steps inside it count as steps in the trap."""
 
 
-NOTHING_FIXED = Sidecar()
+EMPTY_SIDECAR = Sidecar()
 
 
 def sidecar_path(house_file: Path) -> Path:
-    """Where the sidecar of a house file lies, if there is one."""
+    """Returns the path of the sidecar of a house file, whether it exists or not."""
     return house_file.with_suffix(".json")
 
 
 def read_sidecar(house_file: Path) -> Sidecar:
-    """The sidecar beside a house file; `NOTHING_FIXED` when there is none.
+    """Returns the sidecar beside a house file; `EMPTY_SIDECAR` when there is none.
 
     Raises:
-        HouseError: it is no JSON object, has an unknown key, or a value that cannot be.
+        HouseError: it is not a JSON object, has an unknown key, or a value that is not allowed.
     """
     file = sidecar_path(house_file)
     if not file.is_file():
-        return NOTHING_FIXED
+        return EMPTY_SIDECAR
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         return _parse(content)
@@ -53,7 +53,7 @@ def read_sidecar(house_file: Path) -> Sidecar:
 
 
 def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
-    """Write the sidecar of a house file; the same content gives the same bytes."""
+    """Writes the sidecar of a house file; the same content gives the same bytes."""
     content: dict[str, Any] = {"reason": sidecar.reason, "goal": sidecar.goal}
     if sidecar.start is not None:
         start = sidecar.start
@@ -72,10 +72,12 @@ def _parse(content: Mapping[str, Any]) -> Sidecar:
     known = ("reason", "goal", "start", "zone_m", "noise")
     for key in content:
         if key not in known:
-            raise ValueError(f"unknown key '{key}'. It may have: {', '.join(known)}.")
+            raise ValueError(f"unknown key '{key}'. The keys are: {', '.join(known)}.")
     goal, zone = content.get("goal"), content.get("zone_m")
     if goal is not None and goal not in GOAL_CATEGORIES:
-        raise ValueError(f"goal '{goal}' is no goal category. There is: {', '.join(GOAL_CATEGORIES)}.")
+        raise ValueError(
+            f"goal '{goal}' is not a goal category. The goal categories are: {', '.join(GOAL_CATEGORIES)}."
+        )
     if zone is not None and len(zone) != 4:
         raise ValueError(f"zone_m must be [x0, y0, x1, y1], got {zone}.")
     x0, y0, x1, y1 = map(float, zone) if zone is not None else (0.0, 0.0, 0.0, 0.0)

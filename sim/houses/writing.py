@@ -1,4 +1,4 @@
-"""A house as text: what MuJoCo writes, without what says nothing."""
+"""Writes a house as compact XML: the output of MuJoCo without redundant attributes and digits."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 from sim.gl import mujoco
 
-_NO_TURN = ' quat="1 0 0 0"'
+_IDENTITY_QUAT = ' quat="1 0 0 0"'
 _QUAT = re.compile(r' quat="([^"]*)"')
 _LEADING_ZERO = re.compile(r'(?<=[" -])0\.')
 _INDENT = re.compile(r"\n\s+")
@@ -14,21 +14,21 @@ _QUAT_DIGITS = 4
 
 
 def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
-    """The XML of a specification, a tenth shorter than `to_xml` gives it and equal in meaning to 0.1 mrad.
+    """Returns the XML of a specification, a tenth shorter than `to_xml`; rotations are equal to within 0.1 mrad.
 
     Args:
         spec: a house.
-        textures: folder of the texture files relative to where the text will lie; the shipped place when None.
+        textures: folder of the texture files, relative to the folder of the XML file; unchanged when None.
     """
     text = spec.to_xml()
     if textures is not None:
         text = text.replace(f'texturedir="{spec.texturedir}"', f'texturedir="{textures}"', 1)
-    text = _QUAT.sub(_short_quat, text.replace(_NO_TURN, ""))
+    text = _QUAT.sub(_short_quat, text.replace(_IDENTITY_QUAT, ""))
     return _INDENT.sub("\n", _LEADING_ZERO.sub(".", text))
 
 
 def _short_quat(found: re.Match[str]) -> str:
-    """A quaternion in few digits, quarter turns in whole numbers: MuJoCo scales what it reads to length 1."""
+    """Returns a quaternion in few digits, quarter turns in integers; MuJoCo normalizes it when reading."""
     values = [float(number) for number in found[1].split()]
     largest = max(abs(value) for value in values)
     if all(abs(value) in (0.0, largest) for value in values):

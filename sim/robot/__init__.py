@@ -1,1 +1,1 @@
-"""The robot: its one declared configuration, its body as MJCF, how an action is driven, what it touched."""
+"""The robot: its configuration, its body as MJCF, the controller of its actions, and its contacts."""

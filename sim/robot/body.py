@@ -1,17 +1,18 @@
 """The robot's body as MJCF: two driven wheels, two casters, a hull of two cylinders.
 
-Robot frame: origin on the floor under the middle of the wheel axis, +x ahead, +y left, +z up.
+Robot frame: origin on the floor below the middle of the wheel axis, +x ahead, +y left, +z up.
 
-Collision masks (contype / conaffinity; two geoms meet when one's contype shares a bit with the other's conaffinity):
+Collision masks (contype / conaffinity; two geoms collide when the contype of one shares a bit with the conaffinity of
+the other):
 
 =================== ============ =========================================================
-what                masks        meets
+geoms               masks        collide with
 =================== ============ =========================================================
-floor               1 / 0        wheels, casters, hull, movables
-static              2 / 0        hull, movables
-movable             2 / 7        everything but wheels and casters
-wheels, casters     0 / 1        the floor only
-hull                4 / 3        floor, static, movables
+floor               1 / 0        wheels, casters, hull, movable
+static              2 / 0        hull, movable
+movable             2 / 7        floor, static, movable, hull
+wheels, casters     0 / 1        floor
+hull                4 / 3        floor, static, movable
 =================== ============ =========================================================
 """
 
@@ -30,9 +31,9 @@ from sim.interface import wrap_angle
 from sim.robot.config import RobotConfig
 
 PREFIX = "robot/"
-"""Begins every name of the robot in a composed world."""
+"""Prefix of every name of the robot in a compiled world."""
 ROBOT_GROUP = 5
-"""Geom group of the robot: no camera renders it."""
+"""Geom group of the robot, which no camera renders."""
 
 FLOOR_MASK = (1, 0)
 STATIC_MASK = (2, 0)
@@ -41,15 +42,15 @@ WHEEL_MASK = (0, 1)
 HULL_MASK = (4, 3)
 
 _CASTER_PRIORITY = 1000
-"""Casters are frictionless on every floor: their friction wins over the floor's."""
+"""The friction of the casters (none) overrides that of every floor."""
 HULL_PRIORITY = 1000
-"""The hull's friction and stiffness win over those of what it touches."""
+"""The friction and stiffness of the hull override those of the geoms it touches."""
 _NET_FORCE = 3
-"""`reduce` of a contact sensor: one wrench for all contacts, in the world frame."""
+"""The `reduce` option of a contact sensor that gives one net wrench of all contacts in the world frame."""
 
 
 def built_in_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
-    """Our robot alone, to be attached with the prefix `PREFIX` to the world body."""
+    """Returns our robot, to be attached to the world body with the prefix `PREFIX`."""
     spec = mujoco.MjSpec()
     spec.modelname = "robot"
     base = spec.worldbody.add_body(name="base", fuse=0)
@@ -61,12 +62,12 @@ def built_in_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
     for name, end in (("front", 1.0), ("rear", -1.0)):
         _add_caster(base, name, end, config)
     _add_hull(base, config)
-    add_touch(spec, "touch", mujoco.mjtObj.mjOBJ_BODY, "hull")
+    add_touch_sensor(spec, "touch", mujoco.mjtObj.mjOBJ_BODY, "hull")
     return spec
 
 
 def add_joints(base: mujoco.MjsBody, config: RobotConfig) -> None:
-    """What lets the base move through the house."""
+    """Adds the joints of the base: a free joint, or three slides and a vertical hinge."""
     if config.base == "free":
         base.add_freejoint(name="free")
         return
@@ -76,7 +77,7 @@ def add_joints(base: mujoco.MjsBody, config: RobotConfig) -> None:
 
 
 def _set_inertia(base: mujoco.MjsBody, config: RobotConfig) -> None:
-    """Mass of all but the wheels, spread like a solid cylinder twice as high as its centre of mass."""
+    """Sets the mass without wheels and the inertia of a solid cylinder twice as high as its centre of mass."""
     body, wheels = config.body, config.wheels
     mass = body.mass_kg - 2.0 * wheels.mass_kg
     com_z = (body.mass_kg * body.com_height_m - 2.0 * wheels.mass_kg * wheels.radius_m) / mass
@@ -87,7 +88,7 @@ def _set_inertia(base: mujoco.MjsBody, config: RobotConfig) -> None:
 
 
 def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig) -> None:
-    """One wheel. Its tyre touches as a sphere: the same rolling radius, and exact contacts on planes and boxes."""
+    """Adds one wheel. Its tyre collides as a sphere, which has exact contacts with planes and boxes."""
     wheels = config.wheels
     radius = wheels.radius_m
     wheel = base.add_body(name=f"{name}_wheel", pos=(0.0, side * wheels.half_track_m, radius))
@@ -101,7 +102,7 @@ def _add_wheel(base: mujoco.MjsBody, name: str, side: float, config: RobotConfig
 
 
 def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-    """What of a wheel touches the floor. Its friction is 0: the pair takes the larger value, which is the floor's."""
+    """Adds the collision geom of a wheel. Its friction is 0, so the larger friction of the floor counts."""
     wheel.add_geom(
         name=f"{name}_tyre",
         type=mujoco.mjtGeom.mjGEOM_SPHERE,
@@ -118,7 +119,7 @@ def add_tyre(wheel: mujoco.MjsBody, name: str, radius_m: float, centre_m: Sequen
 
 
 def add_motor(spec: mujoco.MjSpec, name: str, joint: str, config: RobotConfig) -> mujoco.MjsActuator:
-    """A motor `<name>_motor` that turns a wheel's joint at the commanded speed as far as its torque goes."""
+    """Adds a motor `<name>_motor` that drives a wheel's joint at the commanded speed with limited torque."""
     wheels = config.wheels
     motor = spec.add_actuator(name=f"{name}_motor", trntype=mujoco.mjtTrn.mjTRN_JOINT, target=joint, forcelimited=1)
     motor.set_to_velocity(kv=wheels.motor_gain_nm_s)
@@ -127,7 +128,7 @@ def add_motor(spec: mujoco.MjSpec, name: str, joint: str, config: RobotConfig) -
 
 
 def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig) -> None:
-    """One caster. An upright base needs none: there it is for show, or it would lift the wheels at a rug's edge."""
+    """Adds one caster. With a planar base it does not collide, or it would lift the wheels at the edge of a rug."""
     wheels = config.wheels
     mask = WHEEL_MASK if config.base == "free" else (0, 0)
     base.add_geom(
@@ -145,8 +146,9 @@ def _add_caster(base: mujoco.MjsBody, name: str, end: float, config: RobotConfig
 
 
 def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
+    """Adds the two cylinders of the hull."""
     body = config.body
-    hull = base.add_body(name="hull", fuse=0)  # a body of its own, so that one contact sensor sees all of it
+    hull = base.add_body(name="hull", fuse=0)  # its own body, so that one contact sensor measures both cylinders
     for name, bottom, top in (("lower", body.clearance_m, body.waist_m), ("upper", body.waist_m, body.height_m)):
         hull.add_geom(
             name=f"{name}_hull",
@@ -165,13 +167,13 @@ def _add_hull(base: mujoco.MjsBody, config: RobotConfig) -> None:
         )
 
 
-def add_touch(spec: mujoco.MjSpec, name: str, of: mujoco.mjtObj, part: str) -> None:
-    """A sensor of all contacts of one body or geom; sensors whose names begin with `touch` make the sense of touch."""
+def add_touch_sensor(spec: mujoco.MjSpec, name: str, part_type: mujoco.mjtObj, part: str) -> None:
+    """Adds a sensor of all contacts of a body or geom. `Body` reads all sensors whose names begin with `touch`."""
     fields = (1 << int(mujoco.mjtConDataField.mjCONDATA_FOUND)) | (1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE))
     spec.add_sensor(
         name=name,
         type=mujoco.mjtSensor.mjSENS_CONTACT,
-        objtype=of,
+        objtype=part_type,
         objname=part,
         intprm=[fields, _NET_FORCE, 1],
     )
@@ -179,27 +181,27 @@ def add_touch(spec: mujoco.MjSpec, name: str, of: mujoco.mjtObj, part: str) -> N
 
 @dataclass(frozen=True)
 class Body:
-    """Where the robot is found in a composed world: views into its data, valid as long as the data live."""
+    """The robot's state and controls in a compiled world: views into the world's `MjData`."""
 
     planar: bool
     qpos: NDArray[np.float64]  # (4,) x, y, z, yaw or (7,) position and quaternion
     qvel: NDArray[np.float64]  # (4,) or (6,): a free joint's angular part is in the body's frame
     ctrl: NDArray[np.float64]  # (2,) left and right wheel, commanded rad/s
-    touches: NDArray[np.float64]  # (parts, 4) of each part of the hull what `touch` says of all of it
+    touches: NDArray[np.float64]  # (parts, 4) for each touch sensor, as `touch` has it for the sum
     hull_geoms: tuple[int, ...]
     wheel_geoms: tuple[int, ...]
-    """Tyres and casters; of a body from elsewhere also what collides with nothing."""
+    """Tyres and casters; for a third-party body also its visual geoms."""
 
     @staticmethod
     def find(model: mujoco.MjModel, data: mujoco.MjData) -> Body:
-        """Look the robot's parts up by name."""
+        """Finds the parts of the robot by their names."""
         base = model.body(PREFIX + "base").id
         joint = model.body_jntadr[base]
         planar = model.body_jntnum[base] == 4
         q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
         motors = [model.actuator(f"{PREFIX}{name}_motor").id for name in ("left", "right")]
         sensors = [i for i in range(model.nsensor) if model.sensor(i).name.startswith(PREFIX + "touch")]
-        touch = int(model.sensor_adr[sensors[0]])  # they were added one after the other
+        touch = int(model.sensor_adr[sensors[0]])  # the sensors are consecutive
         geoms = np.flatnonzero(geoms_of(model, PREFIX)).tolist()
         hull = tuple(geom for geom in geoms if model.geom_contype[geom] == HULL_MASK[0])
         return Body(
@@ -214,18 +216,18 @@ class Body:
 
     @property
     def touch(self) -> NDArray[np.float64]:
-        """(4,) number of hull contacts; net force of the hull on what it touches, world, N."""
+        """Number of hull contacts, then the net force of the hull on other geoms in the world frame, N; (4,)."""
         return self.touches[0] if len(self.touches) == 1 else self.touches.sum(axis=0)
 
     def place(self, x_m: float, y_m: float, z_m: float, yaw_rad: float) -> None:
-        """Write a pose into the state; the caller runs `mj_forward`."""
+        """Writes a pose into the state; the caller must run `mj_forward`."""
         if self.planar:
             self.qpos[:] = (x_m, y_m, z_m, wrap_angle(yaw_rad))
         else:
             self.qpos[:] = (x_m, y_m, z_m, math.cos(0.5 * yaw_rad), 0.0, 0.0, math.sin(0.5 * yaw_rad))
 
     def state(self) -> tuple[float, float, float, float, float]:
-        """x, y (metres), yaw (radians, not wrapped for a planar base), speed ahead (m/s) and turn rate (rad/s)."""
+        """Returns x, y (m), yaw (rad, not wrapped for a planar base), forward speed (m/s) and turn rate (rad/s)."""
         if self.planar:
             x, y, _, yaw = self.qpos.tolist()
             vx, vy, _, rate = self.qvel.tolist()

@@ -1,4 +1,4 @@
-"""What differs between episodes in one world: how slippery the floors are and how strong each motor is."""
+"""Floor friction and motor gains that can differ between episodes in one world."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from sim.errors import ConfigError
 
 @dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """Factors on the world as its files have it; `NOMINAL` changes nothing."""
+    """Factors on the values of a compiled world; `NOMINAL` changes nothing."""
 
     floor_friction_scale: float = 1.0
-    """On the sliding friction of everything labelled floor."""
+    """Factor on the sliding friction of all floors."""
     motor_gain_scale: tuple[float, float] = (1.0, 1.0)
-    """On the speed that the left and the right motor aim at: at 0.9 a wheel turns at 90 % of what was commanded."""
+    """Factors on the speeds of the left and the right motor: with 0.9 a wheel turns at 90 % of its command."""
 
     def __post_init__(self) -> None:
         for name, value in (
@@ -28,3 +28,4 @@ class Conditions:
 
 
 NOMINAL = Conditions()
+"""The conditions of the compiled world."""

@@ -1,6 +1,6 @@
-"""Everything that can be chosen about the robot, in one declared tree.
+"""The configuration of the robot: its body, wheels, controller and physics. SI units.
 
-SI units. The values were measured on mujoco 4.0; `tests/sim/robot` holds what they must keep: change one, run it again.
+The defaults were tuned with mujoco 4.0; `tests/sim/robot` tests the properties that they must keep.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Literal, get_args
 from sim.interface import FORWARD_M, TURN_RAD, ConfigError, RobotModel
 
 Base = Literal["planar", "free"]
-"""How the body is held: upright by three slides and a hinge, or by nothing but its wheels."""
+"""`planar`: three slides and a vertical hinge keep the body upright; `free`: only its wheels and casters carry it."""
 
 
 def _require_positive(config: object, *names: str) -> None:
-    """Refuse values that are not finite and above zero."""
+    """Raises a ConfigError for fields that are not finite numbers > 0."""
     for name in names:
         value = getattr(config, name)
         if not (math.isfinite(value) and value > 0.0):
@@ -26,27 +26,27 @@ def _require_positive(config: object, *names: str) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class BodyConfig:
-    """The hull: two stacked cylinders around the axis, its mass and where that sits."""
+    """The hull (two stacked cylinders around the robot's axis) and the mass of the robot."""
 
     radius_m: float = 0.18
     height_m: float = 0.88
     """Top of the hull above the floor."""
     clearance_m: float = 0.03
-    """Bottom of the hull above the floor: what is lower passes under."""
+    """Bottom of the hull above the floor: lower obstacles pass below."""
     waist_m: float = 0.20
-    """Where the lower cylinder ends and the upper one begins: low obstacles then meet a low, well-conditioned body."""
+    """Height where the upper cylinder begins: contacts with low obstacles are better conditioned on a low cylinder."""
     skin_m: float = 0.005
-    """The hull's outermost layer, into which other things may sink; only below it lies the core that MuJoCo collides.
+    """Contact margin: the collision geoms are smaller by this much and push when another geom is this near.
 
-    A core that is never reached is always at a distance, and distances are exact. Cores that touch by micrometres are
-    not: MuJoCo 4.0 then gives one in ten cylinders a normal that is wrong by up to 70 deg and 7 cm of depth.
+    Geoms that stay apart have exact distances and normals. For cylinders that overlap by micrometres MuJoCo 4.0 gives,
+    in one of ten cases, a normal that is wrong by up to 70 deg and a depth that is wrong by up to 7 cm.
     """
     mass_kg: float = 6.9
     """The whole robot, wheels and casters included."""
     com_height_m: float = 0.12
-    """Centre of mass above the floor: the batteries are at the bottom."""
+    """Centre of mass above the floor; it is low because the batteries are at the bottom."""
     friction: float = 0.1
-    """Sliding friction of the hull against anything."""
+    """Sliding friction of the hull against all geoms."""
     contact_time_s: float = 0.006
     """Time constant of the hull's contacts (solref); MuJoCo raises it to two time steps."""
 
@@ -67,24 +67,24 @@ class BodyConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class WheelConfig:
-    """Two driven wheels on the axis through the centre, a frictionless caster in front and one behind."""
+    """Two driven wheels on the axis through the centre, and frictionless casters in front and behind."""
 
     radius_m: float = 0.04
     half_track_m: float = 0.14
-    """Each wheel's distance from the centre."""
+    """Distance of each wheel from the centre."""
     mass_kg: float = 0.2
-    """One wheel."""
+    """Mass of one wheel."""
     armature_kg_m2: float = 0.003
-    """Inertia of the motor as seen by the wheel."""
+    """Inertia of the motor at the wheel."""
     motor_gain_nm_s: float = 0.6
-    """Torque for each rad/s that the wheel is slower than commanded."""
+    """Torque per rad/s of difference between commanded and actual wheel speed."""
     max_torque_nm: float = 0.7
-    """Of one motor."""
+    """Largest torque of one motor."""
     caster_radius_m: float = 0.028
     caster_offset_m: float = 0.15
     """Distance of each caster from the centre, along the heading."""
     caster_gap_m: float = 0.0005
-    """How far the casters hang above the floor: the wheels carry the weight, and so have traction."""
+    """Gap between casters and floor, so that the wheels carry the weight and have traction."""
 
     def __post_init__(self) -> None:
         _require_positive(self, *(f.name for f in fields(self) if f.name != "caster_gap_m"))
@@ -96,13 +96,13 @@ class WheelConfig:
 
     @property
     def max_push_n(self) -> float:
-        """Force at the floor when both motors give all they have."""
+        """Force at the floor with both motors at their largest torque."""
         return 2.0 * self.max_torque_nm / self.radius_m
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriveConfig:
-    """How an action becomes a motion: profiles, gains, and when a motion counts as blocked."""
+    """The controller of actions: motion profiles, gains, and the criteria of a blocked motion."""
 
     forward_m: float = FORWARD_M
     turn_rad: float = TURN_RAD
@@ -113,45 +113,45 @@ class DriveConfig:
     turn_speed_rad_s: float = 1.8
     turn_acceleration_rad_s2: float = 6.0
     lookahead_s: float = 0.017
-    """The planned speed is read this far ahead of the clock: half a tick, and what the motors lag behind."""
+    """The planned speed is taken this far ahead of the current time: half a tick and the lag of the motors."""
     position_gain_1_s: float = 9.0
-    """Speed for each metre behind the profile."""
+    """Speed per metre behind the profile."""
     heading_gain_1_s: float = 9.0
-    """Turn rate for each radian off the heading."""
+    """Turn rate per radian of heading error."""
     blocking_force_n: float = 25.0
-    """A contact that pushes against the motion with this much, for `blocking_ticks`, ends it; less is pushed along."""
+    """A contact force of more than this against the motion, for `blocking_ticks`, ends it; less is pushed along."""
     blocking_ticks: int = 2
     stall_lag_m: float = 0.03
-    """Blocked as well: this far behind the profile and slower than `stall_speed_m_s` for `stall_s`."""
+    """A motion is also blocked when it is this far behind and slower than `stall_speed_m_s` for `stall_s`."""
     stall_speed_m_s: float = 0.05
     stall_lag_rad: float = 0.20
-    """The same for turns."""
+    """The same limit for turns."""
     stall_speed_rad_s: float = 0.15
     stall_s: float = 0.1
     touch_memory_s: float = 0.1
-    """A body that bounces along something still touches it for this long after the last contact."""
+    """The hull counts as touching an object for this long after the last contact, since it may bounce."""
     back_off_m: float = 0.004
-    """Way back after a block, so that the hull rests against nothing ..."""
+    """Distance to move back after a blocked motion, so that the hull touches nothing ..."""
     back_off_speed_m_s: float = 0.04
     """... at this speed ..."""
     back_off_max_s: float = 0.2
-    """... and for no longer than this."""
+    """... and for at most this time."""
     realign_max_s: float = 0.6
-    """Time given to turn back to the heading reference after a block."""
+    """Longest time to turn back to the heading reference after a blocked motion."""
     rest_max_s: float = 0.4
-    """Time given to brake at the end of an action."""
+    """Longest time to brake at the end of an action."""
     position_tolerance_m: float = 0.0005
-    """A forward motion has arrived when it is this near its end ..."""
+    """A forward motion has reached its end when it is this near to it ..."""
     touching_tolerance_m: float = 0.005
-    """... this near while it pushes something along, which holds it back for good ..."""
+    """... or this near while it pushes an object, which holds it back ..."""
     heading_tolerance_rad: float = math.radians(0.05)
-    """... and its heading this near the reference ..."""
+    """... and its heading is this near to the reference ..."""
     rest_speed_m_s: float = 0.002
-    """... and it moves slower than this ..."""
+    """... and it moves more slowly than this ..."""
     rest_speed_rad_s: float = 0.01
-    """... and turns slower than this."""
+    """... and turns more slowly than this."""
     timeout_s: float = 1.0
-    """A motion may take this much longer than its profile."""
+    """Time limit of a motion in addition to the duration of its profile."""
 
     def __post_init__(self) -> None:
         _require_positive(self, *(f.name for f in fields(self)))
@@ -161,18 +161,18 @@ class DriveConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class PhysicsConfig:
-    """The integrator's step and what counts as leaving the physical."""
+    """The time step, and the limits beyond which a state is not physical."""
 
     timestep_s: float = 0.004
-    """2 ms costs twice as much; hulls then sink 1.1 instead of 1.7 mm into what they hit."""
+    """2 ms costs twice as much; the hull then overlaps obstacles by 1.1 instead of 1.7 mm."""
     settle_s: float = 0.2
-    """Time the body is given to come to rest on the floor after it was placed."""
+    """Simulated time for the robot to come to rest after it was placed on the floor."""
     max_overlap_m: float = 0.001
-    """A start where the hull is deeper inside something is refused."""
+    """A start where the hull overlaps a geom by more than this is refused."""
     max_drop_m: float = 0.3
-    """An action that ends this far below where it began fell off something."""
+    """A robot that is lower by more than this after an action has fallen."""
     max_tilt_rad: float = math.radians(25.0)
-    """A free base that leans more has tipped over."""
+    """A free base that leans more than this has tipped over."""
 
     def __post_init__(self) -> None:
         _require_positive(self, *(f.name for f in fields(self)))
@@ -180,19 +180,19 @@ class PhysicsConfig:
 
 @dataclass(frozen=True)
 class RobotFile:
-    """A body from elsewhere in place of ours (`sim.robot.foreign`)."""
+    """A third-party body that replaces ours (`sim.robot.foreign`)."""
 
     path: Path
     """The MJCF file."""
     wheel_joints: tuple[str, str]
-    """Names of the left and the right wheel's hinge."""
+    """Names of the hinges of the left and the right wheel."""
     casters: tuple[str, ...] = ()
     """Names of geoms or bodies that slide on the floor."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobotConfig:
-    """The robot, whole."""
+    """The complete configuration of the robot."""
 
     base: Base = "planar"
     body: BodyConfig = field(default_factory=BodyConfig)
@@ -200,9 +200,9 @@ class RobotConfig:
     drive: DriveConfig = field(default_factory=DriveConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     file: RobotFile | None = None
-    """A body from elsewhere, which the numbers of `body` and `wheels` then describe; None: ours is made from them."""
+    """A third-party body, which `body` and `wheels` then describe; None: our body, which is built from them."""
     camera_forward_m: float = 0.0
-    """Camera mount ahead of the axle."""
+    """Distance of the camera ahead of the axle."""
 
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):
@@ -216,39 +216,39 @@ class RobotConfig:
         wheels = self.wheels
         if self.body.mass_kg <= 2.0 * wheels.mass_kg:
             raise ConfigError(
-                f"BodyConfig.mass_kg is the whole robot's and must exceed that of its wheels, {2 * wheels.mass_kg} kg; "
-                f"got {self.body.mass_kg} kg."
+                "BodyConfig.mass_kg is the mass of the whole robot and must exceed that of its wheels, "
+                f"{2 * wheels.mass_kg} kg; got {self.body.mass_kg} kg."
             )
         stiffness = wheels.motor_gain_nm_s * self.physics.timestep_s / wheels.armature_kg_m2
         if stiffness >= 1.0:
             raise ConfigError(
-                "motor_gain_nm_s * timestep_s / armature_kg_m2 must stay below 1 or the wheels shake; it is "
+                "motor_gain_nm_s * timestep_s / armature_kg_m2 must be below 1, or the wheels oscillate; it is "
                 f"{wheels.motor_gain_nm_s} * {self.physics.timestep_s} / {wheels.armature_kg_m2} = {stiffness:.2f}."
             )
         if self.drive.blocking_force_n >= wheels.max_push_n:
             raise ConfigError(
-                f"DriveConfig.blocking_force_n must be below what the motors can push, {wheels.max_push_n:.1f} N; "
-                f"got {self.drive.blocking_force_n} N."
+                "DriveConfig.blocking_force_n must be below the largest force of the motors, "
+                f"{wheels.max_push_n:.1f} N; got {self.drive.blocking_force_n} N."
             )
         if not abs(self.camera_forward_m) < self.body.radius_m:
             raise ConfigError(
-                f"RobotConfig.camera_forward_m must stay inside the body's radius of {self.body.radius_m:.3f} m, or "
-                f"the camera would look through walls; got {self.camera_forward_m} m."
+                f"RobotConfig.camera_forward_m must be within the body's radius of {self.body.radius_m:.3f} m, or "
+                f"the camera would see through walls; got {self.camera_forward_m} m."
             )
         if wheels.half_track_m >= self.body.radius_m or wheels.caster_offset_m >= self.body.radius_m:
             raise ConfigError(
-                f"Wheels and casters must stand inside the hull's radius of {self.body.radius_m} m, got "
+                f"Wheels and casters must be within the hull's radius of {self.body.radius_m} m, got "
                 f"half_track_m {wheels.half_track_m} and caster_offset_m {wheels.caster_offset_m}."
             )
 
     @property
     def steps_per_tick(self) -> int:
-        """Physics steps for each tick of the controller."""
+        """Physics steps per tick of the controller."""
         return round(self.drive.tick_s / self.physics.timestep_s)
 
     @property
     def model(self) -> RobotModel:
-        """What an agent may know of it."""
+        """The part of the configuration that agents get."""
         return RobotModel(
             radius_m=self.body.radius_m, height_m=self.body.height_m, camera_forward_m=self.camera_forward_m
         )

@@ -1,4 +1,4 @@
-"""What the hull touched during one action: which thing, where, in which direction it pushed, for how long."""
+"""Records the contacts of the hull during one action: object, position, direction of the force, duration."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from sim.houses.labels import Labels
 
 @dataclass(frozen=True)
 class Contact:
-    """One thing that the hull touched during an action."""
+    """One geom that the hull touched during an action."""
 
     instance: str
-    """Label of the thing, `chair_03`; "" for something without a label."""
+    """Name of the instance, for example `chair_03`; "" for a geom without a label."""
     geom: str
-    """Name of the geom in the world's model."""
+    """Name of the geom in the compiled world."""
     position_m: tuple[float, float, float]
-    """Where they touched, in the world: the mean over the touch, weighted by force."""
+    """Position in the world: the mean over the duration of the contact, weighted by force."""
     direction: tuple[float, float, float]
-    """Unit vector of the force on the robot, in the world; zero where nothing pushed."""
+    """Unit vector of the force on the robot in the world; zero without a force."""
     duration_s: float
-    """How long they touched, in whole ticks of the controller."""
+    """Duration of the contact, a multiple of the controller's tick."""
     stopped: bool
-    """Whether this contact pushed against the motion when the motion was given up."""
+    """Whether this contact pushed against the motion when the motion was aborted."""
 
 
 class _Touch:
-    """Sums over the ticks in which one geom was touched."""
+    """Sums over the contacts with one geom during an action."""
 
     def __init__(self) -> None:
         self.weight = 0.0
@@ -40,7 +40,7 @@ class _Touch:
 
 
 class ContactLog:
-    """Collects the hull's contacts over one action, a sample each tick."""
+    """Collects the contacts of the hull during one action, one sample per tick."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, hull_geoms: tuple[int, ...]) -> None:
         self._model, self._data, self._labels = model, data, labels
@@ -49,11 +49,11 @@ class ContactLog:
         self._touches: dict[int, _Touch] = {}
 
     def clear(self) -> None:
-        """Forget everything: a new action begins."""
+        """Removes all samples; called at the start of an action."""
         self._touches = {}
 
     def sample(self, tick: int) -> None:
-        """Add the contacts that the data hold now, at the end of one tick of the action."""
+        """Adds the current contacts at the end of one tick of the action."""
         contacts = self._data.contact
         for index, (first, second) in enumerate(contacts.geom.tolist()):
             if first in self._hull:
@@ -63,7 +63,7 @@ class ContactLog:
             else:
                 continue
             mujoco.mj_contactForce(self._model, self._data, index, self._wrench)
-            # The rows of `frame` are the contact's axes; the force is the one on the second geom.
+            # The rows of `frame` are the axes of the contact; the force acts on the second geom.
             force = sign * (self._wrench[:3] @ contacts.frame[index].reshape(3, 3))
             self._add(tick, other, contacts.pos[index], force)
 
@@ -78,21 +78,23 @@ class ContactLog:
         touch.force += force
 
     def contacts(self, tick_s: float) -> tuple[Contact, ...]:
-        """What was touched in a motion that arrived, in the order of first touch; one sample stands for `tick_s`."""
+        """Returns the contacts of a motion that reached its end, in order of first contact; a sample lasts `tick_s`."""
         return tuple(self._contact(geom, touch, tick_s, stopped=False) for geom, touch in self._touches.items())
 
-    def contacts_of_stop(self, tick_s: float, since_tick: int, against: tuple[float, float]) -> tuple[Contact, ...]:
-        """What was touched in a motion that was given up.
+    def contacts_of_aborted(
+        self, tick_s: float, since_tick: int, direction: tuple[float, float]
+    ) -> tuple[Contact, ...]:
+        """Returns the contacts of an aborted motion.
 
         Args:
-            tick_s: time that one sample stands for.
-            since_tick: contacts of this tick or later `stopped` it, but for those that pushed with the motion.
-            against: direction of the motion in plan; (0, 0) for a turn, which any contact may hold back.
+            tick_s: duration of one sample.
+            since_tick: contacts of this tick or later have `stopped` the motion, unless they pushed along with it.
+            direction: direction of the motion in plan; (0, 0) for a turn, which any contact may have stopped.
         """
-        turning = against == (0.0, 0.0)
+        turning = direction == (0.0, 0.0)
         found = []
         for geom, touch in self._touches.items():
-            along = float(against[0] * touch.force[0] + against[1] * touch.force[1])
+            along = float(direction[0] * touch.force[0] + direction[1] * touch.force[1])
             stopped = touch.last_tick >= since_tick and (turning or along <= 0.0)
             found.append(self._contact(geom, touch, tick_s, stopped=stopped))
         return tuple(found)

@@ -1,8 +1,8 @@
-"""An action as a closed-loop motion in physics: trapezoid profiles, blocks noticed, ends at rest.
+"""The controller of the robot: performs an action as a closed-loop motion along a trapezoid profile.
 
-The heading reference is absolute: the start heading plus a whole number of turns, never re-read from the pose, so
-that errors do not add up. Feedback is the true pose. The controller ticks every `tick_s`; between ticks physics runs
-alone with constant motor commands.
+A motion starts and ends at rest, and ends early when it is blocked. The heading reference is absolute: the start
+heading plus a whole number of turns. It is never read from the pose, so that errors do not accumulate. Feedback is the
+true pose. Motor commands are constant during a tick of `tick_s`.
 """
 
 from __future__ import annotations
@@ -23,28 +23,28 @@ Ended = Literal["reached", "blocked", "timeout"]
 
 @dataclass(frozen=True)
 class Motion:
-    """What one action did."""
+    """The result of one action."""
 
     action: Action
     displacement_m: float
-    """Of the robot's centre in plan, from the first to the last moment."""
+    """Distance in plan between the robot's positions before and after the action."""
     yaw_change_rad: float
     """In (-pi, pi], counter-clockwise."""
     duration_s: float
     """Simulated time."""
     ended: Ended
-    """Why it ended: it arrived, something held it back, or it never came to rest in time."""
+    """Why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
     contacts: tuple[Contact, ...]
-    """What the hull touched, also where that stopped nothing."""
+    """All contacts of the hull, also those that did not stop the motion."""
 
     @property
     def collided(self) -> bool:
-        """Whether a contact of the body ended the motion before its end; one that arrived was stopped by none."""
+        """Whether a contact of the hull ended the motion early."""
         return any(contact.stopped for contact in self.contacts)
 
 
 class Driver:
-    """Drives one robot in one world; remembers only the heading reference and where it stood."""
+    """Drives one robot in one world; its only memory between actions is the heading reference."""
 
     def __init__(
         self, config: RobotConfig, model: mujoco.MjModel, data: mujoco.MjData, body: Body, log: ContactLog
@@ -55,9 +55,9 @@ class Driver:
         self._tick_s = config.drive.tick_s
         wheels = config.wheels
         self._radius, self._half_track = wheels.radius_m, wheels.half_track_m
-        # A wheel commanded this much faster than it rolls asks for all its torque ...
+        # A wheel with this difference between commanded and actual speed (m/s) uses its largest torque ...
         self._full_slip = wheels.max_torque_nm / wheels.motor_gain_nm_s * wheels.radius_m
-        # ... and this much pushes half-way between what blocks and what the motors can do.
+        # ... and with this one the robot pushes half-way between the blocking force and the largest force.
         push_n = 0.5 * (self._drive.blocking_force_n + wheels.max_push_n)
         self._push_slip = self._full_slip * push_n / wheels.max_push_n
         self._touch_ticks = math.ceil(self._drive.touch_memory_s / self._tick_s)
@@ -67,27 +67,29 @@ class Driver:
         self._touched_until = 0
 
     def reset(self, yaw_rad: float) -> None:
-        """A new episode: the heading grid starts at `yaw_rad`."""
+        """Starts a new episode: the headings are `yaw_rad` plus multiples of a turn."""
         self._start_yaw, self._turns = yaw_rad, 0
 
     def run(self, action: Action) -> Motion:
-        """Carry one action out, from rest to rest."""
+        """Performs one action, from rest to rest."""
         if action == Action.STOP:
             return Motion(action, 0.0, 0.0, 0.0, "reached", ())
         self._log.clear()
         self._ticks = self._touched_until = 0
         x0, y0, yaw0, _, _ = self._body.state()
         if action == Action.MOVE_FORWARD:
-            ended, against = self._forward()
+            ended, aborted = self._forward()
         else:
-            ended, against = self._turn(1 if action == Action.TURN_LEFT else -1)
-        if against is None:
+            ended, aborted = self._turn(1 if action == Action.TURN_LEFT else -1)
+        if aborted is None:
             contacts = self._log.contacts(self._tick_s)
             if self._touching:
-                self._recover(back_off=False)
+                self._realign()
         else:
-            contacts = self._log.contacts_of_stop(self._tick_s, self._ticks - self._touch_ticks, against)
-            self._recover(back_off=action == Action.MOVE_FORWARD)
+            contacts = self._log.contacts_of_aborted(self._tick_s, self._ticks - self._touch_ticks, aborted)
+            if action == Action.MOVE_FORWARD:
+                self._back_off()
+            self._realign()
         self._come_to_rest()
         x, y, yaw, _, _ = self._body.state()
         return Motion(
@@ -104,7 +106,11 @@ class Driver:
         return self._start_yaw + self._turns * self._drive.turn_rad
 
     def _forward(self) -> tuple[Ended, tuple[float, float] | None]:
-        """Drive ahead along the heading reference. How it ended and, unless reached, in which direction it went."""
+        """Drives ahead along the heading reference.
+
+        Returns:
+            How the motion ended, and its direction in plan when it was aborted.
+        """
         drive, body = self._drive, self._body
         reference = self._reference
         cos, sin = math.cos(reference), math.sin(reference)
@@ -137,13 +143,17 @@ class Driver:
         return ("reached", None) if abs(lag) <= drive.touching_tolerance_m else ("timeout", (cos, sin))
 
     def _turn(self, side: int) -> tuple[Ended, tuple[float, float] | None]:
-        """Turn on the spot to the next heading of the grid, left for +1. A blocked turn returns to the last one."""
+        """Turns on the spot to the next heading reference, left for +1; a blocked turn keeps the last reference.
+
+        Returns:
+            How the motion ended, and (0, 0) when it was aborted.
+        """
         drive, body = self._drive, self._body
         x0, y0, yaw0, _, _ = body.state()
         self._turns += side
-        way = wrap_angle(self._reference - yaw0)
-        sign = math.copysign(1.0, way)
-        profile = Trapezoid(abs(way), drive.turn_speed_rad_s, drive.turn_acceleration_rad_s2)
+        angle = wrap_angle(self._reference - yaw0)
+        sign = math.copysign(1.0, angle)
+        profile = Trapezoid(abs(angle), drive.turn_speed_rad_s, drive.turn_acceleration_rad_s2)
         last_tick = math.ceil((profile.duration_s + drive.timeout_s) / self._tick_s)
         stalled_s = 0.0
         for tick in range(last_tick):
@@ -169,29 +179,32 @@ class Driver:
             self._turns -= side
         return "blocked" if blocked else "timeout", (0.0, 0.0)
 
-    def _recover(self, *, back_off: bool) -> None:
-        """Leave what held the body back by a few millimetres, then turn to the heading reference."""
+    def _back_off(self) -> None:
+        """Moves back by a few millimetres from the obstacle that blocked the motion."""
         body, drive = self._body, self._drive
         reference = self._reference
-        if back_off:
-            x0, y0, _, _, _ = body.state()
-            cos, sin = math.cos(reference), math.sin(reference)
-            for _ in range(round(drive.back_off_max_s / self._tick_s)):
-                x, y, yaw, speed, rate = body.state()
-                if (x - x0) * cos + (y - y0) * sin <= -drive.back_off_m:
-                    break
-                self._command(
-                    -drive.back_off_speed_m_s, drive.heading_gain_1_s * wrap_angle(reference - yaw), speed, rate
-                )
+        x0, y0, _, _, _ = body.state()
+        cos, sin = math.cos(reference), math.sin(reference)
+        for _ in range(round(drive.back_off_max_s / self._tick_s)):
+            x, y, yaw, speed, rate = body.state()
+            if (x - x0) * cos + (y - y0) * sin <= -drive.back_off_m:
+                break
+            turn_rate = drive.heading_gain_1_s * wrap_angle(reference - yaw)
+            self._command(-drive.back_off_speed_m_s, turn_rate, speed, rate)
+
+    def _realign(self) -> None:
+        """Turns back to the heading reference."""
+        drive = self._drive
+        reference = self._reference
         for _ in range(round(drive.realign_max_s / self._tick_s)):
-            _, _, yaw, speed, rate = body.state()
+            _, _, yaw, speed, rate = self._body.state()
             error = wrap_angle(reference - yaw)
             if abs(error) <= drive.heading_tolerance_rad and abs(rate) <= drive.rest_speed_rad_s:
                 break
             self._command(0.0, drive.heading_gain_1_s * error, speed, rate)
 
     def _come_to_rest(self) -> None:
-        """Brake until nothing moves."""
+        """Brakes until the robot is at rest."""
         drive = self._drive
         for _ in range(round(drive.rest_max_s / self._tick_s)):
             _, _, _, speed, rate = self._body.state()
@@ -215,15 +228,15 @@ class Driver:
         return self._ticks < self._touched_until
 
     def _command(self, speed_m_s: float, rate_rad_s: float, actual_speed: float, actual_rate: float) -> None:
-        """Hold one command of speed and turn rate for a tick.
+        """Applies one command of speed and turn rate for a tick.
 
-        While the hull touches something, or did a moment ago, the command stays so near the actual motion that no
-        motor saturates, since two saturated motors cannot keep the heading; the turn rate is served first.
+        While the hull touches an object, or did so shortly before, the command is limited to values near the actual
+        motion that saturate no motor, since two saturated motors cannot keep the heading. The turn rate has priority.
         """
         if self._touching:
-            rate_rad_s = _near(rate_rad_s, actual_rate, self._full_slip / self._half_track)
+            rate_rad_s = _clamp(rate_rad_s, actual_rate, self._full_slip / self._half_track)
             spare = self._full_slip - abs(rate_rad_s - actual_rate) * self._half_track
-            speed_m_s = _near(speed_m_s, actual_speed, min(self._push_slip, spare))
+            speed_m_s = _clamp(speed_m_s, actual_speed, min(self._push_slip, spare))
         across = rate_rad_s * self._half_track
         self._body.ctrl[0] = (speed_m_s - across) / self._radius
         self._body.ctrl[1] = (speed_m_s + across) / self._radius
@@ -234,5 +247,5 @@ class Driver:
             self._log.sample(self._ticks)
 
 
-def _near(value: float, centre: float, reach: float) -> float:
+def _clamp(value: float, centre: float, reach: float) -> float:
     return max(centre - reach, min(centre + reach, value))

@@ -1,4 +1,4 @@
-"""The plan of a motion over time, in metres or in radians."""
+"""Trapezoid motion profiles, in metres or in radians."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 
 class Trapezoid:
-    """Distance over time that speeds up, cruises and slows down; a triangle where the way is short."""
+    """A motion that accelerates, keeps its speed and decelerates; short motions only accelerate and decelerate."""
 
     def __init__(self, distance: float, speed: float, acceleration: float) -> None:
         self._distance = distance
@@ -16,7 +16,7 @@ class Trapezoid:
         self.duration_s = distance / self._speed + self._ramp_s if self._speed > 0.0 else 0.0
 
     def distance(self, time_s: float) -> float:
-        """Distance covered at one time: 0 before the start, all of it after the end."""
+        """Returns the distance covered at a time: 0 before the start, the whole distance after the end."""
         left_s = self.duration_s - time_s
         if time_s <= 0.0:
             return 0.0
@@ -29,6 +29,6 @@ class Trapezoid:
         return self._speed * (time_s - 0.5 * self._ramp_s)
 
     def speed(self, time_s: float) -> float:
-        """Speed at one time: 0 before the start and after the end."""
+        """Returns the speed at a time: 0 before the start and after the end."""
         ramp = self._acceleration * min(time_s, self.duration_s - time_s)
         return max(0.0, min(self._speed, ramp))

@@ -1,4 +1,4 @@
-"""How little a depth camera's light comes back from each geom: glass, mirrors, polished metal."""
+"""The gloss of geoms, which decides how much of a depth camera's light returns: glass, mirrors, polished metal."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _GLASS_CATEGORIES = tuple(MPCAT40_ID[name] for name in ("mirror", "window"))
 
 
 def geom_gloss(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float32]:
-    """Gloss (ngeom,) of every geom in [0, 1]: 0 matt, 1 a perfect mirror or pane.
+    """Returns the gloss (ngeom,) of all geoms in [0, 1]: 0 is matt, 1 a perfect mirror or pane of glass.
 
     It is the largest of the geom's transparency (1 - alpha), its material's reflectance, and specular times shininess.
-    A mirror or a window without any material, as in houses from elsewhere, counts as 1.
+    A mirror or a window without a material, as in third-party scenes, has gloss 1.
     """
     material = model.geom_matid
     plain = material < 0
@@ -29,5 +29,5 @@ def geom_gloss(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float32]:
 
 
 def _of_geoms(of_materials: NDArray, material: NDArray[np.int32], without: float) -> NDArray[np.float64]:
-    """A material's property by geom; `without` where a geom has none."""
+    """Returns a material property (ngeom,) by geom; `without` for geoms without a material."""
     return np.append(of_materials.astype(np.float64), without)[material]

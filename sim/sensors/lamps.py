@@ -1,8 +1,8 @@
-"""Which lamps light a picture: fixed-function OpenGL has eight lights, a home has a lamp in every room.
+"""Chooses the lamps that light an image: fixed-function OpenGL has eight lights, a house has one lamp per room.
 
-Light that is the same everywhere always shines. Of the lamps, those nearest to what the camera looks at count, as long
-as no wall stands between; the nearest throws shadows. So each room is lit by its own lamp, and a picture costs one
-shadow map whatever the house.
+Directional lights are always on. Of the lamps, those nearest to the region that the camera looks at are on, unless a
+wall is in between; the nearest casts shadows. So each room is lit by its own lamp, and an image needs one shadow map
+in every house.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from sim.gl import mujoco
 from sim.sensors.occlusion import Visibility
 
-LAMPS_LIT = 2
-"""Lamps that shine at once."""
+MAX_LAMPS = 2
+"""Largest number of lamps that are on in an image."""
 LOOK_AHEAD_M = 1.5
-"""Nearest is meant from here before the eye."""
+"""Distances of lamps are measured from the point this far ahead of the eye."""
 
 
 class Lamps:
@@ -26,66 +26,67 @@ class Lamps:
 
     Args:
         model: compiled world.
-        visibility: knows its walls.
-        drawable: ids of the geoms that are rendered at all.
+        visibility: finds the walls of `model`.
+        visual_ids: ids of the visual geoms.
     """
 
-    def __init__(self, model: mujoco.MjModel, visibility: Visibility, drawable: NDArray[np.intp]) -> None:
+    def __init__(self, model: mujoco.MjModel, visibility: Visibility, visual_ids: NDArray[np.intp]) -> None:
         self._model = model
         self._visibility = visibility
-        self._drawable = drawable
-        self._shining = model.light_active.copy()
-        self._casts = model.light_castshadow.copy()
-        everywhere = model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value
-        self._sun_casts = bool((self._shining.astype(np.bool_) & self._casts.astype(np.bool_) & everywhere).any())
-        self._lamps = np.flatnonzero(self._shining.astype(np.bool_) & ~everywhere)
-        self._fixed = model.body_weldid[model.geom_bodyid[drawable]] == 0  # (drawable,)
+        self._visual_ids = visual_ids
+        self._active = model.light_active.copy()
+        self._casts_shadow = model.light_castshadow.copy()
+        on, casts = self._active.astype(np.bool_), self._casts_shadow.astype(np.bool_)
+        directional = model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value
+        self._directional_casts = bool((on & casts & directional).any())
+        self._lamps = np.flatnonzero(on & ~directional)
+        self._static = model.body_weldid[model.geom_bodyid[visual_ids]] == 0  # (visual geoms,)
         self._lit: dict[int, NDArray[np.bool_]] = {}
 
     def choose(self, data: mujoco.MjData, eye_m: NDArray, forward: NDArray) -> list[int]:
-        """Numbers of the lamps that shine, the one that throws shadows first.
+        """Returns the ids of the lamps that light an image, the one that casts shadows first.
 
         Args:
-            data: state of the model; kinematics must be up to date.
+            data: state of the model; kinematics must be computed.
             eye_m: (3,) optical centre in the world.
-            forward: (3,) where the camera looks.
+            forward: (3,) optical axis.
         """
-        places = data.light_xpos[self._lamps]  # (k, 3)
-        away_m = np.linalg.norm(places - (eye_m + LOOK_AHEAD_M * forward), axis=1)
-        away_m[~self._visibility.in_sight(eye_m, places)] = np.inf
-        nearest = np.argsort(away_m, kind="stable")[:LAMPS_LIT]
-        return [int(self._lamps[i]) for i in nearest if np.isfinite(away_m[i])]
+        positions = data.light_xpos[self._lamps]  # (k, 3)
+        distance_m = np.linalg.norm(positions - (eye_m + LOOK_AHEAD_M * forward), axis=1)
+        distance_m[~self._visibility.in_sight(eye_m, positions)] = np.inf
+        nearest = np.argsort(distance_m, kind="stable")[:MAX_LAMPS]
+        return [int(self._lamps[i]) for i in nearest if np.isfinite(distance_m[i])]
 
-    def lit(self, data: mujoco.MjData, lamp: int) -> NDArray[np.bool_]:
-        """(drawable,) True for geoms that this lamp shines on: no wall stands between."""
+    def lit_geoms(self, data: mujoco.MjData, lamp: int) -> NDArray[np.bool_]:
+        """Returns (visual geoms,) True for geoms without a wall between them and the lamp, and for all movable ones."""
         if lamp not in self._lit:
-            places = data.geom_xpos[self._drawable]
-            self._lit[lamp] = self._visibility.in_sight(data.light_xpos[lamp], places) | ~self._fixed
+            positions = data.geom_xpos[self._visual_ids]
+            self._lit[lamp] = self._visibility.in_sight(data.light_xpos[lamp], positions) | ~self._static
         return self._lit[lamp]
 
-    def casters(self, data: mujoco.MjData, lamp: int, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
-        """Ids of the drawable geoms that no wall hides from a lamp and whose shadow may fall into the picture.
+    def shadow_casters(self, data: mujoco.MjData, lamp: int, eye_m: NDArray, axes: NDArray) -> NDArray[np.intp]:
+        """Returns the ids of the visual geoms that a lamp lights and whose shadow may fall into the image.
 
-        A sun that throws shadows too lets all stay that the lamp shines on.
+        With a directional light that casts shadows, these are all geoms that the lamp lights.
 
         Args:
-            data: state of the model, the one that `visibility` has looked at last.
-            lamp: its number.
+            data: state of the model; it must be the one of the last call of `Visibility.visible`.
+            lamp: id of the lamp.
             eye_m: (3,) optical centre in the world.
             axes: (3, 3) the camera's forward, left and up as rows.
         """
-        lit = self.lit(data, lamp)
-        if not self._sun_casts:
-            lit = lit & self._visibility.shading(data.light_xpos[lamp], eye_m, axes)
-        return self._drawable[lit]
+        lit = self.lit_geoms(data, lamp)
+        if not self._directional_casts:
+            lit = lit & self._visibility.may_shade(data.light_xpos[lamp], eye_m, axes)
+        return self._visual_ids[lit]
 
-    def light(self, lamps: Sequence[int]) -> None:
-        """Let these lamps shine in the model, the first with shadows; all others are off until `restore`."""
+    def switch_on(self, lamps: Sequence[int]) -> None:
+        """Switches on these lamps, the first with shadows, and all others off, until `restore` is called."""
         others = np.setdiff1d(self._lamps, lamps)
         self._model.light_active[others] = 0
         self._model.light_castshadow[list(lamps[1:])] = 0
 
     def restore(self) -> None:
-        """The model as it was."""
-        self._model.light_active[:] = self._shining
-        self._model.light_castshadow[:] = self._casts
+        """Restores the lights of the model."""
+        self._model.light_active[:] = self._active
+        self._model.light_castshadow[:] = self._casts_shadow

@@ -1,4 +1,4 @@
-"""Rendering profiles: one named set of quality settings, recorded with every result and dataset."""
+"""Rendering profiles: named sets of quality settings, which are recorded with every result and dataset."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ from sim.errors import ConfigError
 
 @dataclass(frozen=True, kw_only=True)
 class RenderProfile:
-    """Quality settings of the offscreen renderer. Segmentation and depth never depend on them but for `slices`."""
+    """Quality settings of the offscreen renderer. Segmentation and depth depend only on `slices` and `stacks`."""
 
     name: str
     shadows: bool
     reflections: bool
     skybox: bool
     samples: int
-    """Multisampling of the colour pass; 0 is off."""
+    """Samples per pixel of the colour pass; 0 is off."""
     slices: int
     """Tessellation of round geoms about their axis (`quality/numslices`)."""
     stacks: int
     """Tessellation of round geoms along their axis (`quality/numstacks`)."""
     quads: int
-    """Squares along each edge of a box's face in the colour pass, whose light is computed at their corners."""
+    """Squares along each edge of a box's face in the colour pass; light is computed at their corners."""
     shadow_size_px: int = 2048
+    """Edge of the shadow map."""
 
 
 PROFILES: dict[str, RenderProfile] = {
@@ -41,11 +42,11 @@ PROFILES: dict[str, RenderProfile] = {
 
 
 def get_profile(name: str) -> RenderProfile:
-    """The profile of that name.
+    """Returns the profile of a name.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: an unknown name.
     """
     if name not in PROFILES:
-        raise ConfigError(f"Unknown rendering profile '{name}'. There is: {', '.join(PROFILES)}.")
+        raise ConfigError(f"Unknown rendering profile '{name}'. The profiles are: {', '.join(PROFILES)}.")
     return PROFILES[name]

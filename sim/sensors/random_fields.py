@@ -1,7 +1,7 @@
-"""Images of random numbers, fast: 16 random bits a pixel look a value up in a table of quantiles.
+"""Fast images of random numbers: 16 random bits per pixel are the index into a table of quantiles.
 
-A normal number a pixel of a 640 x 480 image so takes 0.6 ms instead of 2.5 ms. The tables hold 65536 equally likely
-values, hence the largest normal is 4.3 standard deviations out.
+A 640 x 480 image of normal numbers takes 0.6 ms instead of 2.5 ms. The tables hold 65536 equally likely values, so the
+largest normal number is 4.3 standard deviations.
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ from scipy.special import ndtri
 
 _LEVELS = 1 << 16
 _SCATTER = 40503
-"""Odd, near 65536 over the golden ratio: its multiples modulo 65536 pair each value with one far from it."""
+"""An odd number near 65536 over the golden ratio: multiplying by it modulo 65536 scatters neighbouring values."""
 
 
 def fill_normal(rng: np.random.Generator, out: NDArray[np.float32]) -> None:
-    """Fill an array with independent standard normal numbers."""
+    """Fills an array with independent standard normal numbers."""
     np.take(_normal_quantiles(), _levels(rng, out.shape), out=out, mode="clip")
 
 
 def fill_shifts(rng: np.random.Generator, sigma_px: float, out: NDArray[np.int16]) -> None:
-    """Fill (h, w, 2) with independent pixel shifts, right and down: normal with this standard deviation, rounded."""
+    """Fills (h, w, 2) with independent pixel shifts, right and down: rounded normal numbers of this deviation."""
     pairs = out.view(np.int32)[..., 0]
     np.take(_shift_pairs(sigma_px), _levels(rng, pairs.shape), out=pairs, mode="clip")
 
 
 def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: float) -> NDArray[np.float32]:
-    """A field (h, w) that is standard normal at each pixel and alike over about `scale_px`.
+    """Returns a field (h, w) that is standard normal at each pixel and correlated over about `scale_px`.
 
     White noise on a grid of a quarter of the resolution is blurred, enlarged, and divided by the standard deviation
-    that both leave.
+    that remains.
     """
     coarse = 4
     sigma = max(scale_px / coarse, 0.5)
@@ -44,9 +44,9 @@ def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: fl
     fill_normal(rng, white)
     taps = cv2.getGaussianKernel(2 * margin + 1, sigma, cv2.CV_32F)[:, 0]
     field = np.asarray(cv2.sepFilter2D(white, -1, taps, taps), np.float32)[margin:-margin, margin:-margin]
-    power = float(taps @ taps)  # variance that one direction of the blur leaves ...
-    neighbours = float(taps[:-1] @ taps[1:]) / power  # ... and how alike two neighbours then are
-    # Half-way between neighbours linear interpolation averages; over all places 2/3 + 1/3 * correlation stays.
+    power = float(taps @ taps)  # variance that remains after blurring in one direction ...
+    neighbours = float(taps[:-1] @ taps[1:]) / power  # ... and the correlation of two neighbours
+    # Linear interpolation averages neighbours: on average a variance of 2/3 + 1/3 * correlation remains.
     field = field / np.float32(power * (2.0 + neighbours) / 3.0)
     size = (field.shape[1] * coarse, field.shape[0] * coarse)
     enlarged = np.asarray(cv2.resize(field, size, interpolation=cv2.INTER_LINEAR), np.float32)
@@ -54,8 +54,9 @@ def smooth_normal(rng: np.random.Generator, shape: tuple[int, int], scale_px: fl
 
 
 def _levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint16]:
+    """Returns uniform random 16-bit numbers."""
     count = math.prod(shape)
-    words = rng.bit_generator.random_raw(-(-count // 4))  # 64 bits each; half the time of `rng.integers`
+    words = rng.bit_generator.random_raw(-(-count // 4))  # 64 bits each; twice as fast as `rng.integers`
     return words.view(np.uint16)[:count].reshape(shape)
 
 
@@ -66,7 +67,7 @@ def _normal_quantiles() -> NDArray[np.float32]:
 
 @cache
 def _shift_pairs(sigma_px: float) -> NDArray[np.int32]:
-    """(65536,) two int16 in one int32: either takes every quantile once, in orders that have nothing in common."""
+    """Returns (65536,) pairs of int16 as int32: each of the two takes every quantile once, in unrelated orders."""
     order = np.arange(_LEVELS)
     one = np.rint(sigma_px * _normal_quantiles()).astype(np.int16)
     pairs = np.stack([one[order], one[order * _SCATTER % _LEVELS]], axis=1)

@@ -1,4 +1,4 @@
-"""A wrong option is one clear line and exit status 2."""
+"""A wrong option gives one line on stderr and exit status 2."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ class Args:
     """How many."""
 
 
-def test_what_can_be_read_reaches_main() -> None:
+def test_parsed_arguments_reach_main() -> None:
     seen: list[Args] = []
     assert cli.run(Args, lambda args: len(seen.append(args) or seen) - 1, ["--episodes", "7"]) == 0
     assert seen == [Args(episodes=7)]
 
 
 @pytest.mark.parametrize(
-    ("argv", "told"),
+    ("argv", "named"),
     [(["--episodes", "many"], "many"), (["--epsodes", "3"], "--epsodes"), (["--episodes"], "--episodes")],
 )
 def test_a_command_line_that_cannot_be_read_is_one_line(
-    argv: list[str], told: str, capsys: pytest.CaptureFixture[str]
+    argv: list[str], named: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.run(Args, lambda args: 0, argv) == 2
-    complaint = capsys.readouterr().err
-    assert complaint.startswith("error: ")
-    assert complaint.count("\n") == 1
-    assert told in complaint
-    assert "│" not in complaint
+    message = capsys.readouterr().err
+    assert message.startswith("error: ")
+    assert message.count("\n") == 1
+    assert named in message
+    assert "│" not in message
 
 
 @pytest.mark.parametrize("error", [ConfigError("no\nway"), HouseError("no\nway")])
-def test_what_a_user_can_mend_is_one_line(error: Exception, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_usage_error_is_one_line(error: Exception, capsys: pytest.CaptureFixture[str]) -> None:
     def main(args: Args) -> int:
         raise error
 

@@ -1,4 +1,4 @@
-"""Which code this is: the same digits wherever it lies."""
+"""The hash of the code depends on its modules and parameters and not on its location."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def package(tmp_path: Path) -> Path:
     return tmp_path / "sim"
 
 
-def test_the_houses_that_a_wheel_puts_beside_the_modules_do_not_change_the_hash(package: Path) -> None:
+def test_the_houses_in_a_wheel_do_not_change_the_hash(package: Path) -> None:
     before = hash_of_packages(package)
     (package / "assets" / "mjcf_houses" / "train").mkdir(parents=True)
     (package / "assets" / "mjcf_houses" / "train" / "houses.json").write_text("[]")
@@ -37,7 +37,7 @@ def test_a_module_under_another_name_changes_the_hash(package: Path) -> None:
     assert hash_of_packages(package) != before
 
 
-def test_parameters_can_be_left_out(package: Path) -> None:
+def test_parameters_can_be_excluded(package: Path) -> None:
     before = hash_of_packages(package, parameters=False)
     (package / "verifiers" / "noisy.json").write_text("2")
     assert hash_of_packages(package, parameters=False) == before

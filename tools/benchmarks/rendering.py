@@ -13,7 +13,8 @@ from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.labels import RENDERED_GROUPS
 from sim.interface import CameraModel
-from sim.sensors.camera import Z_FAR_M, Z_NEAR_M, Camera
+from sim.sensors.camera import Camera
+from sim.sensors.opengl import Z_FAR_M, Z_NEAR_M
 from sim.sensors.profiles import get_profile
 from sim.world.world import World
 from tools.benchmarks.figures import Figure, Goal, interleaved, speedup

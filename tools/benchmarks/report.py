@@ -16,7 +16,7 @@ from rich.table import Table
 from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.paths import code_hash
-from sim.sensors.camera import describe_gl
+from sim.sensors.opengl import describe_gl
 from tools.benchmarks.calibration import Calibration
 from tools.benchmarks.figures import Figure
 

@@ -13,7 +13,8 @@ import pytest
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
-from sim.sensors.camera import Camera, describe_gl
+from sim.sensors.camera import Camera
+from sim.sensors.opengl import describe_gl
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
 

@@ -1,4 +1,4 @@
-"""Other people's scenes and robots: taken as they are, what does not fit is told, and ours stay what they are."""
+"""Third-party scenes and robots: unsupported elements are removed and reported, and our robot is not affected."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tests.helpers.worlds import open_floor, room, with_box
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A scene in another style, and its label rules."""
+    """Returns a scene in another style, and its label rules."""
     return write_scene(tmp_path_factory.mktemp("scene") / "elsewhere")
 
 
@@ -34,19 +34,19 @@ def world(scene: tuple[Path, Path]) -> World:
     return World(load_house(scene[0], labels_path=scene[1]))
 
 
-def test_what_no_house_holds_is_left_out_and_told(scene: tuple[Path, Path]) -> None:
+def test_unsupported_elements_are_removed_and_reported(scene: tuple[Path, Path]) -> None:
     house = load_house(scene[0], labels_path=scene[1])
     assert house.notes == (
-        "Left out: 1 keyframe (home), 1 sensor, 1 actuator (open), 1 camera (overview).",
-        "Standing still where the file has them: what hangs on 1 joint (sideboard_hinge).",
+        "Removed: 1 keyframe (home), 1 sensor, 1 actuator (open), 1 camera (overview).",
+        "Fixed in the pose of the file: 1 joint (sideboard_hinge).",
         "2 visible geoms have no label and became void: Gadget.box, Widget.",
     )
-    with pytest.raises(HouseError, match="no camera"):
+    with pytest.raises(HouseError, match="must not have cameras"):
         load_house(scene[0])
 
 
 def test_the_robot_is_the_same_in_every_style_of_file(world: World) -> None:
-    """The file's compiler settings, options and default classes are its own."""
+    """The file's compiler settings, options and default classes do not change the robot."""
     ours = World(room())
     for name in ("base", "left_wheel", "right_wheel"):
         for field in ("mass", "inertia", "ipos"):
@@ -58,7 +58,7 @@ def test_the_robot_is_the_same_in_every_style_of_file(world: World) -> None:
         assert getattr(world.model.opt, field) == getattr(ours.model.opt, field)
 
 
-def test_free_things_can_be_pushed_and_hinged_ones_stand(world: World) -> None:
+def test_bodies_with_a_free_joint_can_be_pushed_and_those_with_a_hinge_stay(world: World) -> None:
     world.reset(Pose(-2.05, 1.2, 0.0))
     before = world.data.body("Stool_7").xpos.copy()
     for _ in range(3):
@@ -77,7 +77,7 @@ def test_a_doorway_in_a_mesh_is_open(world: World) -> None:
     assert truth.target("sofa").region.satisfied(np.array([[1.3, 0.1]])).all()
 
 
-def test_labels_reach_the_camera_and_what_has_none_is_void(scene: tuple[Path, Path]) -> None:
+def test_the_camera_shows_labels_and_unlabelled_geoms_as_void(scene: tuple[Path, Path]) -> None:
     start = Pose(0.6, -0.6, -0.43)
     env = ObjectNavEnv(house=scene[0], labels=scene[1], goal="sofa", start=start, truth=("geom",), profile="good")
     try:
@@ -91,7 +91,7 @@ def test_labels_reach_the_camera_and_what_has_none_is_void(scene: tuple[Path, Pa
     assert observation["rgb"].std() > 5.0
 
 
-def test_the_oracle_finds_things_and_the_run_tells_what_was_left_out(
+def test_the_oracle_succeeds_and_the_run_reports_removed_elements(
     scene: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     options = ["--house", str(scene[0]), "--labels", str(scene[1]), "--agent", "oracle", "--episodes", "3"]
@@ -102,14 +102,14 @@ def test_the_oracle_finds_things_and_the_run_tells_what_was_left_out(
     assert [line["success"] for line in lines] == [1.0, 1.0, 1.0]
 
 
-def test_a_scene_without_a_floor_is_refused_with_the_names_that_a_rule_could_go_by(tmp_path: Path) -> None:
+def test_a_scene_without_a_floor_is_refused_with_the_names_of_unlabelled_geoms(tmp_path: Path) -> None:
     rules = {pattern: category for pattern, category in LABELS.items() if category != "floor"}
     house, labels = write_scene(tmp_path / "s", labels=rules)
-    with pytest.raises(HouseError, match=r"without floor.*3 visible geoms have no label.*Ground, Gadget.box, Widget"):
+    with pytest.raises(HouseError, match=r"has no floor.*3 visible geoms have no label.*Ground, Gadget.box, Widget"):
         load_house(house, labels_path=labels)
 
 
-def test_a_mesh_that_is_missing_is_one_sentence(tmp_path: Path) -> None:
+def test_a_missing_mesh_is_reported_in_one_sentence(tmp_path: Path) -> None:
     house, labels = write_scene(tmp_path / "s", scene=SCENE)
     (house.parent / "meshes" / "arch.obj").unlink()
     with pytest.raises(HouseError, match=r"flat\.xml.*arch\.obj") as refused:
@@ -122,7 +122,7 @@ def test_a_mesh_that_is_missing_is_one_sentence(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def carrier(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A robot in another style than ours: a deck on two wheels and a castor, with a mast and a head."""
+    """Returns a robot in another style: a deck on two wheels and a caster, with a mast and a head."""
     return write_robot(tmp_path_factory.mktemp("robot") / "carrier")
 
 
@@ -144,10 +144,10 @@ def test_a_robot_keeps_its_own_masses_and_shapes(carrier: Path, capfd: pytest.Ca
     ours, hull = World(open_floor()).model.geom("robot/lower_hull"), world.model.geom("robot/file/hull_1")
     for field in ("friction", "condim", "solref", "margin", "priority", "contype", "conaffinity", "group"):
         np.testing.assert_array_equal(getattr(hull, field), getattr(ours, field))
-    assert capfd.readouterr().err == ""  # MuJoCo finds nothing to warn of
+    assert capfd.readouterr().err == ""  # MuJoCo gave no warning
 
 
-def test_where_a_file_shows_its_robot_does_not_matter(carrier: Path, tmp_path: Path) -> None:
+def test_the_pose_of_the_robot_in_its_file_does_not_matter(carrier: Path, tmp_path: Path) -> None:
     elsewhere = write_robot(tmp_path / "r", robot=ROBOT.replace('pos="0.4 0.1 0.075"', 'pos="-3 2 0.4"'))
     (here, _), (there, _) = load_robot(carrier), load_robot(elsewhere)
     assert there.body.height_m == pytest.approx(here.body.height_m)
@@ -158,14 +158,14 @@ def test_where_a_file_shows_its_robot_does_not_matter(carrier: Path, tmp_path: P
     np.testing.assert_allclose(_tyres(worlds[0]), _tyres(worlds[1]), atol=1e-6)
 
 
-def test_motors_are_as_strong_and_as_quick_for_the_weight_as_ours(carrier: Path) -> None:
+def test_motors_have_the_same_force_and_lag_per_kilogram_as_ours(carrier: Path) -> None:
     theirs, ours = load_robot(carrier)[0], RobotConfig()
     for of in (lambda wheels: wheels.max_push_n, lambda wheels: wheels.motor_gain_nm_s / wheels.radius_m**2):
         assert of(theirs.wheels) / theirs.body.mass_kg == pytest.approx(of(ours.wheels) / ours.body.mass_kg)
 
 
 @pytest.mark.parametrize("box_floor", [False, True])
-def test_a_robot_from_elsewhere_drives_as_exactly_as_ours(carrier: Path, box_floor: bool) -> None:
+def test_a_third_party_robot_drives_as_exactly_as_ours(carrier: Path, box_floor: bool) -> None:
     world = World(room(6, 6, box_floor=box_floor), robot=load_robot(carrier)[0])
     world.reset(Pose(0.0, 0.0, 0.3))
     for action in (Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.TURN_RIGHT) * 2:
@@ -184,7 +184,7 @@ def test_a_robot_from_elsewhere_drives_as_exactly_as_ours(carrier: Path, box_flo
     [(0.0, 0.3, 1.0 - 0.165), (0.3, 0.5, 1.0 - 0.035), (0.76, 0.86, 1.0 - 0.055), (0.95, 1.2, math.inf)],
     ids=["deck", "mast", "head", "nothing"],
 )
-def test_what_stops_a_robot_from_elsewhere_is_its_own_shape(
+def test_a_third_party_robot_collides_with_its_own_shape(
     carrier: Path, low_m: float, high_m: float, stops_at_m: float
 ) -> None:
     centre, half = (1.25, 0.0, 0.5 * (low_m + high_m)), (0.25, 0.5, 0.5 * (high_m - low_m))
@@ -199,7 +199,7 @@ def test_what_stops_a_robot_from_elsewhere_is_its_own_shape(
     assert world.pose.x_m == pytest.approx(stops_at_m, abs=0.012)  # it backs off by millimetres
 
 
-def test_the_free_space_is_that_of_the_robot_that_drives(carrier: Path) -> None:
+def test_the_free_space_depends_on_the_robot(carrier: Path) -> None:
     config, _ = load_robot(carrier)
     ours, theirs = World(room(4, 4)), World(room(4, 4), robot=config)
     edges = [np.flatnonzero(GroundTruth(world).space().free.any(axis=0)) for world in (ours, theirs)]
@@ -207,7 +207,7 @@ def test_the_free_space_is_that_of_the_robot_that_drives(carrier: Path) -> None:
     assert lost_m == pytest.approx(2 * (config.model.radius_m - ours.robot.radius_m), abs=0.026)
 
 
-def test_the_camera_sits_where_the_sidecar_mounts_it(tmp_path: Path) -> None:
+def test_the_camera_is_mounted_where_the_sidecar_says(tmp_path: Path) -> None:
     (tmp_path / "room.xml").write_text(
         with_box(room(4, 4), "sofa_00", centre_m=(0, 1.5, 0.2), half_m=(0.2, 0.2, 0.2)).spec.to_xml()
     )
@@ -228,7 +228,7 @@ def test_the_camera_sits_where_the_sidecar_mounts_it(tmp_path: Path) -> None:
     assert depths == pytest.approx([3.0, 2.88, 3.1], abs=0.01)
 
 
-def test_a_run_with_another_robot_names_it_and_goes_on_with_no_other(
+def test_a_run_records_its_robot_and_is_not_resumed_with_another(
     carrier: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
@@ -247,26 +247,26 @@ def test_a_run_with_another_robot_names_it_and_goes_on_with_no_other(
 
 
 WRONG = {
-    "no such joint": ({"wheel_joints": ["hub_l", "hub_x"]}, {}, "no joint 'hub_x'.*It has: hub_l, hub_r, pan"),
+    "no such joint": ({"wheel_joints": ["hub_l", "hub_x"]}, {}, "no joint 'hub_x'.*The hinges are: hub_l, hub_r, pan"),
     "one joint": ({"wheel_joints": ["hub_l"]}, {}, '"wheel_joints": '),
     "swapped joints": ({"wheel_joints": ["hub_r", "hub_l"]}, {}, r"on the left \(\+y\)"),
     "no radius of the wheels": ({"wheel_radius_m": None}, {}, '"wheel_radius_m", a number > 0; it has null'),
-    "an unknown key": ({"wheel_radius": 0.1}, {}, "'wheel_radius', which is no key. There is: wheel_joints"),
+    "an unknown key": ({"wheel_radius": 0.1}, {}, "unknown key 'wheel_radius'. The keys are: wheel_joints"),
     "an unknown caster": ({"casters": ["caster"]}, {}, "no geom and no body 'caster'"),
-    "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m.*name what slides.*casters"),
+    "a caster that is not named": ({"casters": []}, {}, r"reaches down to -?0\.00\d m.*sliding.*casters"),
     "a radius that is too small": ({"radius_m": 0.15}, {}, r"radius_m in the sidecar is 0\.150 m.*at least 0\.205"),
-    "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must stay inside .* 0\.205 m"),
+    "a camera outside": ({"camera_forward_m": 0.5}, {}, r"camera_forward_m must be within .* 0\.205 m"),
     "a robot that heads along y": ({}, {'"0.4 0.1 0.075"': '"0.4 0.1 0.075" euler="90 0 0"'}, "with .x ahead"),
-    "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is no hinge"),
+    "a wheel that slides": ({}, {'name="hub_l"': 'name="hub_l" type="slide"'}, "'hub_l' is not a hinge"),
     "a mesh that is missing": ({}, {"cube.obj": "deck.obj"}, r"deck\.obj"),
-    "another format": ({}, {"<mujoco": "<robot"}, "no MJCF file that MuJoCo can read"),
-    "two bodies": ({"casters": None}, {ROBOT: TWO_BODIES}, "hang on different bodies of the world"),
-    "a body that nothing touches": ({}, {"</default>\n  </default>": HOLLOW}, "nothing of it collides"),
+    "another format": ({}, {"<mujoco": "<robot"}, "not an MJCF file that MuJoCo can read"),
+    "two bodies": ({"casters": None}, {ROBOT: TWO_BODIES}, "belong to different bodies of the world"),
+    "no collision geom": ({}, {"</default>\n  </default>": HOLLOW}, "no collision geom"),
 }
 
 
 @pytest.mark.parametrize(("sidecar", "changed", "sentence"), WRONG.values(), ids=WRONG)
-def test_what_a_robot_lacks_is_said_in_one_sentence(
+def test_an_unusable_robot_is_refused_in_one_sentence(
     tmp_path: Path, sidecar: dict[str, object], changed: dict[str, str], sentence: str
 ) -> None:
     text = ROBOT
@@ -280,7 +280,7 @@ def test_what_a_robot_lacks_is_said_in_one_sentence(
     assert "\n" not in str(refused.value)
 
 
-def test_a_sidecar_that_is_missing_is_named(carrier: Path, tmp_path: Path) -> None:
+def test_a_missing_sidecar_is_reported_with_its_name(carrier: Path, tmp_path: Path) -> None:
     (tmp_path / "carrier.xml").write_text(carrier.read_text())
-    with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' is not there"):
+    with pytest.raises(ConfigError, match=r"sidecar of the robot '.*carrier\.json' does not exist"):
         load_robot(tmp_path / "carrier.xml")

@@ -1,4 +1,4 @@
-"""Whose geom is it: the rules of labels in the house format."""
+"""The rules that assign geoms to labelled instances."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def compiled(worldbody: str, assets: str = ""):
 
 
 def owners(worldbody: str, **options) -> list[str | None]:
-    """Name of each geom's instance."""
+    """Returns the name of each geom's instance."""
     labels = read_labels(compiled(worldbody), **options)
     return [labels.instances[i].name if i >= 0 else None for i in labels.geom_instance.tolist()]
 
@@ -35,7 +35,7 @@ def test_other_names_are_no_labels(name):
     assert parse_label(name) is None
 
 
-def test_a_geoms_own_name_comes_first_then_its_body_then_the_ancestors():
+def test_the_name_of_a_geom_comes_before_its_body_and_its_ancestors():
     world = f"""
       <body name="sofa_00">{SPHERE}<geom name="cushion_00" size=".1"/>
         <body>{SPHERE}<body name="frame">{SPHERE}</body></body>
@@ -65,19 +65,19 @@ def test_a_visible_geom_without_a_label_is_refused_by_name():
         read_labels(compiled('<body name="thing"><geom size=".1" pos="1 2 0"/></body>'))
 
 
-def test_a_misspelt_category_is_refused_with_what_was_meant():
-    with pytest.raises(HouseError, match=r"'chiar' is no category\. Did you mean 'chair'\?"):
+def test_a_misspelt_category_is_refused_with_a_suggestion():
+    with pytest.raises(HouseError, match=r"'chiar' is not a category\. Did you mean 'chair'\?"):
         read_labels(compiled('<geom name="chiar_00" size=".1"/>'))
 
 
 @pytest.mark.parametrize("hidden", ['group="3"', 'group="5"', 'rgba="1 1 1 0"', 'material="clear"'])
-def test_what_is_not_rendered_needs_no_label(hidden):
+def test_a_geom_that_is_not_rendered_needs_no_label(hidden):
     model = compiled(f'<geom size=".1" {hidden}/>', '<material name="clear" rgba="1 1 1 0"/>')
     assert not rendered_geoms(model).any()
     assert read_labels(model).void_geoms == 0
 
 
-def test_a_colour_of_its_own_wins_over_the_materials():
+def test_the_colour_of_a_geom_overrides_its_material():
     model = compiled(
         '<geom size=".1" material="clear" rgba="1 0 0 1"/><geom size=".1" group="2"/>',
         '<material name="clear" rgba="1 1 1 0"/>',
@@ -85,7 +85,7 @@ def test_a_colour_of_its_own_wins_over_the_materials():
     assert rendered_geoms(model).all()
 
 
-def test_rules_label_what_the_pattern_does_not_and_the_rest_becomes_void():
+def test_rules_label_geoms_that_the_pattern_does_not_and_the_rest_becomes_void():
     world = '<geom name="Chair.003" size=".1"/><geom name="sofa_00" size=".1"/><geom name="lump" size=".1"/>'
     labels = read_labels(compiled(world), rules={"^chair": "table", "[Cc]hair": "chair"})
     assert [i.category for i in labels.instances] == ["chair", "sofa"]
@@ -102,14 +102,14 @@ def test_rules_are_tried_in_order_and_before_the_pattern():
 
 @pytest.mark.parametrize(
     ("rules", "message"),
-    [({"x": "chairs"}, "Did you mean 'chair'"), ({"(": "chair"}, "no regular expression"), ({"x": "qq"}, "mpcat40")],
+    [({"x": "chairs"}, "Did you mean 'chair'"), ({"(": "chair"}, "not a regular expression"), ({"x": "qq"}, "mpcat40")],
 )
 def test_a_wrong_rule_is_refused(rules, message):
     with pytest.raises(HouseError, match=message):
         read_labels(compiled('<geom name="wall_00" size=".1"/>'), rules=rules)
 
 
-def test_the_robots_geoms_are_nobodys():
+def test_the_geoms_of_the_robot_belong_to_no_instance():
     robot = '<body name="robot/base"><geom name="robot/shell" size=".1"/><geom size=".1"/></body>'
     world = robot + '<geom name="wall_00" size=".1"/>'
     model = compiled(world)

@@ -1,4 +1,4 @@
-"""What a house file must be, and the one sentence that refuses it."""
+"""A house file that breaks a rule of the house format is refused in one sentence."""
 
 from __future__ import annotations
 
@@ -49,17 +49,17 @@ def test_textures_are_found_beside_the_file(tmp_path, monkeypatch):
 
 
 BAD = {
-    "no floor": ('<geom name="wall_00" size=".1"/>', "", "without floor"),
-    "a floor that is only seen": (FLOOR.replace("/>", ' contype="0" conaffinity="0"/>'), "", "without floor"),
+    "no floor": ('<geom name="wall_00" size=".1"/>', "", "has no floor"),
+    "a floor that is only seen": (FLOOR.replace("/>", ' contype="0" conaffinity="0"/>'), "", "has no floor"),
     "a floor that is too high": (FLOOR.replace("/>", ' pos="0 0 .3"/>'), "", r"'floor_00'.*z = 0\.300 m"),
     "a floor of another shape": ('<geom name="floor_00" size="1"/>', "", "neither a plane nor a box"),
     "no label": (FLOOR + '<geom name="lump" size=".1"/>', "", "geom 'lump' is visible and has no label"),
     "no category": (FLOOR + '<geom name="chiar_00" size=".1"/>', "", "Did you mean 'chair'"),
-    "a camera": (FLOOR + '<camera name="eye"/>', "", "no camera.*'eye'"),
+    "a camera": (FLOOR + '<camera name="eye"/>', "", "must not have cameras.*'eye'"),
     "an actuator": (
         FLOOR + '<body name="door_00"><joint name="j"/><geom size=".1"/></body>',
         '<actuator><motor name="push" joint="j"/></actuator>',
-        "no actuator.*'push'",
+        "must not have actuators.*'push'",
     ),
     "a height field": (
         FLOOR + '<geom name="floor_01" type="hfield" hfield="h"/>',
@@ -80,7 +80,7 @@ def test_a_file_that_breaks_a_rule_is_refused_in_one_line_that_names_it(tmp_path
 
 
 @pytest.mark.parametrize("content", [b"hello", b"", b"<mujoco>", b"\x00\xff\xfe", b"{}"])
-def test_what_is_no_mjcf_is_refused_in_one_line(tmp_path, content):
+def test_a_file_that_is_not_mjcf_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / "notes.xml"
     path.write_bytes(content)
     with pytest.raises(HouseError, match=r"notes\.xml") as refused:
@@ -88,14 +88,14 @@ def test_what_is_no_mjcf_is_refused_in_one_line(tmp_path, content):
     assert "\n" not in str(refused.value)
 
 
-def test_a_file_that_is_not_there_is_said_to_be_missing(tmp_path):
+def test_a_missing_file_is_reported(tmp_path):
     with pytest.raises(HouseError, match=r"nowhere\.xml.*no such file"):
         load_house(tmp_path / "nowhere.xml")
     with pytest.raises(HouseError, match="no such file"):
         load_house(tmp_path)
 
 
-def test_a_house_from_elsewhere_is_labelled_by_its_rules(tmp_path):
+def test_a_third_party_scene_is_labelled_by_its_rules(tmp_path):
     path = house_file(tmp_path, '<geom name="Ground" type="plane" size="5 5 1"/><geom name="what" size=".1"/>')
     rules = tmp_path / "map.json"
     rules.write_text(json.dumps({"^Ground$": "floor"}))
@@ -106,7 +106,7 @@ def test_a_house_from_elsewhere_is_labelled_by_its_rules(tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [("{", "no JSON"), ("[1]", "one JSON object"), ('{"a": 1}', "one JSON object"), ('{"a": "chairs"}', "'chair'")],
+    [("{", "not JSON"), ("[1]", "one JSON object"), ('{"a": 1}', "one JSON object"), ('{"a": "chairs"}', "'chair'")],
 )
 def test_wrong_rules_are_refused_by_name(tmp_path, content, message):
     rules = tmp_path / "map.json"

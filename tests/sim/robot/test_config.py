@@ -1,4 +1,4 @@
-"""A robot that cannot be is refused where it is declared."""
+"""An impossible robot is refused when it is declared."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.interface import ConfigError
 from sim.robot.config import BodyConfig, DriveConfig, PhysicsConfig, RobotConfig, WheelConfig
 
 
-def test_agents_are_told_the_size_of_the_hull():
+def test_agents_get_the_size_of_the_hull():
     model = RobotConfig(body=BodyConfig(radius_m=0.2, height_m=1.0)).model
     assert (model.radius_m, model.height_m) == (0.2, 1.0)
 
@@ -27,9 +27,12 @@ def test_agents_are_told_the_size_of_the_hull():
         (lambda: DriveConfig(blocking_ticks=0), "DriveConfig.blocking_ticks"),
         (lambda: PhysicsConfig(timestep_s=0.0), "PhysicsConfig.timestep_s"),
         (lambda: RobotConfig(physics=PhysicsConfig(timestep_s=0.003)), "whole multiple"),
-        (lambda: RobotConfig(wheels=WheelConfig(armature_kg_m2=0.002)), "must stay below 1 or the wheels shake"),
-        (lambda: RobotConfig(wheels=WheelConfig(half_track_m=0.2)), "inside the hull"),
-        (lambda: RobotConfig(drive=DriveConfig(blocking_force_n=40.0)), "below what the motors can push, 35.0 N"),
+        (lambda: RobotConfig(wheels=WheelConfig(armature_kg_m2=0.002)), "must be below 1, or the wheels oscillate"),
+        (lambda: RobotConfig(wheels=WheelConfig(half_track_m=0.2)), "within the hull"),
+        (
+            lambda: RobotConfig(drive=DriveConfig(blocking_force_n=40.0)),
+            "largest force of the motors, 35.0 N",
+        ),
         (lambda: RobotConfig(body=BodyConfig(mass_kg=0.4)), "mass"),
     ],
 )

@@ -1,4 +1,4 @@
-"""What the camera shows is what stands there, to the pixel and the millimetre."""
+"""The images of the camera agree with the geometry of the house, to the pixel and the millimetre."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ def test_nearer_than_half_a_metre_reads_0_and_farther_than_five_reads_5() -> Non
     assert depth[100, 320] == 5.0
 
 
-def test_where_there_is_nothing_depth_and_semantic_read_0() -> None:
+def test_without_a_geom_depth_and_semantic_read_0() -> None:
     images = Eye(room(30, 30, height_m=1.0)).see(0, 0, 0, "depth", "semantic")
     assert images["depth"][0, 320] == 0.0
     assert images["semantic"][0, 320] == 0
 
 
 def test_semantic_depth_and_geom_agree_at_the_edges(clutter: tuple[Eye, Eye]) -> None:
-    """A column stands 1.4 m away before a wall at 4 m: no pixel may have one's number and the other's depth."""
+    """A column is 1.4 m away in front of a wall at 4 m: no pixel may have the id of one and the depth of the other."""
     images = clutter[0].see(0, 0, math.atan2(0.4, 1.5), "depth", "semantic", "geom")
     column = images["semantic"] == MPCAT40_ID["column"]
     assert column.sum() > 1000
@@ -88,7 +88,7 @@ def test_culling_changes_no_pixel(clutter: tuple[Eye, Eye]) -> None:
             np.testing.assert_array_equal(culled[sensor], whole[sensor], err_msg=f"{sensor} at {pose}")
 
 
-def test_in_the_good_profile_what_is_not_seen_still_throws_its_shadow() -> None:
+def test_in_the_good_profile_an_invisible_object_casts_its_shadow() -> None:
     """A cupboard behind the camera, under a lamp further back."""
     spec = with_box(room(8, 8), "cabinet_00", centre_m=(-0.6, 0.0, 1.2), half_m=(0.1, 0.5, 0.3)).spec.copy()
     spec.lights[0].pos, spec.lights[0].dir = (-2.0, 0.0, 2.4), (0.8, 0.0, -0.6)
@@ -110,14 +110,14 @@ def test_images_never_share_memory(clutter: tuple[Eye, Eye]) -> None:
         np.testing.assert_array_equal(image, kept[name])
 
 
-def test_only_what_is_asked_for_comes_back(clutter: tuple[Eye, Eye]) -> None:
+def test_only_requested_images_are_returned(clutter: tuple[Eye, Eye]) -> None:
     assert set(clutter[0].see(0, 0, 0, "depth")) == {"depth"}
     assert clutter[0].see(0, 0, 0) == {}
     with pytest.raises(ConfigError, match="Unknown sensor 'thermal'"):
         clutter[0].see(0, 0, 0, "thermal")
 
 
-def test_collision_only_geoms_are_seen_by_no_sensor() -> None:
+def test_collision_geoms_are_in_no_image() -> None:
     bare = room(8, 8)
     glass = with_box(bare, "cabinet_00", centre_m=(1.5, 0, 1.0), half_m=(0.02, 1.0, 1.0), group=3)
     with_glass, without = (Eye(house).see(0, 0, 0, "rgb", "depth", "semantic") for house in (glass, bare))
@@ -132,15 +132,15 @@ def test_left_in_the_world_is_left_in_the_image() -> None:
     assert 0 < columns.max() < 320
 
 
-def test_the_good_profile_blends_no_numbers(clutter: tuple[Eye, Eye]) -> None:
+def test_the_good_profile_does_not_blend_ids(clutter: tuple[Eye, Eye]) -> None:
     house = cluttered_room(40, width_m=6.0)
     fast, good = (Eye(house, profile=name).see(0, 0, 0.4, "semantic", "geom", "rgb") for name in ("fast", "good"))
     np.testing.assert_array_equal(fast["geom"], good["geom"])
     assert (fast["rgb"] != good["rgb"]).any()
 
 
-def test_the_good_profile_smooths_edges_whatever_was_drawn_before() -> None:
-    """Between two flat colours lie blended ones, also right after the pass that must not blend."""
+def test_the_good_profile_smooths_edges_also_after_the_id_pass() -> None:
+    """Between two flat colours there are blended ones, also directly after the pass that must not blend."""
     house = with_box(room(8, 8), "sofa_00", centre_m=(2.5, 0.0, 0.5), half_m=(0.3, 0.3, 0.5), yaw_rad=0.3)
     eyes = {name: Eye(house, profile=name) for name in ("fast", "good")}
     shades = {}
@@ -151,7 +151,7 @@ def test_the_good_profile_smooths_edges_whatever_was_drawn_before() -> None:
     assert shades["good"] > shades["fast"]
 
 
-def test_dropping_one_camera_leaves_the_others_alone() -> None:
+def test_deleting_one_camera_does_not_change_the_others() -> None:
     keeper, dropped = Eye(cluttered_room(20)), Eye(cluttered_room(30))
     dropped.see(0, 0, 0, "rgb")
     before = keeper.see(0, 0, 0, "rgb", "geom")

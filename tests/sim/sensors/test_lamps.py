@@ -1,4 +1,4 @@
-"""Which lamps light a picture."""
+"""The lamps that light an image, and the geoms that cast shadows into it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from sim.houses.house import House
 from sim.houses.labels import rendered_geoms
 from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
-from sim.sensors.camera import Z_NEAR_M, Camera
-from sim.sensors.lamps import LAMPS_LIT, Lamps
+from sim.sensors.camera import Camera
+from sim.sensors.lamps import MAX_LAMPS, Lamps
 from sim.sensors.occlusion import Visibility
+from sim.sensors.opengl import Z_NEAR_M
 from sim.world.compile import compile_world
 from tests.helpers.worlds import room, with_box
 
@@ -31,26 +32,26 @@ def two_rooms() -> House:
 
 
 class Eye:
-    """A camera in a house, and the lamps it would choose."""
+    """A camera in a house, and the lamps that it chooses."""
 
     def __init__(self, house: House, *, profile: str = "fast", cull: bool = True) -> None:
         self.model, self.labels, _ = compile_world(house, RobotConfig())
         self.data = mujoco.MjData(self.model)
         mujoco.mj_forward(self.model, self.data)
-        drawable = rendered_geoms(self.model)
-        visibility = Visibility(self.model, drawable, CameraModel(), Z_NEAR_M)
+        visual = rendered_geoms(self.model)
+        visibility = Visibility(self.model, visual, CameraModel(), Z_NEAR_M)
         self.visibility = visibility
-        self.lamps = Lamps(self.model, visibility, np.flatnonzero(drawable))
+        self.lamps = Lamps(self.model, visibility, np.flatnonzero(visual))
         self.profile, self.cull = profile, cull
 
     def choose(self, x_m: float, y_m: float) -> list[int]:
         return self.lamps.choose(self.data, np.array([x_m, y_m, 0.88]), FORWARD)
 
-    def casting(self, pose: Pose) -> np.ndarray:
-        """Ids of what is drawn for the shadow that it may throw."""
+    def shadow_casters(self, pose: Pose) -> np.ndarray:
+        """Returns the ids of the geoms that may cast a shadow into the image."""
         eye_m, axes = self._frame(pose)
         self.visibility.visible(self.data, eye_m, pose.yaw_rad)
-        return self.lamps.casters(self.data, 0, eye_m, axes)
+        return self.lamps.shadow_casters(self.data, 0, eye_m, axes)
 
     def _frame(self, pose: Pose) -> tuple[np.ndarray, np.ndarray]:
         c, s = np.cos(pose.yaw_rad), np.sin(pose.yaw_rad)
@@ -70,29 +71,29 @@ def test_the_lamp_behind_a_wall_is_off_and_through_the_doorway_it_is_on() -> Non
     assert set(eye.choose(0.0, -1.8)) == {0, 1}
 
 
-def test_the_nearest_to_what_is_looked_at_comes_first_and_no_more_than_some_shine() -> None:
+def test_the_lamp_nearest_to_the_viewed_region_comes_first_and_their_number_is_limited() -> None:
     house = room(20, 4)
     for x in (-8.0, -4.0, 0.0, 4.0, 8.0):
         house.spec.worldbody.add_light(pos=(x, 0, 2.3), dir=(0, 0, -1))
     chosen = Eye(house).choose(2.0, 0.0)
-    assert len(chosen) == LAMPS_LIT
-    assert chosen[0] == 4  # of the six, number 4 hangs 0.5 m past the place looked at
+    assert len(chosen) == MAX_LAMPS
+    assert chosen[0] == 4  # of the six lamps, lamp 4 is 0.5 m from the point looked at
 
 
-def test_light_from_everywhere_always_shines() -> None:
+def test_directional_lights_are_always_on() -> None:
     house = two_rooms()
     for _ in range(3):
         house.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 0, -1))
     eye = Eye(house)
-    eye.lamps.light(eye.choose(-3.0, 1.0))
+    eye.lamps.switch_on(eye.choose(-3.0, 1.0))
     assert eye.model.light_active.tolist() == [1, 0, 1, 1, 1]
     eye.lamps.restore()
     assert eye.model.light_active.tolist() == [1, 1, 1, 1, 1]
 
 
-def test_only_the_first_lamp_throws_shadows() -> None:
+def test_only_the_first_lamp_casts_shadows() -> None:
     eye = Eye(two_rooms())
-    eye.lamps.light([1, 0])
+    eye.lamps.switch_on([1, 0])
     assert eye.model.light_castshadow.tolist() == [0, 1]
     eye.lamps.restore()
     assert eye.model.light_castshadow.tolist() == [1, 1]
@@ -105,7 +106,7 @@ def test_a_lamp_behind_a_wall_changes_no_pixel() -> None:
     np.testing.assert_array_equal(Eye(two_rooms()).rgb(pose), Eye(alone).rgb(pose))
 
 
-def test_what_hangs_out_of_the_picture_throws_its_shadow_into_it_and_what_is_behind_a_wall_none() -> None:
+def test_an_object_outside_the_image_casts_its_shadow_into_it_and_one_behind_a_wall_does_not() -> None:
     board = with_box(two_rooms(), "picture_00", centre_m=(-2.0, 0.5, 1.8), half_m=(0.5, 0.05, 0.3))
     elsewhere = with_box(board, "table_00", centre_m=(2.0, 0.5, 1.8), half_m=(0.5, 0.05, 0.3))
     pose = Pose(-2.0, 0.9, -np.pi / 2, 0.0)
@@ -115,7 +116,7 @@ def test_what_hangs_out_of_the_picture_throws_its_shadow_into_it_and_what_is_beh
     assert (np.abs(bare.astype(int) - shadow) > 20).any(axis=2).mean() > 0.03
 
 
-def test_what_throws_its_shadow_away_from_the_picture_is_left_out_and_no_pixel_changes() -> None:
+def test_objects_with_shadows_outside_the_image_are_left_out_and_no_pixel_changes() -> None:
     house = two_rooms()
     for i in range(12):
         angle = 2 * np.pi * i / 12
@@ -126,15 +127,15 @@ def test_what_throws_its_shadow_away_from_the_picture_is_left_out_and_no_pixel_c
     for yaw_rad in np.linspace(-np.pi, np.pi, 8, endpoint=False):
         pose = Pose(-2.0, 0.0, float(yaw_rad), 0.0)
         np.testing.assert_array_equal(eye.rgb(pose), whole.rgb(pose))
-        left_out += eye.lamps.lit(eye.data, 0).sum() - len(eye.casting(pose))
+        left_out += eye.lamps.lit_geoms(eye.data, 0).sum() - len(eye.shadow_casters(pose))
     assert left_out > 8 * 4
 
 
-def test_a_sun_that_throws_shadows_lets_all_stay_that_the_lamp_shines_on() -> None:
+def test_with_a_directional_light_that_casts_shadows_all_lit_geoms_are_rendered() -> None:
     board = with_box(two_rooms(), "picture_00", centre_m=(-2.0, -2.0, 1.8), half_m=(0.5, 0.05, 0.3))
     away = Pose(-2.0, 0.9, np.pi / 2, 0.0)
     board.spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, dir=(0, 1, -1), castshadow=False)
-    without = len(Eye(board).casting(away))
+    without = len(Eye(board).shadow_casters(away))
     board.spec.lights[-1].castshadow = True
     sunny = Eye(board)
-    assert len(sunny.casting(away)) == sunny.lamps.lit(sunny.data, 0).sum() > without
+    assert len(sunny.shadow_casters(away)) == sunny.lamps.lit_geoms(sunny.data, 0).sum() > without

@@ -1,4 +1,4 @@
-"""What is left out of a picture could not have been in it: behind walls nothing is drawn, and no pixel changes."""
+"""Geoms behind walls are left out of an image, and no pixel changes."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from sim.houses.labels import rendered_geoms
 from sim.houses.load import load_house
 from sim.interface import CameraModel
 from sim.paths import assets_dir
-from sim.sensors.camera import Z_NEAR_M, Camera
+from sim.sensors.camera import Camera
 from sim.sensors.occlusion import Visibility
+from sim.sensors.opengl import Z_NEAR_M
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.sampling import sample
@@ -29,8 +30,8 @@ WALL_HALF_M = (0.05, 2.0, 1.25)
 """A wall across the view, 4 m long and 2.5 m high."""
 
 
-def drawn(house: House, *, eye: tuple[float, float, float] = (0.0, 0.0, 0.88), yaw_rad: float = 0.0) -> set[str]:
-    """Names of the geoms, or of their bodies, that are drawn."""
+def rendered(house: House, *, eye: tuple[float, float, float] = (0.0, 0.0, 0.88), yaw_rad: float = 0.0) -> set[str]:
+    """Returns the names of the geoms, or of their bodies, that are rendered."""
     model = house.spec.copy().compile()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -52,18 +53,18 @@ def with_chair(
     return with_box(house, "chair_00", centre_m=(x_m, y_m, z_m), half_m=(half_m, half_m, half_m), **options)
 
 
-def test_behind_a_full_wall_nothing_is_drawn() -> None:
-    names = drawn(with_chair(with_wall(open_floor())))
+def test_nothing_behind_a_full_wall_is_rendered() -> None:
+    names = rendered(with_chair(with_wall(open_floor())))
     assert "wall_90" in names
     assert "chair_00" not in names
 
 
-def test_before_a_wall_everything_is_drawn() -> None:
-    assert "chair_00" in drawn(with_chair(with_wall(open_floor()), x_m=1.5))
+def test_everything_in_front_of_a_wall_is_rendered() -> None:
+    assert "chair_00" in rendered(with_chair(with_wall(open_floor()), x_m=1.5))
 
 
-def test_what_sticks_out_of_a_walls_front_is_drawn() -> None:
-    assert "chair_00" in drawn(with_chair(with_wall(open_floor()), x_m=2.1))
+def test_an_object_that_sticks_out_of_a_wall_is_rendered() -> None:
+    assert "chair_00" in rendered(with_chair(with_wall(open_floor()), x_m=2.1))
 
 
 @pytest.mark.parametrize(
@@ -76,8 +77,8 @@ def test_what_sticks_out_of_a_walls_front_is_drawn() -> None:
     ],
     ids=["glass", "half height", "lintel", "not rendered"],
 )
-def test_glass_half_walls_and_lintels_hide_nothing_that_is_higher_or_lower(wall: dict) -> None:
-    assert "chair_00" in drawn(with_chair(with_wall(open_floor(), **wall), z_m=1.0))
+def test_glass_half_walls_and_lintels_hide_no_higher_or_lower_object(wall: dict) -> None:
+    assert "chair_00" in rendered(with_chair(with_wall(open_floor(), **wall), z_m=1.0))
 
 
 def test_a_transparent_material_hides_nothing() -> None:
@@ -86,31 +87,31 @@ def test_a_transparent_material_hides_nothing() -> None:
     spec.add_material(name="glass", rgba=(1, 1, 1, 0.5))
     wall = spec.geom("wall_90")
     wall.material, wall.rgba = "glass", (0.5, 0.5, 0.5, 1)
-    assert "chair_00" in drawn(House("glass", spec))
+    assert "chair_00" in rendered(House("glass", spec))
 
 
-def test_a_wall_that_is_no_box_hides_nothing() -> None:
+def test_a_wall_that_is_not_a_box_hides_nothing() -> None:
     house = with_chair(with_wall(open_floor()))
     spec = house.spec.copy()
     spec.geom("wall_90").type = mujoco.mjtGeom.mjGEOM_ELLIPSOID
-    assert "chair_00" in drawn(House("round", spec))
+    assert "chair_00" in rendered(House("round", spec))
 
 
 def test_a_wall_that_moves_or_leans_hides_nothing() -> None:
     loose = with_chair(with_movable(open_floor(), "wall_90", xy_m=(2.0, 0.0), size_m=(0.1, 4.0, 2.5)))
-    assert "chair_00" in drawn(loose)
+    assert "chair_00" in rendered(loose)
     leaning = with_chair(with_wall(open_floor())).spec.copy()
     leaning.geom("wall_90").quat = (math.cos(0.2), 0.0, math.sin(0.2), 0.0)
-    assert "chair_00" in drawn(House("leaning", leaning))
+    assert "chair_00" in rendered(House("leaning", leaning))
 
 
-def test_through_a_doorway_and_a_window_things_are_drawn() -> None:
+def test_objects_behind_a_doorway_or_a_window_are_rendered() -> None:
     door = with_wall(with_wall(open_floor(), y_m=2.5), "wall_91", y_m=-2.5)  # a gap of 1 m ahead
-    assert "chair_00" in drawn(with_chair(door))
-    assert "chair_00" not in drawn(with_chair(door, x_m=4.0, y_m=3.0))
+    assert "chair_00" in rendered(with_chair(door))
+    assert "chair_00" not in rendered(with_chair(door, x_m=4.0, y_m=3.0))
     sill = with_wall(door, "wall_92", half_m=(0.05, 0.5, 0.4))
     window = with_wall(sill, "wall_93", half_m=(0.05, 0.5, 0.25), z_m=2.25)
-    assert "chair_00" in drawn(with_chair(window, z_m=0.8))
+    assert "chair_00" in rendered(with_chair(window, z_m=0.8))
 
 
 def test_a_gap_of_one_pixel_is_a_gap() -> None:
@@ -118,59 +119,61 @@ def test_a_gap_of_one_pixel_is_a_gap() -> None:
     left = with_wall(open_floor(), y_m=2.0 + 0.5 * gap_m)
     both = with_chair(with_wall(left, "wall_91", y_m=-2.0 - 0.5 * gap_m), x_m=4.0)
     for yaw_rad in np.linspace(-0.5, 0.5, 21):
-        assert "chair_00" in drawn(both, yaw_rad=float(yaw_rad)), yaw_rad
+        assert "chair_00" in rendered(both, yaw_rad=float(yaw_rad)), yaw_rad
 
 
-def test_what_stands_out_beside_or_above_a_wall_is_drawn() -> None:
-    narrow = with_wall(open_floor(), half_m=(0.05, 1.0, 1.25))  # seen to end at 1.46 m beside the chair's front
-    assert "chair_00" in drawn(with_chair(narrow, y_m=1.3))
-    assert "chair_00" not in drawn(with_chair(narrow, y_m=1.15))
+def test_an_object_that_is_wider_or_higher_than_a_wall_is_rendered() -> None:
+    narrow = with_wall(
+        open_floor(), half_m=(0.05, 1.0, 1.25)
+    )  # hides y < 1.46 m at the chair's front
+    assert "chair_00" in rendered(with_chair(narrow, y_m=1.3))
+    assert "chair_00" not in rendered(with_chair(narrow, y_m=1.15))
     low = with_wall(open_floor(), half_m=(0.05, 2.0, 0.6))  # 0.32 m over the eye at 2 m
     tall = {"x_m": 4.0, "half_m": 0.2}
-    assert "chair_00" in drawn(with_chair(low, z_m=1.42, **tall))  # 0.74 m over the eye at 3.8 m
-    assert "chair_00" not in drawn(with_chair(low, z_m=1.15, **tall))
+    assert "chair_00" in rendered(with_chair(low, z_m=1.42, **tall))  # 0.74 m over the eye at 3.8 m
+    assert "chair_00" not in rendered(with_chair(low, z_m=1.15, **tall))
 
 
-def test_what_shows_below_a_wall_is_drawn() -> None:
+def test_an_object_visible_below_a_wall_is_rendered() -> None:
     raised = with_wall(open_floor(), half_m=(0.05, 2.0, 1.0), z_m=1.5)  # 0.38 m under the eye at 2 m
-    assert "chair_00" in drawn(with_chair(raised, x_m=4.0, z_m=0.2))
+    assert "chair_00" in rendered(with_chair(raised, x_m=4.0, z_m=0.2))
 
 
-def test_under_a_ceiling_that_covers_the_wall_nothing_shows_above_it() -> None:
-    """A shelf above the wall's top is seen over the wall in the open, but not from under a ceiling."""
+def test_below_a_ceiling_that_covers_the_wall_nothing_is_visible_above_it() -> None:
+    """A shelf higher than the wall is visible over the wall without a ceiling, but not below one."""
     walled = with_wall(open_floor(), x_m=4.0, half_m=(0.05, 6.0, 1.25))
     shelf = with_box(walled, "shelving_00", centre_m=(5.0, 0, 3.5), half_m=(0.3, 0.3, 0.5))
-    assert "shelving_00" in drawn(shelf)
-    assert "shelving_00" not in drawn(with_box(shelf, "ceiling_00", centre_m=(0, 0, 2.55), half_m=(4.5, 6, 0.05)))
+    assert "shelving_00" in rendered(shelf)
+    assert "shelving_00" not in rendered(with_box(shelf, "ceiling_00", centre_m=(0, 0, 2.55), half_m=(4.5, 6, 0.05)))
     short = with_box(shelf, "ceiling_00", centre_m=(0, 0, 2.55), half_m=(3.0, 6, 0.05))
-    assert "shelving_00" in drawn(short)
+    assert "shelving_00" in rendered(short)
 
 
-def test_a_wall_that_reaches_behind_the_eye_is_hidden_by_a_nearer_one_but_for_its_gaps() -> None:
+def test_a_wall_that_extends_behind_the_eye_is_hidden_by_a_nearer_one_without_gaps() -> None:
     near = {"half_m": (5.0, 0.05, 1.25), "y_m": 1.0}
     far = {"half_m": (8.0, 0.05, 1.25), "y_m": 1.5}
     yaw_rad = 0.9  # ahead is the nearer wall's side, its ends are at 11 deg and far behind
     closed = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far), x_m=0.0, **near)
-    assert "wall_91" in drawn(closed, yaw_rad=0.0)  # beyond the nearer wall's end
-    assert "wall_91" not in drawn(closed, yaw_rad=yaw_rad)
+    assert "wall_91" in rendered(closed, yaw_rad=0.0)  # beyond the nearer wall's end
+    assert "wall_91" not in rendered(closed, yaw_rad=yaw_rad)
     with_gap = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far), x_m=-4.9, **near)
     with_gap = with_wall(with_gap, "wall_92", x_m=5.12, **near)  # 2 cm, nearly straight to the left
-    assert "wall_91" in drawn(with_gap, yaw_rad=yaw_rad)
+    assert "wall_91" in rendered(with_gap, yaw_rad=yaw_rad)
     higher = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far, z_m=2.75), x_m=0.0, **near)
-    assert "wall_91" in drawn(higher, yaw_rad=yaw_rad)
+    assert "wall_91" in rendered(higher, yaw_rad=yaw_rad)
     deeper = with_wall(with_wall(open_floor(), "wall_91", x_m=0.0, **far, z_m=0.25), x_m=0.0, **near)
-    assert "wall_91" in drawn(deeper, yaw_rad=yaw_rad)
+    assert "wall_91" in rendered(deeper, yaw_rad=yaw_rad)
 
 
-def test_a_needle_between_two_edge_rays_is_drawn() -> None:
+def test_a_needle_between_two_edge_rays_is_rendered() -> None:
     walled = with_wall(open_floor())
     for y_m in np.linspace(-0.011, 0.011, 9):
         needle = with_box(walled, "plant_00", centre_m=(1.0, float(y_m), 0.9), half_m=(0.0005, 0.0005, 0.5))
-        assert "plant_00" in drawn(needle), y_m
+        assert "plant_00" in rendered(needle), y_m
 
 
-def test_a_corner_that_points_out_of_a_wall_at_the_eye_is_drawn() -> None:
-    """Turned by 45 degrees, it shows only a tip of 3 mm in the middle of a strip, where no edge ray meets it."""
+def test_a_corner_that_sticks_out_of_a_wall_towards_the_eye_is_rendered() -> None:
+    """Turned by 45 degrees, only a tip of 3 mm is visible in the middle of a strip, where no edge ray meets it."""
     walled = with_wall(open_floor())
     front_m = 1.95
     for y_m in np.linspace(-0.02, 0.02, 9):
@@ -182,12 +185,12 @@ def test_a_corner_that_points_out_of_a_wall_at_the_eye_is_drawn() -> None:
             half_m=(0.1, 0.1, 0.5),
             yaw_rad=math.pi / 4,
         )
-        assert "plant_00" in drawn(box), y_m
+        assert "plant_00" in rendered(box), y_m
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0], ids=["right", "left"])
-def test_what_comes_in_over_the_pictures_border_is_drawn(side: float) -> None:
-    """A plate nearly along the border ray: before the wall only where the border itself cuts it."""
+def test_an_object_that_enters_over_the_image_border_is_rendered(side: float) -> None:
+    """A plate nearly along the border ray is in front of the wall only where the border cuts it."""
     outer, inner = (1.5, 1.5 * 0.835), (2.4, 2.4 * 0.805)  # the border is at a slope of 0.824
     dx, dy = inner[0] - outer[0], inner[1] - outer[1]
     plate = with_box(
@@ -197,10 +200,10 @@ def test_what_comes_in_over_the_pictures_border_is_drawn(side: float) -> None:
         half_m=(0.5 * math.hypot(dx, dy), 0.0001, 0.4),
         yaw_rad=side * math.atan2(dy, dx),
     )
-    assert "plant_00" in drawn(plate)
+    assert "plant_00" in rendered(plate)
 
 
-def test_what_moves_is_looked_up_where_it_is() -> None:
+def test_the_current_position_of_a_movable_object_counts() -> None:
     house = with_movable(with_wall(open_floor()), "chair_00", xy_m=(3.0, 0.0))
     model = house.spec.copy().compile()
     data = mujoco.MjData(model)
@@ -213,15 +216,15 @@ def test_what_moves_is_looked_up_where_it_is() -> None:
     assert seen == [False, True, False]
 
 
-def test_from_inside_a_wall_and_right_before_one_everything_is_drawn() -> None:
+def test_from_inside_a_wall_and_directly_in_front_of_one_everything_is_rendered() -> None:
     house = with_chair(with_wall(open_floor(), half_m=(0.5, 2.0, 1.25)))
-    assert "chair_00" in drawn(house, eye=(2.0, 0, 0.88))
-    assert "chair_00" in drawn(house, eye=(1.46, 0, 0.88))  # the near plane cuts the front away
-    assert "chair_00" not in drawn(house, eye=(1.40, 0, 0.88))
+    assert "chair_00" in rendered(house, eye=(2.0, 0, 0.88))
+    assert "chair_00" in rendered(house, eye=(1.46, 0, 0.88))  # the near plane cuts the front away
+    assert "chair_00" not in rendered(house, eye=(1.40, 0, 0.88))
 
 
 def test_in_a_room_of_many_boxes_a_frame_differs_in_no_pixel() -> None:
-    """Walls, half walls, beams and pillars at random, turned at random, a thousand times too near."""
+    """Walls, half walls, beams and pillars with random poses, many of them very near to the camera."""
     rng = np.random.default_rng(5)
     house = room(12, 12)
     for number in range(70):
@@ -256,7 +259,7 @@ def test_in_shipped_houses_no_pixel_changes() -> None:
 
 
 def somewhere(world: World, seeds: list[int]) -> list[Pose]:
-    """Poses anywhere in the robot's free space."""
+    """Returns random poses in the robot's free space."""
     space = FreeSpace.from_world(world)
     cells, (x, y) = np.argwhere(space.largest_part()), space.frame.axes()
     poses = []
@@ -268,7 +271,7 @@ def somewhere(world: World, seeds: list[int]) -> list[Pose]:
 
 
 def differing_pixels(world: World, poses: list[Pose], sensors: tuple[str, ...]) -> int:
-    """Pixels that differ between pictures of all geoms and of those that may be seen."""
+    """Returns the number of pixels that differ between images of all geoms and of those that may be visible."""
     mujoco.mj_forward(world.model, world.data)
     culled, whole = Camera(world.model, world.labels), Camera(world.model, world.labels, cull=False)
     count = 0

@@ -1,0 +1,212 @@
+"""Reads the body of a third-party robot from its MJCF file and measures it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.houses.geoms import geom_polytope
+from sim.interface import ConfigError
+from sim.robot.config import RobotFile
+
+MIN_AXLE_COSINE = 0.999
+"""Smallest cosine of the angle between a wheel's axle and the robot's y axis."""
+LEVEL_M = 0.002
+"""Largest offset of the two wheels from each other along x and z."""
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """One wheel in the pose of the file."""
+
+    joint: str
+    centre_m: NDArray[np.float64]  # (3,) in the world of the file
+    sign: float
+    """1 when a positive joint velocity drives ahead, else -1."""
+
+
+@dataclass(frozen=True)
+class RobotMeasurements:
+    """Measurements of a robot in the pose of its file; heights are above the floor below its wheels."""
+
+    wheels: tuple[Wheel, Wheel]
+    """Left and right."""
+    mass_kg: float
+    com_height_m: float
+    reach_m: float
+    """Largest distance in plan of the hull from the middle of the axle."""
+    bottom_m: float
+    """Lowest point of the hull."""
+    top_m: float
+    """Highest point of the hull."""
+
+    @property
+    def middle_m(self) -> NDArray[np.float64]:
+        """The middle (3,) of the axle in the world of the file."""
+        return 0.5 * (self.wheels[0].centre_m + self.wheels[1].centre_m)
+
+
+@dataclass(frozen=True)
+class CollisionGeoms:
+    """The collision geoms of a robot by their role (elements of an `MjSpec`)."""
+
+    wheels: tuple[Any, ...]
+    casters: tuple[Any, ...]
+    hull: tuple[Any, ...]
+    """All others."""
+
+
+def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
+    """Returns the file's specification without joints other than the wheels', and the top body of the robot.
+
+    Raises:
+        ConfigError: MuJoCo cannot read the file, or it does not have the wheel joints.
+    """
+    try:
+        spec = mujoco.MjSpec.from_file(str(file.path))
+    except (ValueError, OSError) as error:
+        raise ConfigError(f"it is not an MJCF file that MuJoCo can read: {' '.join(str(error).split())}") from None
+    for number, body in enumerate(spec.bodies):
+        body.name = body.name or f"body_{number}"  # the code below identifies bodies by name
+    _make_paths_absolute(spec, file)
+    _delete_unused_elements(spec)
+    _delete_other_joints(spec, file)
+    roots = {_root_of(spec, spec.joint(name).parent).name for name in file.wheel_joints}
+    if len(roots) != 1:
+        raise ConfigError(f"its wheels belong to different bodies of the world: {', '.join(sorted(roots))}.")
+    spec.option = mujoco.MjSpec().option  # those of the world are used
+    return spec, _root_of(spec, spec.joint(file.wheel_joints[0]).parent)
+
+
+def collision_geoms(root: mujoco.MjsBody, file: RobotFile) -> CollisionGeoms:
+    """Returns the collision geoms below the top body of a robot.
+
+    Raises:
+        ConfigError: a caster is not in the file, or no geom is left for the hull.
+    """
+    wheels, casters, hull = [], [], []
+    bodies = [root, *root.find_all("body")]
+    turning = [body for body in bodies if any(joint.name in file.wheel_joints for joint in body.joints)]
+    wheel_bodies = {body.name for top in turning for body in (top, *top.find_all("body"))}
+    found = set()
+    for body in bodies:
+        for geom in body.geoms:
+            if geom.name in file.casters or body.name in file.casters:
+                found |= {geom.name, body.name}
+                casters.append(geom)
+            elif geom.contype or geom.conaffinity:
+                (wheels if body.name in wheel_bodies else hull).append(geom)
+    missing = [name for name in file.casters if name not in found]
+    if missing:
+        raise ConfigError(f"it has no geom and no body '{missing[0]}', which the sidecar names in casters.")
+    if not hull:
+        raise ConfigError("it has no collision geom other than wheels and casters: its body needs one.")
+    return CollisionGeoms(tuple(wheels), tuple(casters), tuple(hull))
+
+
+def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
+    """Returns the measurements of a robot.
+
+    Raises:
+        ConfigError: its two wheels are not beside each other, or it does not face +x.
+    """
+    spec, root = read_body(file)
+    hull = collision_geoms(root, file).hull
+    for number, geom in enumerate(hull):
+        geom.name = geom.name or f"hull_{number}"
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise ConfigError(f"it cannot be compiled: {' '.join(str(error).split())}") from None
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    left, right = _wheels(model, data, file)
+    middle = 0.5 * (left.centre_m + right.centre_m)
+    ground_m = float(middle[2]) - wheel_radius_m
+    vertices = np.concatenate([geom_polytope(model, data, model.geom(geom.name).id).vertices_m for geom in hull])
+    body = model.body(root.name).id
+    return RobotMeasurements(
+        wheels=(left, right),
+        mass_kg=float(model.body_subtreemass[body]),
+        com_height_m=float(data.subtree_com[body][2]) - ground_m,
+        reach_m=float(np.hypot(*(vertices[:, :2] - middle[:2]).T).max()),
+        bottom_m=float(vertices[:, 2].min()) - ground_m,
+        top_m=float(vertices[:, 2].max()) - ground_m,
+    )
+
+
+def _make_paths_absolute(spec: mujoco.MjSpec, file: RobotFile) -> None:
+    """Makes the paths of meshes and textures absolute, so that they survive attaching to another specification."""
+    folder = file.path.parent
+    for assets, asset_folder in ((spec.meshes, spec.meshdir), (spec.textures, spec.texturedir)):
+        for asset in assets:
+            if asset.file:
+                asset.file = str((folder / asset_folder / asset.file).resolve())
+    spec.meshdir = spec.texturedir = ""
+
+
+def _delete_unused_elements(spec: mujoco.MjSpec) -> None:
+    """Deletes all elements other than bodies, joints, geoms and assets."""
+    groups = (spec.keys, spec.sensors, spec.actuators, spec.equalities, spec.tendons, spec.excludes, spec.pairs)
+    for elements in (*groups, spec.cameras, spec.lights):
+        for element in list(elements):
+            spec.delete(element)
+
+
+def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
+    """Deletes all joints other than those of the wheels.
+
+    Raises:
+        ConfigError: a wheel's joint does not exist.
+    """
+    types = {joint.name: joint.type for joint in spec.joints}
+    for name in file.wheel_joints:
+        if name not in types:
+            hinges = [name for name, kind in types.items() if name and kind == mujoco.mjtJoint.mjJNT_HINGE]
+            raise ConfigError(
+                f"it has no joint '{name}', which the sidecar names in wheel_joints. The hinges are: "
+                f"{', '.join(hinges) or 'none that has a name'}."
+            )
+    for joint in list(spec.joints):
+        if joint.name not in file.wheel_joints:
+            spec.delete(joint)
+
+
+def _wheels(model: mujoco.MjModel, data: mujoco.MjData, file: RobotFile) -> tuple[Wheel, Wheel]:
+    left, right = (_wheel(model, data, name) for name in file.wheel_joints)
+    across = left.centre_m - right.centre_m
+    if across[1] <= 0.0 or np.hypot(across[0], across[2]) > LEVEL_M:
+        raise ConfigError(
+            "its wheels must be beside each other with the first of wheel_joints on the left (+y), but they are at "
+            f"{_format(left.centre_m)} and {_format(right.centre_m)} m."
+        )
+    return left, right
+
+
+def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Wheel:
+    joint = model.joint(name).id
+    if model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
+        raise ConfigError(f"its wheel joint '{name}' is not a hinge.")
+    axis = data.xaxis[joint]
+    if abs(axis[1]) < MIN_AXLE_COSINE:
+        raise ConfigError(
+            f"the axle of '{name}' points along {_format(axis)}, but must point left or right (y): the file has to "
+            "show the robot with +x ahead."
+        )
+    return Wheel(name, data.xanchor[joint].copy(), math.copysign(1.0, float(axis[1])))
+
+
+def _root_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> mujoco.MjsBody:
+    """Returns the child of the world body that contains a body."""
+    while body.parent is not None and body.parent.name != spec.worldbody.name:
+        body = body.parent
+    return body
+
+
+def _format(vector: NDArray[np.float64]) -> str:
+    return "(" + ", ".join(f"{value:.3f}" for value in vector) + ")"

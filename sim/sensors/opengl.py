@@ -1,0 +1,119 @@
+"""Creates OpenGL contexts and offscreen frame buffers, and converts what is read from them to images."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.errors import RenderError
+from sim.gl import INSTALL_HINT, begin_rendering, mujoco
+from sim.interface import CameraModel
+from sim.sensors.profiles import RenderProfile
+
+Z_NEAR_M = 0.05
+"""Near plane: its farthest corner is 0.07 m from the eye, well inside the robot's radius of 0.18 m."""
+Z_FAR_M = 80.0
+"""Far plane: beyond the diagonal of the largest house."""
+_BLOCK_ROWS = 32
+"""Rows of a depth image that are converted together, so that they stay in the processor's cache."""
+
+
+def make_gl_context(camera: CameraModel) -> mujoco.GLContext:
+    """Returns a new OpenGL context.
+
+    Raises:
+        RenderError: OpenGL does not start.
+    """
+    begin_rendering()
+    try:
+        return mujoco.GLContext(camera.width_px, camera.height_px)
+    except Exception as error:  # EGL, OSMesa and GLFW raise different classes
+        raise RenderError(f"OpenGL did not start ({error}). Try: {INSTALL_HINT}") from error
+
+
+def make_frame_buffer(model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile) -> mujoco.MjrContext:
+    """Returns an offscreen frame buffer of the camera's size, with the model's meshes and textures.
+
+    It sets the visual settings of the model.
+
+    Raises:
+        RenderError: OpenGL does not support an image of this size.
+    """
+    model.stat.extent = 1.0  # the unit of the clipping planes
+    model.vis.map.znear = Z_NEAR_M
+    model.vis.map.zfar = Z_FAR_M
+    model.vis.global_.offwidth = camera.width_px
+    model.vis.global_.offheight = camera.height_px
+    model.vis.quality.offsamples = profile.samples
+    model.vis.quality.numquads = profile.quads
+    model.vis.quality.numslices = profile.slices
+    model.vis.quality.numstacks = profile.stacks
+    model.vis.quality.shadowsize = profile.shadow_size_px if profile.shadows else 0  # 2048 takes 18 MB, used or not
+    context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+    mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, context)
+    context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
+    if context.offWidth < camera.width_px or context.offHeight < camera.height_px:
+        raise RenderError(
+            f"The frame buffer holds {context.offWidth} x {context.offHeight} pixels, "
+            f"the camera needs {camera.width_px} x {camera.height_px}."
+        )
+    return context
+
+
+def free_contexts(gl: mujoco.GLContext, frame_buffers: set[mujoco.MjrContext]) -> None:
+    """Frees frame buffers and their OpenGL context."""
+    gl.make_current()  # freeing deletes objects of the current context
+    for frame_buffer in frame_buffers:
+        frame_buffer.free()
+    gl.free()
+
+
+def describe_gl() -> str:
+    """Returns the name of the renderer: `llvmpipe (LLVM 15.0.6, 256 bits)` on a CPU, the card's name on a GPU.
+
+    Raises:
+        RenderError: OpenGL does not start.
+    """
+    context = make_gl_context(CameraModel())
+    context.make_current()
+    from OpenGL import GL  # needs PYOPENGL_PLATFORM, which `sim.gl` has set
+
+    name = GL.glGetString(GL.GL_RENDERER)
+    context.free()
+    return name.decode() if isinstance(name, bytes) else str(name)
+
+
+def look_up(color_buffer: NDArray[np.uint8], table: NDArray) -> NDArray:
+    """Returns an image (h, w) of the table's entries for the id colours of a frame buffer, the top row first.
+
+    Args:
+        color_buffer: (h, w, 3), the bottom row first; red is the low byte of the index, green the high byte.
+        table: entry of each index.
+    """
+    if len(table) <= 256 and table.dtype == np.uint8:
+        red = cv2.flip(cv2.extractChannel(color_buffer, 0), 0)
+        return np.asarray(cv2.LUT(red, np.pad(table, (0, 256 - len(table)))), np.uint8)
+    numbers = color_buffer[::-1, :, 0].astype(np.uint16)
+    if len(table) > 256:
+        numbers |= color_buffer[::-1, :, 1].astype(np.uint16) << 8
+    return table[numbers]
+
+
+def metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np.float32]:
+    """Returns the depth image (h, w) of a frame buffer as `sim.interface.Observation` defines it, the top row first.
+
+    Args:
+        buffer: (h, w) reversed depth buffer (1 near, 0 far), the bottom row first.
+        camera: its depth range counts.
+    """
+    depth_m = np.empty_like(buffer)
+    for row in range(0, len(buffer), _BLOCK_ROWS):
+        block, raw = depth_m[row : row + _BLOCK_ROWS], buffer[::-1][row : row + _BLOCK_ROWS]
+        np.multiply(raw, np.float32((Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M)), out=block)
+        block += np.float32(1.0 / Z_FAR_M)
+        np.reciprocal(block, out=block)
+        np.minimum(block, np.float32(camera.max_depth_m), out=block)
+        block *= block >= camera.min_depth_m
+        block *= raw > 0.0  # 0: no geom was rendered there
+    return depth_m
