@@ -183,6 +183,8 @@ class SegmenterSpec:
     exact_outlines: bool = False
     """Whether the outlines of its scores are exact to the pixel. With inexact outlines an agent must not trust the
     rim of a target."""
+    needs_verification: bool = True
+    """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
 
 
 class Segmenter(Protocol):

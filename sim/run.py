@@ -20,6 +20,7 @@ from rich.console import Console
 
 from sim import cli
 from sim.analysis import display
+from sim.composition.segmenters import KINDS
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
 from sim.episodes.splits import Episode
@@ -35,8 +36,8 @@ from sim.interface import Agent, ConfigError
 from sim.paths import code_hash
 from sim.robot.foreign import load_robot, robot_sha256
 from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
-from sim.sensors.camera import describe_gl
 from sim.sensors.noise import get_noise
+from sim.sensors.opengl import describe_gl
 from sim.sensors.profiles import get_profile
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES
@@ -231,7 +232,7 @@ def make_agent(args: Args, env: ObjectNavEnv) -> Agent:
     looks = args.agent not in SEMANTICS_DO_NOT_MATTER
     segmenter = make_segmenter(args.semantics if looks else TRUTH, env, weights=args.weights)
     if args.agent in agents.NAMES:
-        verifier = verifier_for(args.semantics, args.verifier, args.verification)
+        verifier = verifier_for(args.semantics, KINDS[args.semantics].spec, args.verifier, args.verification)
         return agents.make(args.agent, camera=env.camera_model, robot=robot, segmenter=segmenter, verifier=verifier)
     return _load_factory(args.agent)(camera=env.camera_model, robot=robot, segmenter=segmenter)
 
@@ -359,7 +360,7 @@ def check(args: Args) -> None:
     get_profile(args.profile)
     get_noise(args.noise)
     check_semantics(args.semantics, args.weights)
-    verifier_for(args.semantics, args.verifier, args.verification)
+    verifier_for(args.semantics, KINDS[args.semantics].spec, args.verifier, args.verification)
     if args.agent not in agent_names():
         _load_factory(args.agent)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sim.composition.agents import find_agent
-from sim.composition.segmenters import check_semantics
+from sim.composition.segmenters import KINDS, check_semantics
 from sim.errors import ConfigError
 from sim.evaluation.parallel import Shard
 from sim.geometry.pose import Pose
@@ -97,7 +97,7 @@ def check_options(options: RunOptions) -> None:
     get_profile(options.profile)
     get_noise(options.noise)
     check_semantics(options.semantics, options.weights)
-    verifier_for(options.semantics, options.verifier, options.verification)
+    verifier_for(options.semantics, KINDS[options.semantics].spec, options.verifier, options.verification)
     find_agent(options.agent)
 
 

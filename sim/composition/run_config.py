@@ -16,8 +16,8 @@ from sim.interface import AgentSpec, CameraModel
 from sim.paths import code_hash
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot, robot_sha256
-from sim.sensors.camera import describe_gl
 from sim.sensors.noise import NoiseConfig, get_noise
+from sim.sensors.opengl import describe_gl
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.task.config import TaskConfig
 from stubborn.target.verification import FittedVerifier, Verifier, verifier_for
@@ -101,7 +101,7 @@ def verifier_of(options: RunOptions, config: VerificationConfig) -> Verifier:
     Raises:
         ConfigError: there are no such parameters, or no such method.
     """
-    verifier = verifier_for(options.semantics, config.parameters, config.method)
+    verifier = verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
     if isinstance(verifier, FittedVerifier):
         return replace(verifier, least_probability=config.least_probability)
     return verifier

@@ -48,7 +48,7 @@ class SegmentationKind:
 class TrueSegmentation:
     """Ground-truth segmentation read from the environment, so that no true image is in the agent's observation."""
 
-    spec = SegmenterSpec(sensors=(), truth=("semantic",), exact_outlines=True)
+    spec = SegmenterSpec(sensors=(), truth=("semantic",), exact_outlines=True, needs_verification=False)
 
     def __init__(self, env: ObjectNavEnv) -> None:
         self._env = env

@@ -1,4 +1,4 @@
-"""Segmentation from the observation's own `semantic` image: what an ideal network would say."""
+"""Ground-truth segmentation: the scores of an ideal network, from the `semantic` image of the observation."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ from sim.interface import MPCAT40_ID, ConfigError, Observation, Scores, Segmente
 
 
 class GroundTruthSegmenter:
-    """Score 1 where the pixel's category is the goal's, else 0."""
+    """A segmenter that scores 1 where a pixel's category is the goal, else 0."""
 
-    spec = SegmenterSpec(sensors=("semantic",), exact_outlines=True)
+    spec = SegmenterSpec(sensors=("semantic",), exact_outlines=True, needs_verification=False)
 
     def scores(self, observation: Observation, goal: str) -> Scores:
-        """Scores at the image's own resolution; void pixels score 0 for everything."""
+        """Returns scores at the resolution of the image; void pixels score 0 for every category.
+
+        Raises:
+            ConfigError: there is no such category.
+        """
         if goal not in MPCAT40_ID:
             raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
         semantic = observation["semantic"]

@@ -1,6 +1,6 @@
-"""Two classes, false (0) and true (1) candidates, told apart by four numbers: plain arrays, fitted elsewhere.
+"""Classifiers that tell true (class 1) from false (class 0) candidates by four features.
 
-`stubborn/target/verifier_fit.py` fits them with scikit-learn; here they are only asked, at no cost of another package.
+`stubborn.target.verifier_fit` fits them with scikit-learn. This module evaluates them with NumPy only.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Float64
 
 from sim.interface import ConfigError
 
 
 class Features(NamedTuple):
-    """What the object layers hold at a candidate cell: the input of a classifier."""
+    """The content of the object layers at a candidate's cell: the input of a classifier."""
 
     total_view: int
     """Frames that had the cell in view."""
@@ -31,30 +31,29 @@ class Features(NamedTuple):
 
 
 class Classifier(Protocol):
-    """Says how probably a candidate is true."""
+    """Estimates the probability that a candidate is true."""
 
     def probability(self, features: Features) -> float:
-        """In [0, 1]."""
+        """Returns the probability, in [0, 1]."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class NaiveBayes:
-    """Two classes, false (0) and true (1) candidates; within each the features are independent Gaussians."""
+    """A Gaussian naive Bayes classifier: within each class the features are independent Gaussians."""
 
-    log_prior: NDArray[np.float64]
-    """(2,)"""
-    mean: NDArray[np.float64]
-    """(2, 4) per class and feature."""
-    variance: NDArray[np.float64]
-    """(2, 4)"""
+    log_prior: Float64[np.ndarray, " 2"]
+    mean: Float64[np.ndarray, "2 4"]
+    """Per class and feature."""
+    variance: Float64[np.ndarray, "2 4"]
+    """Per class and feature."""
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> NaiveBayes:
-        """From `prior` (2), `mean` and `variance` (2 lists of 4).
+        """Returns the classifier with `prior` (2), `mean` and `variance` (2 lists of 4).
 
         Raises:
-            ConfigError: another shape, or a prior or variance that is not positive.
+            ConfigError: a shape is another one, or a prior or variance is not positive.
         """
         prior, mean, variance = (np.array(content[key], np.float64) for key in ("prior", "mean", "variance"))
         wanted = (2, len(Features._fields))
@@ -68,9 +67,9 @@ class NaiveBayes:
         return cls(np.log(prior), mean, variance)
 
     def probability(self, features: Sequence[float]) -> float:
-        """That the candidate is true, in [0, 1]."""
-        off = np.asarray(features, np.float64) - self.mean
-        score = self.log_prior - 0.5 * (np.log(self.variance) + off * off / self.variance).sum(axis=1)
+        """Returns the probability that the candidate is true, in [0, 1]."""
+        offset = np.asarray(features, np.float64) - self.mean
+        score = self.log_prior - 0.5 * (np.log(self.variance) + offset * offset / self.variance).sum(axis=1)
         return _logistic(float(score[1] - score[0]))
 
 
@@ -82,24 +81,23 @@ INPUTS: Mapping[str, Callable[[Features], float]] = MappingProxyType(
         "maximum_other": lambda f: f.maximum_other,
     }
 )
-"""What a logistic regression may look at."""
+"""The inputs that a logistic regression may use, by name."""
 
 
 @dataclass(frozen=True, eq=False)
 class Logistic:
-    """A logistic regression over some `INPUTS`; over the mean score alone it is a threshold on it."""
+    """A logistic regression over some of `INPUTS`; over the mean score only it is a threshold on it."""
 
     inputs: tuple[str, ...]
-    coefficients: NDArray[np.float64]
-    """(inputs,)"""
+    coefficients: Float64[np.ndarray, " inputs"]
     intercept: float
 
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Logistic:
-        """From `inputs`, `coefficients` and `intercept`.
+        """Returns the classifier with `inputs`, `coefficients` and `intercept`.
 
         Raises:
-            ConfigError: an unknown input, or not a coefficient for each.
+            ConfigError: an input is unknown, or there is not one coefficient for each input.
         """
         inputs, coefficients = tuple(content["inputs"]), np.array(content["coefficients"], np.float64)
         if not set(inputs) <= set(INPUTS) or coefficients.shape != (len(inputs),):
@@ -110,9 +108,10 @@ class Logistic:
         return cls(inputs, coefficients, float(content["intercept"]))
 
     def probability(self, features: Features) -> float:
-        """That the candidate is true, in [0, 1]."""
+        """Returns the probability that the candidate is true, in [0, 1]."""
         return _logistic(self.intercept + float(self.coefficients @ [INPUTS[name](features) for name in self.inputs]))
 
 
 def _logistic(x: float) -> float:
-    return 0.5 * (1.0 + math.tanh(0.5 * x))  # without overflow
+    """Returns 1 / (1 + exp(-x)), without overflow."""
+    return 0.5 * (1.0 + math.tanh(0.5 * x))

@@ -1,9 +1,9 @@
-"""Is a candidate what it seems? A classifier asks four numbers of the object layers (paper: Verification).
+"""Verification of a candidate before a STOP, from four features of its cell (paper: Verification).
 
-The paper's is Gaussian naive Bayes; others over the same numbers are `METHODS` beside it. Parameters belong to a kind
-of semantics and are shipped as `stubborn/verifiers/<kind>.json`, which also says which command fitted them
-(`tools/train_verifier.py`) and how good each method was on episodes left out. A category with too few examples shares
-the pooled classifier.
+The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
+kind of segmentation. They are shipped as `stubborn/target/verifiers/<kind>.json`, which also holds the command that
+fitted them (`tools/train_verifier.py`) and the quality of each method on episodes left out. A category with too few
+examples uses the pooled classifier.
 """
 
 from __future__ import annotations
@@ -15,67 +15,65 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Protocol
 
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from stubborn.target.classifiers import Classifier, Features, Logistic, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
-"""Where the shipped parameters lie."""
-UNVERIFIED = ("gt",)
-"""Kinds of semantics that leave nothing to verify."""
+"""Folder of the shipped parameters."""
 METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyType(
     {"naive-bayes": NaiveBayes.from_dict, "logistic": Logistic.from_dict, "threshold": Logistic.from_dict}
 )
-"""Kinds of classifiers, the paper's first; `threshold` looks at the mean score over all frames only."""
+"""Classifiers by name, the paper's first; `threshold` uses the mean score over all frames only."""
 ACCEPT_ALL = "none"
-"""The method of who does not verify."""
+"""The method that accepts every candidate."""
 
 
 class Verifier(Protocol):
-    """Decides whether a candidate is what it seems; belongs to a kind of semantics."""
+    """Decides whether a candidate is an instance of the goal; belongs to a kind of segmentation."""
 
     may_refuse: bool
-    """False: whatever is asked is accepted, and it is no use to go somewhere only to ask."""
+    """False: it accepts every candidate, so that a visit only for verification is useless."""
 
     def accepts(self, goal: str, features: Features) -> bool:
-        """True: stop here. False: never come back to this candidate."""
+        """Returns True to stop at the candidate, False to reject it for the rest of the episode."""
         ...
 
     def would_accept(self, goal: str, features: Features) -> bool:
-        """What it expects to say of a candidate that is seen from afar; it is asked at every step."""
+        """Returns the expected answer for a candidate that is seen from afar; it is asked at every step."""
         ...
 
 
 class AcceptAll:
-    """The verifier of ground truth: there is nothing to verify."""
+    """A verifier that accepts every candidate, for segmentation that needs no verification."""
 
     may_refuse = False
 
     def accepts(self, goal: str, features: Features) -> bool:
-        """True for everything."""
+        """Returns True."""
         return True
 
     def would_accept(self, goal: str, features: Features) -> bool:
-        """True for everything."""
+        """Returns True."""
         return True
 
 
 @dataclass(frozen=True, eq=False)
 class FittedVerifier:
-    """Accepts what is more probably true than `least_probability`; see the module."""
+    """A verifier that accepts candidates which are true with a higher probability than `least_probability`."""
 
     by_category: Mapping[str, Classifier]
-    """For the goal categories with enough examples."""
+    """Classifiers of the goal categories with enough examples."""
     pooled: Classifier
-    """For all others."""
+    """Classifier of all other goal categories."""
     least_probability: float = 0.5
     may_refuse = True
 
     @classmethod
     def read(cls, file: Path, method: str = "naive-bayes") -> FittedVerifier:
-        """From a file that `tools/train_verifier.py` wrote.
+        """Returns the verifier in a file that `tools/train_verifier.py` wrote.
 
         Raises:
-            ConfigError: it is not there or holds something else, or there is no such method.
+            ConfigError: there is no such method, or the file is missing or holds something else.
         """
         if method not in METHODS:
             raise ConfigError(f"Unknown verification '{method}'. There is: {', '.join((*METHODS, ACCEPT_ALL))}.")
@@ -89,35 +87,39 @@ class FittedVerifier:
             raise ConfigError(f"Verifier file '{file}' is not what tools/train_verifier.py writes: {error}") from None
 
     def probability(self, goal: str, features: Features) -> float:
-        """That a candidate for this goal is true, in [0, 1]."""
+        """Returns the probability in [0, 1] that a candidate for this goal is true."""
         if goal not in GOAL_CATEGORIES:
             raise ConfigError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
         return self.by_category.get(goal, self.pooled).probability(features)
 
     def accepts(self, goal: str, features: Features) -> bool:
-        """See `Verifier`."""
+        """Returns True where the probability is high enough."""
         return self.probability(goal, features) > self.least_probability
 
     def would_accept(self, goal: str, features: Features) -> bool:
-        """The same."""
+        """Returns the same as `accepts`."""
         return self.accepts(goal, features)
 
 
-def verifier_for(semantics: str, file: Path | None = None, method: str = "naive-bayes") -> Verifier:
-    """The verifier of a kind of semantics: of ground truth the one that accepts all, else the shipped one.
+def verifier_for(
+    semantics: str, spec: SegmenterSpec, file: Path | None = None, method: str = "naive-bayes"
+) -> Verifier:
+    """Returns the verifier of a kind of segmentation: the shipped one, or `AcceptAll` where none is needed.
 
     Args:
-        semantics: the kind.
+        semantics: name of the kind.
+        spec: specification of its segmenter.
         file: parameters in place of the shipped ones.
         method: one of `METHODS`, or `ACCEPT_ALL`.
 
     Raises:
-        ConfigError: there are no parameters for this kind, the file holds none, or there is no such method.
+        ConfigError: no parameters are shipped for this kind, the file holds none, or there is no such method.
     """
-    if method == ACCEPT_ALL or (file is None and semantics in UNVERIFIED):
+    if method == ACCEPT_ALL or (file is None and not spec.needs_verification):
         return AcceptAll()
-    file = file or FOLDER / f"{semantics}.json"
-    if not file.is_file() and file.parent == FOLDER:
-        known = [*UNVERIFIED, *sorted(each.stem for each in FOLDER.glob("*.json"))]
-        raise ConfigError(f"No verifier for semantics '{semantics}'. There is: {', '.join(known)}.")
+    if file is None:
+        file = FOLDER / f"{semantics}.json"
+        if not file.is_file():
+            kinds = sorted(each.stem for each in FOLDER.glob("*.json"))
+            raise ConfigError(f"No verifier for semantics '{semantics}'. There is: {', '.join(kinds)}.")
     return FittedVerifier.read(file, method)

@@ -74,7 +74,7 @@ def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]
 def stubborn_agent(env: ObjectNavEnv, *, semantics: str = "gt", **options: Any) -> Agent:
     """The agent of the paper with this kind of segmentation and what it is verified by."""
     segmenter = make_segmenter(semantics, env)
-    options.setdefault("verifier", verifier_for(semantics))
+    options.setdefault("verifier", verifier_for(semantics, segmenter.spec))
     return agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=segmenter, **options)
 
 

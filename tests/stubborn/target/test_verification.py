@@ -1,3 +1,5 @@
+"""Classifiers of candidates, how they are fitted and judged, and the verifier of each kind of segmentation."""
+
 import json
 from pathlib import Path
 
@@ -7,14 +9,17 @@ from sklearn.linear_model import LogisticRegression
 from sklearn.naive_bayes import GaussianNB
 from sklearn.preprocessing import StandardScaler
 
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from stubborn.target.classifiers import Features, Logistic, NaiveBayes
 from stubborn.target.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
 from stubborn.target.verifier_fit import fit, judge_by_category
 
+IMPERFECT = SegmenterSpec()
+TRUE = SegmenterSpec(needs_verification=False)
+
 
 def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Candidates as the layers might hold them: true ones were seen oftener and with less of another score."""
+    """Random candidates: true ones were seen in more frames and with lower scores of other categories."""
     rng = np.random.default_rng(seed)
     truth = rng.random(count) < true_share
     views = rng.gamma(3.0, 8.0, count) + 5.0 * truth + shift
@@ -25,7 +30,7 @@ def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tu
 
 
 def log_of(by_goal: dict[str, tuple[np.ndarray, np.ndarray]]) -> list[dict]:
-    """Lines as the tool logs them, one candidate an episode."""
+    """Lines of the tool's log, one candidate per episode."""
     return [
         {"goal": goal, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
         for goal, (features, truth) in by_goal.items()
@@ -50,7 +55,7 @@ def test_probabilities_are_those_of_scikit_learn(tmp_path: Path):
     np.testing.assert_array_equal(np.array(accepted)[sure], (expected > 0.5)[sure])
 
 
-def test_the_other_methods_are_logistic_regressions_one_of_the_mean_score_alone(tmp_path: Path):
+def test_the_other_methods_are_logistic_regressions_and_threshold_uses_the_mean_score_only(tmp_path: Path):
     features, truth = examples(400, 0.4, seed=6)
     content = fit(log_of({"chair": (features, truth)}), 20)
     file = tmp_path / "kind.json"
@@ -69,7 +74,7 @@ def test_the_other_methods_are_logistic_regressions_one_of_the_mean_score_alone(
     np.testing.assert_allclose(ours, expected, atol=1e-3)
 
 
-def test_methods_are_judged_on_the_same_candidates_left_out():
+def test_all_methods_are_judged_on_the_same_candidates_left_out():
     features, truth = examples(300, 0.5, seed=7)
     methods = fit(log_of({"bed": (features, truth)}), 20)["methods"]
     assert set(methods) == set(METHODS)
@@ -91,12 +96,12 @@ def test_a_verifier_is_judged_by_category(tmp_path: Path):
     assert found["bed"]["precision"] == pytest.approx(beds[1][accepted].mean(), abs=1e-4)
 
 
-def test_who_does_not_verify_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
-    assert isinstance(verifier_for("noisy", method="none"), AcceptAll)
+def test_the_method_none_accepts_all_and_unknown_methods_are_refused(tmp_path: Path):
+    assert isinstance(verifier_for("noisy", IMPERFECT, method="none"), AcceptAll)
     with pytest.raises(ConfigError, match="Unknown verification 'hunch'"):
-        verifier_for("noisy", method="hunch")
+        verifier_for("noisy", IMPERFECT, method="hunch")
     with pytest.raises(ConfigError, match="cannot be read"):
-        verifier_for("noisy", tmp_path / "none.json")
+        verifier_for("noisy", IMPERFECT, tmp_path / "none.json")
     with pytest.raises(ConfigError, match="a coefficient for each of its inputs"):
         Logistic.from_dict({"inputs": ["maximum", "smell"], "coefficients": [1.0, 2.0], "intercept": 0.0})
 
@@ -108,7 +113,7 @@ def test_extreme_features_give_a_probability_and_no_overflow():
         assert bayes.probability((-500, -500.0, 0.0, 0.0)) == pytest.approx(0.0)
 
 
-def test_a_category_with_too_few_of_either_kind_shares_the_pooled_classifier(tmp_path: Path):
+def test_a_category_with_too_few_true_or_false_examples_uses_the_pooled_classifier(tmp_path: Path):
     many, few_false = examples(200, 0.5, seed=2), examples(200, 0.95, seed=3, shift=30.0)
     assert 0 < (~few_false[1]).sum() < 20 < few_false[1].sum()
     content = fit(log_of({"chair": many, "sofa": few_false}), 20)
@@ -134,7 +139,7 @@ def test_calibration_counts_every_candidate_once_and_is_right_where_classes_are_
     assert all(row["from"] <= row["mean_probability"] <= row["to"] for row in calibration["by_probability"])
 
 
-def test_what_is_left_of_a_candidate_does_not_count_again():
+def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again():
     strong, weak = [20.0, 18.0, 0.98, 0.3], [12.0, 1.0, 0.6, 0.9]
     here, near, far = (0.0, 0.0), (1.0, 1.0), (4.0, 0.0)
     met = [(strong, 1.0, here), (weak, 1.0, near), (weak, 0.0, near), (weak, 0.0, here), (strong, 1.0, far)]
@@ -144,14 +149,14 @@ def test_what_is_left_of_a_candidate_does_not_count_again():
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
 
 
-def test_too_few_candidates_in_all_are_refused_with_the_numbers():
+def test_too_few_candidates_are_refused_with_the_numbers():
     features, truth = examples(30, 0.3, seed=5)
     with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of either"):
         fit(log_of({"bed": (features, truth)}), 20)
 
 
-def test_ground_truth_has_nothing_to_verify():
-    verifier = verifier_for("gt")
+def test_segmentation_that_needs_no_verification_gets_a_verifier_that_accepts_all():
+    verifier = verifier_for("gt", TRUE)
     assert isinstance(verifier, AcceptAll)
     assert not verifier.may_refuse
     assert verifier.accepts("chair", Features(0, 0.0, 0.0, 1.0))
@@ -159,7 +164,7 @@ def test_ground_truth_has_nothing_to_verify():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str):
-    verifier = verifier_for("noisy", method=method)
+    verifier = verifier_for("noisy", IMPERFECT, method=method)
     assert isinstance(verifier, FittedVerifier)
     for goal in GOAL_CATEGORIES:
         seldom = verifier.probability(goal, Features(20, 3.0, 0.62, 0.88))
@@ -168,8 +173,8 @@ def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str
 
 
 def test_an_unknown_kind_or_goal_and_a_broken_file_are_refused(tmp_path: Path):
-    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. There is: gt, noisy"):
-        verifier_for("dreams")
+    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. There is: noisy, rednet"):
+        verifier_for("dreams", IMPERFECT)
     with pytest.raises(ConfigError, match="Unknown goal 'unicorn'"):
         FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4)))).probability(
             "unicorn", Features(1, 1.0, 1.0, 0.0)
