@@ -1,4 +1,4 @@
-"""Pictures to look at: a cut-away top view and robot-height views of houses, and a sheet of all furniture styles.
+"""Renders a top view without ceilings and room views of houses, and sheets of all furniture styles.
 
 python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
 python tools/gallery.py --sheet --pool heldout --categories chair sofa --out runs/gallery
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,9 +18,10 @@ import tyro
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.housegen.furniture import CATALOGUE, make_item
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Geom, Item, Look, Pool
-from sim.housegen.mjcf import ASSETS_DIR, HouseBuilder, Lamp, Placed
+from sim.housegen.mjcf import ASSETS_DIR, HouseBuilder, Lamp, PlacedItem
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
 from sim.interface import CameraModel, ConfigError
@@ -30,48 +32,49 @@ VIEW_PX = (640, 480)
 TOP_PX = (1400, 1100)
 TILE_PX = (320, 320)
 BACKDROP = (0.86, 0.90, 0.95)
-"""What lies around a house, and behind a piece of furniture."""
+"""Colour of the background."""
+FAN_DEG = np.arange(0, 360, 10)
+"""Directions of the rays that measure how far a view reaches."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """What to draw and where."""
+    """Options of the gallery."""
 
     out: Path
-    """Folder for the PNG files; made if missing."""
+    """Folder for the PNG files; created if missing."""
     houses: tuple[Path, ...] = ()
-    """House files: a top view and a sheet of room views each."""
+    """House files; each gives a top view and a sheet of room views."""
     sheet: bool = False
-    """Draw every furniture style, one sheet a category."""
+    """Render every furniture style, one sheet per category."""
     categories: tuple[str, ...] = ()
-    """With --sheet: only these; all if not given."""
+    """With --sheet: the categories; all if not given."""
     pool: Pool = "train"
-    """Which styles the sheets show."""
+    """With --sheet: the pool of the styles."""
     seed: int = 0
-    """Draws sizes and colours of the sheets."""
+    """With --sheet: seed of sizes and colours."""
 
 
 def main(args: Args) -> None:
-    """Write the pictures and say where they are."""
+    """Writes the pictures and prints their paths."""
     if not args.houses and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ... or --sheet.")
-    unknown = [category for category in args.categories if category not in CATALOGUE]
-    if unknown:
-        raise ConfigError(f"No furniture of category '{unknown[0]}'. There is: {', '.join(sorted(CATALOGUE))}.")
+    sheets = {category: CATALOGUE.styles(category) for category in args.categories or CATALOGUE.categories}
     args.out.mkdir(parents=True, exist_ok=True)
     for path in args.houses:
         spec = mujoco.MjSpec.from_file(str(path.resolve()))
         _save(args.out / f"{path.stem}_top.png", draw_top(spec))
         _save(args.out / f"{path.stem}_views.png", draw_views(spec))
     if args.sheet:
-        for category in args.categories or CATALOGUE:
-            sheet = draw_sheet(category, args.pool, np.random.default_rng(args.seed))
-            if sheet is not None:
+        for category, styles in sheets.items():
+            of_pool = [style for style in styles if style.pool == args.pool]
+            if of_pool:
+                sheet = draw_sheet(of_pool, np.random.default_rng(args.seed))
                 _save(args.out / f"sheet_{args.pool}_{category}.png", sheet)
 
 
 def draw_top(spec: mujoco.MjSpec) -> Picture:
-    """The house from above without its ceilings and what hangs from them, (h, w, 3) RGB."""
+    """Renders the house from above, without ceilings and ceiling lamps, (h, w, 3) RGB."""
     open_top = spec.copy()
     _add_backdrop(open_top)
     for body in list(open_top.worldbody.bodies):
@@ -87,7 +90,7 @@ def draw_top(spec: mujoco.MjSpec) -> Picture:
 
 
 def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
-    """What the robot sees in each room from its freest corner, tiled, (h, w, 3) RGB."""
+    """Renders what the robot sees in each room from the viewpoint with the longest view, tiled, (h, w, 3) RGB."""
     seen = spec.copy()
     _add_backdrop(seen)
     model = seen.compile()
@@ -109,27 +112,26 @@ def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
     return _tiled(tiles, columns)
 
 
-def draw_sheet(category: str, pool: Pool, rng: np.random.Generator, copies: int = 2) -> Picture | None:
-    """All styles of a category in a pool, two draws each, (h, w, 3) RGB; None when the pool has none."""
+def draw_sheet(styles: Sequence[Style], rng: np.random.Generator, copies: int = 2) -> Picture:
+    """Renders `copies` items of each of these styles, tiled, (h, w, 3) RGB."""
     tiles = []
-    for style in CATALOGUE[category].values():
-        if style.pool == pool:
-            for _ in range(copies):
-                item = make_item(category, rng, pool=pool, style=style.name)
-                tile = np.ascontiguousarray(_portrait(item))
-                text = f"{style.name} {item.size_m[0]:.2f}x{item.size_m[1]:.2f}x{item.size_m[2]:.2f}"
-                cv2.putText(tile, text, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (60, 60, 60), 1, cv2.LINE_AA)
-                tiles.append(tile)
-    return _tiled(tiles, 6) if tiles else None
+    for style in styles:
+        for _ in range(copies):
+            item = CATALOGUE.make_item(style.category, rng, pool=style.pool, style=style.name)
+            tile = np.ascontiguousarray(_portrait(item))
+            text = f"{style.name} {item.size_m[0]:.2f}x{item.size_m[1]:.2f}x{item.size_m[2]:.2f}"
+            cv2.putText(tile, text, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (60, 60, 60), 1, cv2.LINE_AA)
+            tiles.append(tile)
+    return _tiled(tiles, 6)
 
 
 def _portrait(item: Item) -> Picture:
-    """One item on a plain ground, seen from its front and a little above."""
+    """Renders one item on a plain ground, from its front and a little above."""
     builder = HouseBuilder("portrait")
     z = {"floor": 0.0, "top": 0.0, "wall": 0.05, "ceiling": item.size_m[2]}[item.mount]
     slab = Geom("box", (3.0, 3.0, 0.01), (0.0, 0.0, -0.011), Look((0.8, 0.8, 0.78, 1.0)))
-    builder.add(Placed(item, 0.0, 0.0, z))
-    builder.add(Placed(Item("floor", "ground", (6.0, 6.0, 0.0), (slab,))))
+    builder.add(PlacedItem(item, 0.0, 0.0, z))
+    builder.add(PlacedItem(Item("floor", "ground", (6.0, 6.0, 0.0), (slab,))))
     builder.add_lamp(Lamp((2.0, 1.0, 3.0), (0.55, 0.55, 0.53), (-0.6, -0.35, -0.9)))
     builder.add_lamp(Lamp((2.0, -1.0, 2.0), (0.2, 0.2, 0.22), (-0.5, 0.8, -0.3)))
     _add_backdrop(builder.spec)
@@ -145,35 +147,39 @@ def _portrait(item: Item) -> Picture:
 def _viewpoint(
     model: mujoco.MjModel, data: mujoco.MjData, space: FreeSpace, room: Room
 ) -> tuple[float, float, float] | None:
-    """Where to stand in a room and where to look, degrees, to see far: the best of a few hundred guesses."""
+    """Returns x, y (metres) and yaw (degrees) of the longest view among random free points, or None."""
     (cx, cy, _), (hx, hy, _) = room.boxes[0]
     points = space.frame.to_metres(np.argwhere(space.free))
     points = points[(np.abs(points[:, 0] - cx) < hx) & (np.abs(points[:, 1] - cy) < hy)]
     if len(points) == 0:
         return None
     rng = np.random.default_rng(0)
-    fan = np.radians(np.arange(0, 360, 10))
-    rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
     best, found = -1.0, None
     for x, y in points[rng.integers(len(points), size=40)]:
-        geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
-        eye = np.array([x, y, CameraModel().height_m])
-        mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
-        with np.errstate(divide="ignore"):
-            leave = np.min(
-                (np.array([hx, hy]) - np.sign(rays[:, :2]) * (np.array([x - cx, y - cy]))) / np.abs(rays[:, :2]), axis=1
-            )
-        inside = np.minimum(np.where(far < 0, 10.0, far), leave + 0.3)
-        for i in range(0, len(fan), 3):  # nine rays across the field of view
-            view = inside[np.arange(i - 4, i + 5) % len(fan)]
+        inside = _view_lengths(model, data, room, float(x), float(y))
+        for i in range(0, len(FAN_DEG), 3):  # nine rays across the field of view
+            view = inside[np.arange(i - 4, i + 5) % len(FAN_DEG)]
             score = float(view.mean() + 1.5 * min(view.min(), 1.0))
             if score > best:
-                best, found = score, (float(x), float(y), math.degrees(fan[i]))
+                best, found = score, (float(x), float(y), float(FAN_DEG[i]))
     return found
 
 
+def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: float, y: float) -> NDArray[np.float64]:
+    """Returns the free length (len(FAN_DEG),) of level rays from (x, y), in metres, up to 0.3 m beyond the room."""
+    (cx, cy, _), (hx, hy, _) = room.boxes[0]
+    fan = np.radians(FAN_DEG)
+    rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
+    geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
+    eye = np.array([x, y, CameraModel().height_m])
+    mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
+    with np.errstate(divide="ignore"):
+        to_walls = (np.array([hx, hy]) - np.sign(rays[:, :2]) * np.array([x - cx, y - cy])) / np.abs(rays[:, :2])
+    return np.minimum(np.where(far < 0, 10.0, far), to_walls.min(axis=1) + 0.3)
+
+
 def _extent(rooms: tuple[Room, ...]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Lowest and highest corner (3,) of all rooms."""
+    """Returns the lowest and highest corner (3,) of all rooms."""
     boxes = [box for room in rooms for box in room.boxes]
     centres, halves = np.array([box[0] for box in boxes]), np.array([box[1] for box in boxes])
     return (centres - halves).min(axis=0), (centres + halves).max(axis=0)
@@ -195,7 +201,7 @@ def _camera(lookat: NDArray[np.float64], *, azimuth_deg: float, elevation_deg: f
 
 
 def _render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, int], *, fovy_deg: float) -> Picture:
-    """(h, w, 3) RGB with four samples a pixel and no shadows."""
+    """Renders (h, w, 3) RGB with four samples per pixel and without shadows."""
     width, height = size_px
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     model.vis.global_.fovy = fovy_deg

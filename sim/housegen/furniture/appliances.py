@@ -9,14 +9,12 @@ import itertools
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-)
+from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Workbench
 
 
 def fridge(w: Workbench) -> None:
-    """Fridge above freezer, or the other way round, long handles."""
+    """Builds a fridge with a freezer above or below it, and long handles."""
     width, depth, height = w.width(0.58, 0.70), w.depth(0.60, 0.68), w.height(1.60, 1.90)
     look, metal = w.look("appliance"), w.look("chrome")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -45,7 +43,7 @@ def fridge(w: Workbench) -> None:
 
 
 def retro_fridge(w: Workbench) -> None:
-    """Rounded single door with a badge and a lever."""
+    """Builds a rounded fridge with a single door, a badge and a lever."""
     width, depth, height = w.width(0.58, 0.62), w.depth(0.62, 0.68), w.height(1.40, 1.60)
     look, metal = w.look("appliance"), w.look("chrome")
     w.mesh(chamfered_box((depth - 0.07, width, height - 0.06), 0.05), (-0.035, 0.0, 0.5 * height + 0.03), look)
@@ -76,7 +74,7 @@ def retro_fridge(w: Workbench) -> None:
 
 
 def stove(w: Workbench) -> None:
-    """Free-standing cooker: four rings, knobs, oven door with a window."""
+    """Builds a free-standing cooker with four rings, knobs and an oven door with a window."""
     width, depth, height = w.width(0.58, 0.62), w.depth(0.60, 0.64), w.height(0.87, 0.91)
     look, dark, metal = w.look("appliance"), w.look("screen"), w.look("chrome")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -116,7 +114,7 @@ def stove(w: Workbench) -> None:
 
 
 def range_cooker(w: Workbench) -> None:
-    """Wide range: two ovens, towel rail, six burners, low splashback."""
+    """Builds a wide range with two ovens, a towel rail, four burners and a low splashback."""
     width, depth, height = w.width(0.60, 0.62), w.depth(0.60, 0.66), 0.90
     look, iron, brass = w.look("appliance"), w.look("iron"), w.look("brass")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -149,7 +147,7 @@ def range_cooker(w: Workbench) -> None:
 
 
 def front_loader(w: Workbench) -> None:
-    """Washing machine: round door, panel with a knob."""
+    """Builds a washing machine with a round door and a panel with a knob."""
     width, depth, height = 0.60, w.depth(0.55, 0.62), w.height(0.84, 0.87)
     look = w.look("appliance")
     x = 0.5 * depth
@@ -163,7 +161,7 @@ def front_loader(w: Workbench) -> None:
 
 
 def top_loader(w: Workbench) -> None:
-    """Washing machine with a lid on top and a raised panel behind."""
+    """Builds a washing machine with a lid on top and a raised panel behind."""
     width, depth, height = w.width(0.42, 0.60), w.depth(0.58, 0.62), w.height(0.86, 0.90)
     look = w.look("appliance")
     w.mesh(chamfered_box((depth, width, height - 0.02), 0.015), (0.0, 0.0, 0.5 * height + 0.01), look)
@@ -203,7 +201,7 @@ def top_loader(w: Workbench) -> None:
 
 
 def two_door_fridge(w: Workbench) -> None:
-    """Side-by-side fridge with a water dispenser."""
+    """Builds a side-by-side fridge with a water dispenser."""
     width, depth, height = w.width(0.84, 0.92), w.depth(0.66, 0.74), w.height(1.74, 1.82)
     look, metal = w.look("appliance"), w.look("chrome")
     x = 0.5 * depth
@@ -224,7 +222,7 @@ def two_door_fridge(w: Workbench) -> None:
 
 
 def larder_fridge(w: Workbench) -> None:
-    """Tall fridge with three drawers below one door, grips cut into the edges."""
+    """Builds a tall fridge with three drawers below one door and grips cut into the edges."""
     width, depth, height = w.width(0.58, 0.66), w.depth(0.60, 0.68), w.height(1.80, 2.00)
     look, x = w.look("appliance"), 0.5 * depth
     w.box((-x, x - 0.05), (-0.5 * width, 0.5 * width), (0.05, height), look)
@@ -242,7 +240,7 @@ def larder_fridge(w: Workbench) -> None:
 
 
 def dishwasher(w: Workbench) -> None:
-    """Dishwasher: one flat door, panel with buttons, bar handle."""
+    """Builds a dishwasher with one flat door, a panel with buttons and a bar handle."""
     depth, height, look = w.depth(0.57, 0.61), w.height(0.84, 0.87), w.look("appliance")
     x = 0.5 * depth
     w.box((-x, x - 0.02), (-0.30, 0.30), (0.08, height), look)
@@ -269,7 +267,7 @@ def dishwasher(w: Workbench) -> None:
 
 
 def dishwasher_panelled(w: Workbench) -> None:
-    """Dishwasher with a frameless front, hidden panel, a recessed grip and a light strip."""
+    """Builds a dishwasher with a frameless front, a hidden panel, a recessed grip and a light strip."""
     depth, height, look = w.depth(0.57, 0.61), w.height(0.84, 0.87), w.look("appliance")
     x = 0.5 * depth
     w.box((-x, x - 0.03), (-0.30, 0.30), (0.10, height), look)
@@ -280,7 +278,7 @@ def dishwasher_panelled(w: Workbench) -> None:
 
 
 def dryer(w: Workbench) -> None:
-    """Tumble dryer: large window, rounded door, panel with a display."""
+    """Builds a tumble dryer with a large round window and a panel with a display."""
     depth, height, look = w.depth(0.56, 0.62), w.height(0.84, 0.87), w.look("appliance")
     x = 0.5 * depth
     w.box((-x, x), (-0.30, 0.30), (0.03, height), look)

@@ -1,6 +1,6 @@
 """Arm chairs.
 
-Ranges after Panero & Zelnik, Human Dimension and Interior Space (easy chairs 0.38-0.43 m high and 0.70-0.95 m wide).
+Sizes follow Panero & Zelnik, Human Dimension and Interior Space (easy chairs 0.38-0.43 m high and 0.70-0.95 m wide).
 """
 
 from __future__ import annotations
@@ -10,17 +10,12 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    arc_wall,
-    chamfered_box,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
 def club(w: Workbench) -> None:
-    """Boxy upholstered armchair: arms, back and a loose seat cushion on short feet."""
+    """Builds a boxy upholstered armchair with arms, a back and a loose seat cushion on short feet."""
     width, depth, height = w.width(0.74, 0.92), w.depth(0.76, 0.90), w.length(0.74, 0.86)
     seat, arm, back = w.length(0.40, 0.44), w.length(0.11, 0.16), 0.18
     cover, foot = (w.look("leather") if w.chance(0.4) else w.look("fabric")), w.look("wood")
@@ -42,7 +37,7 @@ def club(w: Workbench) -> None:
 
 
 def wingback(w: Workbench) -> None:
-    """High back with wings, rolled arms, turned wooden legs."""
+    """Builds an armchair with a high winged back, rolled arms and turned wooden legs."""
     width, depth, height = w.width(0.72, 0.82), w.depth(0.76, 0.86), w.length(1.0, 1.12)
     seat, cloth, wood = w.length(0.42, 0.46), w.look("fabric"), w.look("wood")
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
@@ -69,7 +64,7 @@ def wingback(w: Workbench) -> None:
 
 
 def lounge(w: Workbench) -> None:
-    """Open wooden frame with loose seat and back cushions, sloping arms."""
+    """Builds an armchair with an open wooden frame, sloping arms and loose seat and back cushions."""
     width, depth, height = w.width(0.66, 0.76), w.depth(0.72, 0.82), w.length(0.76, 0.84)
     seat, wood, cloth = w.length(0.38, 0.42), w.look("wood"), w.look("fabric")
     x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
@@ -92,7 +87,7 @@ def lounge(w: Workbench) -> None:
 
 
 def rocker(w: Workbench) -> None:
-    """Rocking chair: curved runners, slatted high back, flat arms."""
+    """Builds a rocking chair with curved runners, a slatted high back and flat arms."""
     w.mass_kg = 9.0
     half, seat, height = 0.5 * w.length(0.56, 0.64), w.length(0.41, 0.45), w.length(1.0, 1.10)
     wood, cloth = w.look("wood"), w.look("fabric")
@@ -114,7 +109,7 @@ def rocker(w: Workbench) -> None:
 
 
 def tub(w: Workbench) -> None:
-    """Barrel chair: one rounded shell round a deep cushion, on a plinth."""
+    """Builds a barrel chair: one rounded shell around a deep cushion, on a plinth."""
     width, height, seat = w.width(0.72, 0.82), w.length(0.70, 0.78), w.length(0.40, 0.44)
     r, cloth = 0.5 * width, w.look("fabric")
     w.cylinder((0.0, 0.0), (0.05, seat - 0.10), r - 0.01, cloth)

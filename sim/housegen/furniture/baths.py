@@ -1,6 +1,6 @@
 """Showers and bathtubs.
 
-Ranges after Neufert, Architects' Data: showers 0.75-1.20 m square, 1.90-2.10 m high; bathtubs 1.50-1.80 m long,
+Sizes follow Neufert, Architects' Data: showers 0.75-1.20 m square, 1.90-2.10 m high; bathtubs 1.50-1.80 m long,
 0.70-0.85 m wide, 0.50-0.62 m high.
 """
 
@@ -13,19 +13,12 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    drape,
-    hoop,
-    loft,
-    named_mesh,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft, named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
 
 def _shower_set(w: Workbench, x: float, y: float, tray: float, metal: Look, *, rain: bool) -> None:
-    """A slim tower at x from the tray up, with mixer, rail and head (a rain head on an arm, or a hand shower)."""
+    """Adds a slim tower at x, from the tray up, with mixer, rail and a rain head on an arm or a hand shower."""
     w.box((x, x + 0.025), (y - 0.07, y + 0.07), (tray - 0.005, 2.0), w.look("ceramic"), solid=False)
     x += 0.02
     w.rod((x + 0.05, y, 1.1), (x + 0.05, y, 1.96), 0.009, metal, solid=False)
@@ -41,7 +34,7 @@ def _shower_set(w: Workbench, x: float, y: float, tray: float, metal: Look, *, r
 
 
 def _rounded_tub(w: Workbench, depth: float, width: float, high: float, look: Look) -> None:
-    """A rectangular block with an oval hollow, and its drain."""
+    """Adds a rectangular block with an oval hollow and a drain."""
     x, y = 0.5 * depth, 0.5 * width
     rings = [
         Ring(0.0, x, y, power=24), Ring(high, x, y, power=24), Ring(high, x - 0.06, y - 0.07, power=5),
@@ -52,7 +45,7 @@ def _rounded_tub(w: Workbench, depth: float, width: float, high: float, look: Lo
 
 
 def _pane(w: Workbench, a: tuple[float, float], b: tuple[float, float], low: float, high: float, glass: Look) -> None:
-    """An upright pane of glass between two points of the plan."""
+    """Adds an upright pane of glass between two points of the plan."""
     x, y, half = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * math.dist(a, b)
     turn = math.atan2(b[1] - a[1], b[0] - a[0])
     w.box((x - half, x + half), (y - 0.003, y + 0.003), (low, high), glass, turn=turn)
@@ -61,7 +54,10 @@ def _pane(w: Workbench, a: tuple[float, float], b: tuple[float, float], low: flo
 def _hollow(
     outline: list[tuple[float, float]], centre: tuple[float, float], rim: float, floor: float, high: float, deep: float
 ) -> MeshShape:
-    """A tub of any convex outline: its hollow is the outline shrunk towards a centre, at the rim and at the floor."""
+    """Returns the mesh of a tub with a convex outline.
+
+    The hollow is the outline scaled about `centre` by `rim` at the top and by `floor` at the bottom.
+    """
     n = len(outline)
 
     def ring(scale: float, z: float) -> list[tuple[float, float, float]]:
@@ -79,7 +75,7 @@ def _hollow(
 
 
 def freestanding(w: Workbench) -> None:
-    """Oval tub on the floor with a standing tap."""
+    """Builds an oval tub on the floor with a standing tap."""
     width, depth, high = w.width(1.60, 1.78), w.depth(0.72, 0.82), w.length(0.56, 0.62)
     white, metal = w.look("ceramic"), w.look("chrome")
     rx, ry = 0.5 * depth, 0.5 * width
@@ -98,7 +94,7 @@ def freestanding(w: Workbench) -> None:
 
 
 def walk_in(w: Workbench) -> None:
-    """Flat tray behind one fixed pane, rain head, niche tower; open on one side."""
+    """Builds a shower with a flat tray, one fixed pane, a rain head and a niche tower; one side is open."""
     width, depth, high = w.width(1.10, 1.40), w.depth(0.80, 0.95), w.length(1.95, 2.05)
     metal = w.look("chrome") if w.chance(0.5) else w.look("iron")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -112,7 +108,7 @@ def walk_in(w: Workbench) -> None:
 
 
 def curtained(w: Workbench) -> None:
-    """Tray with a curtain on a rail that runs round the open sides."""
+    """Builds a shower tray with a curtain on a rail that runs around the open sides."""
     half, high = 0.5 * w.width(0.80, 0.95), 2.0
     metal, cloth = w.look("chrome"), w.look("curtain")
     w.mesh(chamfered_box((2 * half, 2 * half, 0.13), 0.02), (0.0, 0.0, 0.065), w.look("ceramic"))
@@ -127,7 +123,7 @@ def curtained(w: Workbench) -> None:
 
 
 def cubicle(w: Workbench) -> None:
-    """Closed prefabricated cabin: opaque back and side, framed sliding doors, roof."""
+    """Builds a prefabricated cabin with an opaque back and side, framed sliding doors and a roof."""
     half, high = 0.5 * w.width(0.80, 0.95), w.length(2.02, 2.12)
     white, metal, glass = w.look("ceramic"), w.look("metal"), w.look("glass")
     w.box((-half, half), (-half, half), (0.0, 0.15), white)
@@ -146,7 +142,7 @@ def cubicle(w: Workbench) -> None:
 
 
 def corner_tub(w: Workbench) -> None:
-    """Quarter-round tub with an apron; stands in a corner at smallest x and y."""
+    """Builds a quarter-round tub with an apron, for a corner at smallest x and y."""
     side, high = w.width(1.25, 1.45), w.length(0.54, 0.60)
     white, half = w.look("ceramic"), 0.5 * side
     outer = [
@@ -163,7 +159,7 @@ def corner_tub(w: Workbench) -> None:
 
 
 def barrel(w: Workbench) -> None:
-    """Round wooden soaking tub bound with hoops, with a step."""
+    """Builds a round wooden soaking tub with hoops and a step."""
     r, high = 0.5 * w.width(1.20, 1.40), w.length(0.62, 0.70)
     wood, metal = w.look("wood"), w.look("iron")
     rings = [
@@ -179,7 +175,7 @@ def barrel(w: Workbench) -> None:
 
 
 def clawfoot(w: Workbench) -> None:
-    """Slipper tub on four feet, rolled rim, one end raised, standing tap."""
+    """Builds a slipper tub on four feet with a rolled rim, one raised end and a standing tap."""
     width, depth, high = w.width(1.55, 1.72), w.depth(0.72, 0.80), w.length(0.56, 0.62)
     white, metal = w.look("ceramic"), w.look("brass")
     rx, ry = 0.5 * depth, 0.5 * width
@@ -210,7 +206,7 @@ def clawfoot(w: Workbench) -> None:
 
 
 def built_in(w: Workbench) -> None:
-    """Tub in a panelled surround against the wall, oval inside, taps at one end; long side along the wall."""
+    """Builds a tub in a panelled surround, oval inside, with taps at one end; its long side is along the wall."""
     width, depth, high = w.width(1.55, 1.80), w.depth(0.70, 0.80), w.length(0.52, 0.60)
     white, chrome = w.look("ceramic"), w.look("chrome")
     _rounded_tub(w, depth, width, high, white)
@@ -229,7 +225,7 @@ def built_in(w: Workbench) -> None:
 
 
 def with_screen(w: Workbench) -> None:
-    """Built-in tub behind a wooden panel, with a glass screen and a shower set above its tap end."""
+    """Builds a built-in tub behind a wooden panel, with a glass screen and a shower set above its tap end."""
     width, depth, high = w.width(1.55, 1.80), w.depth(0.70, 0.80), w.length(0.54, 0.60)
     white, chrome = w.look("ceramic"), w.look("chrome")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -245,7 +241,7 @@ def with_screen(w: Workbench) -> None:
 
 
 def corner_cabin(w: Workbench) -> None:
-    """Square tray glazed on three sides, a shower tower at the wall, a handle on the front."""
+    """Builds a square tray glazed on three sides, with a shower tower at the wall and a handle on the front."""
     side = w.width(0.80, 1.00)
     half, high, metal, glass = 0.5 * side, w.length(1.90, 2.02), w.look("chrome"), w.look("glass")
     w.box((-half, half), (-half, half), (0.0, 0.07), w.look("ceramic"))
@@ -266,7 +262,7 @@ def corner_cabin(w: Workbench) -> None:
 
 
 def curved_cabin(w: Workbench) -> None:
-    """Quadrant tray with bent glass, for a corner at smallest x and y; a straight pane on its right side."""
+    """Builds a quadrant tray with bent glass for a corner at smallest x and y; the right side is a straight pane."""
     half, high = 0.5 * w.width(0.85, 1.00), w.length(1.90, 2.00)
     metal, glass = w.look("metal"), w.look("glass")
     points = [
@@ -290,7 +286,7 @@ def curved_cabin(w: Workbench) -> None:
 
 
 def pentagon_cabin(w: Workbench) -> None:
-    """Five-sided tray, door across the corner, brass frame; a straight pane on its right side."""
+    """Builds a five-sided tray with a door across the corner and a brass frame; the right side is a straight pane."""
     half, high = 0.5 * w.width(0.88, 1.00), w.length(1.92, 2.02)
     metal, glass = w.look("brass"), w.look("glass")
     points = [(half, -half), (half, -0.05 * half), (-0.05 * half, half), (-half, half)]

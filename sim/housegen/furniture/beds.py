@@ -1,6 +1,6 @@
 """Beds with their bedding.
 
-Ranges from usual mattress sizes (0.90, 1.40, 1.60, 1.80 m by 1.90-2.10 m; EN 1334) and Neufert: top of the mattress
+Sizes follow usual mattress sizes (0.90, 1.40, 1.60, 1.80 m by 1.90-2.10 m; EN 1334) and Neufert: top of the mattress
 0.45-0.60 m, headboards 0.80-1.20 m high. The front is the foot end.
 """
 
@@ -17,7 +17,7 @@ _MATTRESS = 0.22
 
 
 def _mattress_size(w: Workbench) -> tuple[float, float]:
-    """(length, width); hint `width_m` asks for the next mattress width below."""
+    """Returns the length and width of the mattress; hint `width_m` selects the next standard width below it."""
     hinted = w.hints.get("width_m")
     widths = (0.90, 1.20, 1.40, 1.60, 1.80)
     width = (
@@ -29,7 +29,7 @@ def _mattress_size(w: Workbench) -> tuple[float, float]:
 
 
 def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -> None:
-    """Mattress from x0 towards the foot, duvet over most of it, one or two pillows at the head."""
+    """Adds a mattress from x0 towards the foot, a duvet over most of it, and one or two pillows at the head."""
     linen, duvet = w.look("linen"), w.look("bedding")
     w.mesh(chamfered_box((length, width, _MATTRESS), 0.04), (x0 + 0.5 * length, 0.0, top - 0.5 * _MATTRESS), linen)
     cover = w.length(0.60, 0.75) * length
@@ -53,7 +53,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
 
 
 def panel(w: Workbench) -> None:
-    """Wooden bed with a panelled headboard, side rails and a low footboard."""
+    """Builds a wooden bed with a panelled headboard, side rails and a low footboard."""
     length, width = _mattress_size(w)
     wood, top, head = w.look("wood"), w.length(0.48, 0.58), w.length(0.90, 1.15)
     half, x1 = 0.5 * width + 0.03, length + 0.02
@@ -69,7 +69,7 @@ def panel(w: Workbench) -> None:
 
 
 def platform(w: Workbench) -> None:
-    """Low wide platform, mattress set in, floating headboard, recessed plinth."""
+    """Builds a low wide platform with an inset mattress, a floating headboard and a recessed plinth."""
     length, width = _mattress_size(w)
     wood, top = w.look("wood"), w.length(0.42, 0.48)
     half = 0.5 * width + 0.14
@@ -80,7 +80,7 @@ def platform(w: Workbench) -> None:
 
 
 def upholstered(w: Workbench) -> None:
-    """Box bed covered in cloth with a tall tufted headboard."""
+    """Builds a box bed covered in cloth with a tall tufted headboard."""
     length, width = _mattress_size(w)
     cloth, top, head = w.look("fabric"), w.length(0.52, 0.60), w.length(1.05, 1.25)
     half = 0.5 * width + 0.035
@@ -98,7 +98,7 @@ def upholstered(w: Workbench) -> None:
 
 
 def metal_frame(w: Workbench) -> None:
-    """Iron bedstead: arched bars at head and foot."""
+    """Builds an iron bedstead with arched bars at head and foot."""
     length, width = _mattress_size(w)
     iron, top, head = w.look("iron"), w.length(0.50, 0.58), w.length(0.95, 1.15)
     half = 0.5 * width + 0.02
@@ -119,7 +119,7 @@ def metal_frame(w: Workbench) -> None:
 
 
 def storage(w: Workbench) -> None:
-    """Drawers in the base, shelf headboard."""
+    """Builds a bed with drawers in the base and a shelf headboard."""
     length, width = _mattress_size(w)
     look, top = w.look("lacquer"), w.length(0.52, 0.58)
     half = 0.5 * width + 0.02
@@ -156,7 +156,7 @@ def storage(w: Workbench) -> None:
 
 
 def four_poster(w: Workbench) -> None:
-    """Four tall posts joined by a rail above."""
+    """Builds a bed with four tall posts joined by a rail at the top."""
     length, width = _mattress_size(w)
     wood, top, high = w.look("wood"), w.length(0.54, 0.62), w.length(1.95, 2.10)
     half, x0, x1 = 0.5 * width + 0.035, -0.035, length + 0.035
@@ -174,7 +174,7 @@ def four_poster(w: Workbench) -> None:
 
 
 def sleigh(w: Workbench) -> None:
-    """Curved head and foot that roll outwards."""
+    """Builds a bed with a curved head and foot that roll outwards."""
     length, width = _mattress_size(w)
     wood, top, head = w.look("wood"), w.length(0.50, 0.58), w.length(0.95, 1.10)
     half = 0.5 * width + 0.03
@@ -191,7 +191,7 @@ def sleigh(w: Workbench) -> None:
 
 
 def futon(w: Workbench) -> None:
-    """Slatted low base of round timbers, thin mattress, roll of cloth as a headrest."""
+    """Builds a low slatted base of round timbers with a thin mattress and a roll of cloth as a headrest."""
     length, width = _mattress_size(w)
     wood, top = w.look("wood"), 0.40
     half = 0.5 * width + 0.08

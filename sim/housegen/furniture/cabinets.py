@@ -1,6 +1,6 @@
 """Cabinets: wardrobes, sideboards, media benches, kitchen wall units, washstands.
 
-Ranges after Neufert, Architects' Data (wardrobes 0.58-0.65 m deep and 1.90-2.40 m high, sideboards 0.40-0.48 m deep
+Sizes follow Neufert, Architects' Data (wardrobes 0.58-0.65 m deep and 1.90-2.40 m high, sideboards 0.40-0.48 m deep
 and 0.70-0.90 m high) and the 60 cm grid of European kitchens (wall units 0.30-0.37 m deep and 0.60-0.75 m high,
 1.40 m above the floor).
 """
@@ -10,14 +10,12 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-)
+from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Workbench
 
 
 def wardrobe_doors(w: Workbench) -> None:
-    """Two to four tall doors on a plinth."""
+    """Builds a wardrobe with two to four tall doors on a plinth."""
     width, depth, height = w.width(0.90, 1.90), w.depth(0.58, 0.64), w.height(1.95, 2.30)
     look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.07, height), look, foot=0.07)
@@ -27,7 +25,7 @@ def wardrobe_doors(w: Workbench) -> None:
 
 
 def wardrobe_sliding(w: Workbench) -> None:
-    """Two or three wide sliding leaves, one of them a mirror-like pane."""
+    """Builds a wardrobe with two or three wide sliding doors, one of them like a mirror."""
     width, depth, height = w.width(1.40, 2.20), w.depth(0.60, 0.66), w.height(2.00, 2.30)
     body, front, metal = w.look("lacquer"), w.look("wood"), w.look("metal")
     w.box((-0.5 * depth, 0.5 * depth - 0.06), (-0.5 * width, 0.5 * width), (0.0, height), body)
@@ -45,7 +43,7 @@ def wardrobe_sliding(w: Workbench) -> None:
 
 
 def armoire(w: Workbench) -> None:
-    """Old wardrobe: cornice, two panelled doors over a drawer, ball feet."""
+    """Builds an old wardrobe with a cornice, two panelled doors over a drawer, and ball feet."""
     width, depth, height = w.width(1.00, 1.35), w.depth(0.56, 0.62), w.height(1.90, 2.15)
     wood = w.look("wood")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -71,7 +69,7 @@ def armoire(w: Workbench) -> None:
 
 
 def sideboard_legs(w: Workbench) -> None:
-    """Long low cabinet on legs: doors beside drawers."""
+    """Builds a long low cabinet on legs with doors beside drawers."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.40, 0.47), w.length(0.74, 0.86)
     wood, foot = w.look("wood"), w.length(0.14, 0.20)
     front = w.look("lacquer") if w.chance(0.4) else wood
@@ -85,7 +83,7 @@ def sideboard_legs(w: Workbench) -> None:
 
 
 def display(w: Workbench) -> None:
-    """Dresser: cupboard below, glazed shelves with crockery above."""
+    """Builds a dresser: a cupboard below glazed shelves with crockery."""
     width, depth, height = w.width(0.85, 1.20), w.depth(0.38, 0.44), w.height(1.80, 2.05)
     look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -115,7 +113,7 @@ def display(w: Workbench) -> None:
 
 
 def tambour(w: Workbench) -> None:
-    """Sideboard with fluted fronts on a sled of metal."""
+    """Builds a sideboard with fluted fronts on a metal sled base."""
     width, depth, height = w.width(1.30, 1.80), w.depth(0.40, 0.46), w.length(0.70, 0.80)
     wood, metal = w.look("wood"), w.look("brass")
     x, y = parts.case(w, depth, width, (0.16, height), wood)
@@ -138,7 +136,7 @@ def tambour(w: Workbench) -> None:
 
 
 def media_low(w: Workbench) -> None:
-    """Television bench: an open compartment between drop fronts."""
+    """Builds a television bench with an open compartment between drop fronts."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.38, 0.45), w.length(0.42, 0.52)
     body = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -159,7 +157,7 @@ def media_low(w: Workbench) -> None:
 
 
 def media_legs(w: Workbench) -> None:
-    """Television bench: a slatted tray on a metal frame with one closed box."""
+    """Builds a television bench: a slatted tray on a metal frame with one closed box."""
     width, depth, height = w.width(1.20, 1.70), w.depth(0.36, 0.42), w.length(0.45, 0.55)
     wood, iron = w.look("wood"), w.look("iron")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -181,7 +179,7 @@ def media_legs(w: Workbench) -> None:
 
 
 def wall_unit(w: Workbench) -> None:
-    """Kitchen wall cupboard."""
+    """Builds a kitchen wall cupboard."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.32, 0.36), w.height(0.60, 0.75)
     w.mount_height_m = 1.42
     look = w.look("lacquer") if w.chance(0.6) else w.look("wood")
@@ -193,7 +191,7 @@ def wall_unit(w: Workbench) -> None:
 
 
 def wall_unit_glazed(w: Workbench) -> None:
-    """Kitchen wall cupboard: framed glass doors over a pale back with a shelf."""
+    """Builds a kitchen wall cupboard with framed glass doors in front of a pale back with a shelf."""
     width, depth, height = w.width(0.60, 1.80), w.depth(0.30, 0.35), w.height(0.60, 0.75)
     w.mount_height_m = 1.42
     look, y = w.look("lacquer"), (-0.5 * width, 0.5 * width)
@@ -211,7 +209,7 @@ def wall_unit_glazed(w: Workbench) -> None:
 
 
 def vanity_doors(w: Workbench) -> None:
-    """Bathroom washstand: cupboard, top and basin; the basin is a sink of its own."""
+    """Builds a bathroom washstand with a cupboard, a top and a basin; the basin is a separate sink."""
     width, depth, height = w.width(0.70, 1.20), w.depth(0.46, 0.52), w.length(0.80, 0.86)
     look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -236,7 +234,7 @@ def vanity_doors(w: Workbench) -> None:
 
 
 def vanity_floating(w: Workbench) -> None:
-    """Washstand hung on the wall: one wide drawer block under a slab with a basin on it."""
+    """Builds a washstand on the wall: one wide drawer block under a slab with a basin on it."""
     width, depth = w.width(0.70, 1.20), w.depth(0.45, 0.50)
     w.mount_height_m = 0.42
     wood, y = w.look("wood"), (-0.5 * width, 0.5 * width)

@@ -1,6 +1,6 @@
 """Dining chairs.
 
-Ranges after Panero & Zelnik, Human Dimension and Interior Space (seat 0.40-0.48 m high and 0.39-0.46 m deep, back to
+Sizes follow Panero & Zelnik, Human Dimension and Interior Space (seat 0.40-0.48 m high and 0.39-0.46 m deep, back to
 0.78-1.02 m) and Neufert, Architects' Data (dining chairs 0.40-0.50 m wide).
 """
 
@@ -13,12 +13,7 @@ from dataclasses import dataclass
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    loft,
-    strip,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft, strip
 from sim.housegen.furniture.workbench import Workbench
 
 DINING_KG = 5.0
@@ -26,7 +21,7 @@ DINING_KG = 5.0
 
 @dataclass(frozen=True)
 class _Frame:
-    """A chair's main lengths; x from `back` to `front`, y from -half to half."""
+    """The main dimensions of a chair; x from `back` to `front`, y from -half to half."""
 
     back: float
     front: float
@@ -34,14 +29,15 @@ class _Frame:
     seat: float
     height: float
     rake: float
-    """How far the top of the back lies behind the seat's back edge."""
+    """Distance along x from the rear edge of the seat to the top of the back."""
 
     def back_x(self, z: float) -> float:
-        """Where the back is at height z."""
+        """Returns the x of the back at height z."""
         return self.back - self.rake * max(0.0, z - self.seat) / (self.height - self.seat)
 
 
 def _dining_frame(w: Workbench, low: float = 0.80, high: float = 0.96) -> _Frame:
+    """Draws the dimensions of a dining chair between `low` and `high` metres high."""
     w.mass_kg = DINING_KG
     depth, width = w.length(0.39, 0.45), w.length(0.40, 0.47)
     return _Frame(
@@ -50,7 +46,7 @@ def _dining_frame(w: Workbench, low: float = 0.80, high: float = 0.96) -> _Frame
 
 
 def _wooden_frame(w: Workbench, f: _Frame, wood: Look, thick: float) -> None:
-    """Front legs, raked back posts and four seat rails."""
+    """Adds front legs, raked back posts and four seat rails."""
     inset = 0.5 * thick
     for side in BOTH_SIDES:
         y = side * (f.half - inset)
@@ -65,7 +61,7 @@ def _wooden_frame(w: Workbench, f: _Frame, wood: Look, thick: float) -> None:
 def _crossbar(
     w: Workbench, f: _Frame, z: tuple[float, float], thick: float, look: Look, half: float | None = None
 ) -> None:
-    """A level board of the back between heights z, following its rake."""
+    """Adds a level board of the back between heights z that follows the rake of the back."""
     half = f.half if half is None else half
     x = f.back_x(0.5 * (z[0] + z[1])) + 0.5 * thick
     tilt = -math.atan2(f.rake, f.height - f.seat)
@@ -73,7 +69,7 @@ def _crossbar(
 
 
 def slat_back(w: Workbench) -> None:
-    """Wooden chair, upright slats between two rails, flat or padded seat."""
+    """Builds a wooden chair with upright slats between two rails and a flat or padded seat."""
     f, wood, thick = _dining_frame(w), w.look("wood"), w.length(0.03, 0.04)
     _wooden_frame(w, f, wood, thick)
     padded = w.chance(0.5)
@@ -92,7 +88,7 @@ def slat_back(w: Workbench) -> None:
 
 
 def ladder_back(w: Workbench) -> None:
-    """Country chair: three or four rungs across the back, woven seat, stretchers near the floor."""
+    """Builds a country chair with three or four rungs across the back, a woven seat and low stretchers."""
     f, wood, thick = _dining_frame(w, 0.92, 1.02), w.look("wood"), 0.034
     for side in BOTH_SIDES:
         y = side * (f.half - 0.5 * thick)
@@ -110,7 +106,7 @@ def ladder_back(w: Workbench) -> None:
 
 
 def shell(w: Workbench) -> None:
-    """Moulded shell, seat and back in one curve, on four splayed dowels."""
+    """Builds a moulded shell chair, seat and back in one curve, on four splayed dowels."""
     f, colour = _dining_frame(w, 0.78, 0.86), w.look("plastic")
     path = [
         (f.front + 0.02, f.seat - 0.05),
@@ -124,7 +120,7 @@ def shell(w: Workbench) -> None:
         (f.back_x(f.height) - 0.01, f.height),
     ]
     w.mesh(strip(path[::-1], 0.012, 2 * f.half), (0.0, 0.0, 0.0), colour)
-    for side in BOTH_SIDES:  # turned-up rims stiffen the seat
+    for side in BOTH_SIDES:  # the rims of the seat are turned up
         y = side * (f.half - 0.004)
         w.bar((f.front - 0.02, y, f.seat + 0.004), (f.back + 0.04, y, f.seat + 0.02), 0.012, 0.035, colour, solid=False)
     legs = w.look("wood") if w.chance(0.6) else w.look("iron")
@@ -133,7 +129,7 @@ def shell(w: Workbench) -> None:
 
 
 def parsons(w: Workbench) -> None:
-    """Upholstered all over, short wooden legs."""
+    """Builds a fully upholstered chair on short wooden legs."""
     f, cloth, wood = _dining_frame(w, 0.92, 1.02), w.look("fabric"), w.look("wood")
     w.mesh(chamfered_box((f.front - f.back, 2 * f.half, 0.13), 0.02), (0.0, 0.0, f.seat - 0.055), cloth)
     height = f.height - f.seat + 0.10
@@ -144,7 +140,7 @@ def parsons(w: Workbench) -> None:
 
 
 def cantilever(w: Workbench) -> None:
-    """Bent steel tube without back legs; seat and back of leather or cane."""
+    """Builds a chair of bent steel tube without back legs, its seat and back of leather or cane."""
     f, tube = _dining_frame(w, 0.78, 0.86), w.look("chrome")
     cover = w.look("leather") if w.chance(0.5) else w.look("wicker")
     r = 0.0125
@@ -165,7 +161,7 @@ def cantilever(w: Workbench) -> None:
 
 
 def cafe_metal(w: Workbench) -> None:
-    """Pressed steel bistro chair: flared legs, one broad splat in a hooped back."""
+    """Builds a pressed steel bistro chair with flared legs and one broad splat in a hooped back."""
     f, steel = _dining_frame(w, 0.82, 0.88), w.look("lacquer") if w.chance(0.5) else w.look("metal")
     w.mesh(chamfered_box((f.front - f.back, 2 * f.half - 0.02, 0.03), 0.01), (0.0, 0.0, f.seat - 0.015), steel)
     w.legs(
@@ -185,7 +181,7 @@ def cafe_metal(w: Workbench) -> None:
 
 
 def windsor(w: Workbench) -> None:
-    """Saddle seat, turned splayed legs, a bow full of spindles."""
+    """Builds a chair with a saddle seat, splayed turned legs and a bow full of spindles."""
     f, wood = _dining_frame(w, 0.88, 1.0), w.look("wood")
     f = _Frame(f.back, f.front, f.half, f.seat, f.height, f.rake + 0.05)
     rim = [Ring(f.seat - 0.04, 0.9 * f.front, 0.9 * f.half, power=2.6), Ring(f.seat, f.front, f.half, power=2.6)]
@@ -207,7 +203,7 @@ def windsor(w: Workbench) -> None:
 
 
 def cross_back(w: Workbench) -> None:
-    """Bentwood chair with a round seat and crossed staves."""
+    """Builds a bentwood chair with a round seat and crossed staves."""
     f, wood = _dining_frame(w, 0.86, 0.92), w.look("wood")
     w.cylinder((0.0, 0.0), (f.seat - 0.035, f.seat), f.half, w.look("wicker"))
     w.cylinder((0.0, 0.0), (f.seat - 0.06, f.seat - 0.008), f.half - 0.012, wood)

@@ -1,6 +1,6 @@
 """Chests of drawers.
 
-Ranges after Neufert, Architects' Data (0.40-0.50 m deep) and usual retail dimensions (dressers 0.80-1.50 m wide and
+Sizes follow Neufert, Architects' Data (0.40-0.50 m deep) and usual retail dimensions (dressers 0.80-1.50 m wide and
 0.70-0.95 m high, tallboys to 1.30 m, bedside chests 0.40-0.52 m wide and 0.45-0.62 m high).
 """
 
@@ -13,7 +13,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def dresser(w: Workbench) -> None:
-    """Wide chest, three rows of two drawers, on short legs."""
+    """Builds a wide chest with three rows of two drawers on short legs."""
     width, depth, height = w.width(0.95, 1.50), w.depth(0.42, 0.50), w.length(0.74, 0.88)
     look, foot = parts.wood_look(w), w.length(0.08, 0.14)
     x, y = parts.case(w, depth, width, (foot, height), look)
@@ -32,7 +32,7 @@ def dresser(w: Workbench) -> None:
 
 
 def tallboy(w: Workbench) -> None:
-    """Narrow and tall: five drawers."""
+    """Builds a tall narrow chest with five drawers."""
     width, depth, height = w.width(0.45, 0.65), w.depth(0.40, 0.46), w.length(1.05, 1.30)
     look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.05, height), look, foot=0.05)
@@ -50,7 +50,7 @@ def tallboy(w: Workbench) -> None:
 
 
 def handleless(w: Workbench) -> None:
-    """Modern chest, three broad fronts with shadow gaps."""
+    """Builds a modern chest with three broad fronts and shadow gaps."""
     width, depth, height = w.width(0.80, 1.30), w.depth(0.42, 0.48), w.length(0.70, 0.85)
     body, front = w.look("wood"), w.look("lacquer")
     x, y = parts.case(w, depth, width, (0.04, height), body, foot=0.04)
@@ -62,7 +62,7 @@ def handleless(w: Workbench) -> None:
 
 
 def bedside_chest(w: Workbench) -> None:
-    """Bedside chest of two or three drawers."""
+    """Builds a bedside chest of two or three drawers."""
     width, depth, height = w.width(0.40, 0.52), w.depth(0.36, 0.44), w.length(0.48, 0.62)
     look = parts.wood_look(w)
     x, y = parts.case(w, depth, width, (0.06, height), look, foot=0.06)
@@ -80,7 +80,7 @@ def bedside_chest(w: Workbench) -> None:
 
 
 def campaign(w: Workbench) -> None:
-    """Chest with brass corners and flush handles on bun feet."""
+    """Builds a chest with brass corners and flush handles on bun feet."""
     width, depth, height = w.width(0.90, 1.20), w.depth(0.44, 0.50), w.length(0.80, 0.95)
     wood, brass = w.look("wood"), w.look("brass")
     x, y = parts.case(w, depth, width, (0.09, height), wood)
@@ -104,7 +104,7 @@ def campaign(w: Workbench) -> None:
 
 
 def apothecary(w: Workbench) -> None:
-    """A wall of small square drawers with knobs, on a stand."""
+    """Builds a chest of many small square drawers with knobs, on a stand."""
     width, depth, height = w.width(0.80, 1.05), w.depth(0.36, 0.42), w.length(0.95, 1.10)
     wood = w.look("wood")
     x, y = parts.case(w, depth, width, (0.34, height), wood)
@@ -116,7 +116,7 @@ def apothecary(w: Workbench) -> None:
 
 
 def bedside_drum(w: Workbench) -> None:
-    """Round bedside chest: a drum with two curved fronts."""
+    """Builds a round bedside chest: a drum with two curved fronts."""
     radius, height = 0.5 * w.width(0.40, 0.48), w.length(0.48, 0.58)
     look, metal = w.look("lacquer"), w.look("brass")
     w.cylinder((0.0, 0.0), (0.05, height), radius, look)

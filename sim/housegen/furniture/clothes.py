@@ -1,4 +1,4 @@
-"""Clothes: hung on racks and hooks, heaped, folded.
+"""Clothes that hang on racks and hooks, lie in heaps or are folded.
 
 Usual retail dimensions: clothes rails 0.90-1.30 m wide and 1.45-1.70 m high, garments 0.35-0.55 m wide and
 0.60-1.05 m long, coat hooks 1.60-1.75 m above the floor.
@@ -11,18 +11,12 @@ import math
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import MeshShape
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-    drape,
-    hoop,
-    named_mesh,
-    pillow,
-)
+from sim.housegen.furniture.shapes import chamfered_box, drape, hoop, named_mesh, pillow
 from sim.housegen.furniture.workbench import Workbench
 
 
 def _jacket(w: Workbench, x: float, y: float, top: float, high: float, wide: float) -> None:
-    """A coat hung by its collar: shoulders, body in folds, sleeves."""
+    """Adds a coat that hangs by its collar: shoulders, a body in folds, and sleeves."""
     cloth = w.new_look("bright") if w.chance(0.5) else w.new_look("denim")
     w.mesh(drape(0.5 * wide, high, 0.14, 2, gather=1.7), (x - 0.005, y, top - high), cloth, solid=False)
     for side in BOTH_SIDES:
@@ -38,7 +32,7 @@ def _jacket(w: Workbench, x: float, y: float, top: float, high: float, wide: flo
 
 
 def _garment(high: float, *, dress: bool = False) -> MeshShape:
-    """A shirt or a dress as it hangs from a hanger, shoulders along y, about y = 0, down to z = 0."""
+    """Returns a shirt or a dress on a hanger: shoulders along y, about y = 0, lower edge at z = 0."""
     hem = 0.27 if dress else 0.18
     right = [
         (0.06, high),
@@ -56,7 +50,10 @@ def _garment(high: float, *, dress: bool = False) -> MeshShape:
 def _extruded(
     outline: list[tuple[float, float]], centre: tuple[float, float], thick: float
 ) -> tuple[list[tuple[float, float, float]], list[tuple[int, int, int]]]:
-    """Vertices and faces of a (y, z) outline, star-shaped about `centre`, counter-clockwise from +x, thick along x."""
+    """Returns vertices and faces of a (y, z) outline extruded along x by `thick`.
+
+    The outline is star-shaped about `centre` and counter-clockwise as seen from +x.
+    """
     n = len(outline)
     vertices = [(x, y, z) for x in (-0.5 * thick, 0.5 * thick) for y, z in (*outline, centre)]
     faces = []
@@ -67,7 +64,7 @@ def _extruded(
 
 
 def clothes_rack(w: Workbench) -> None:
-    """Steel rail on two posts with hanging garments."""
+    """Builds a steel rail on two posts with hanging garments."""
     width, height = w.width(0.9, 1.3), w.length(1.5, 1.7)
     metal = w.look("metal")
     for side in BOTH_SIDES:
@@ -91,7 +88,7 @@ def clothes_rack(w: Workbench) -> None:
 
 
 def hall_board(w: Workbench) -> None:
-    """Shelf with hooks below it, jackets and a bag hanging, a hat on top."""
+    """Builds a shelf with hooks below it, on which jackets and a bag hang, and a hat on top."""
     width, wood, iron = w.width(0.75, 1.15), w.look("wood"), w.look("iron")
     w.mount_height_m = 0.78
     w.box((0.0, 0.018), (-0.5 * width, 0.5 * width), (0.86, 1.04), wood)
@@ -106,7 +103,7 @@ def hall_board(w: Workbench) -> None:
 
 
 def valet(w: Workbench) -> None:
-    """Valet stand: jacket over shaped shoulders, trousers over a bar, shoes below."""
+    """Builds a valet stand with a jacket over shaped shoulders, trousers over a bar and shoes below."""
     wood, high = w.look("wood"), w.length(1.10, 1.25)
     w.box((-0.19, 0.19), (-0.22, 0.22), (0.10, 0.13), wood)
     for side in BOTH_SIDES:
@@ -131,7 +128,7 @@ def valet(w: Workbench) -> None:
 
 
 def folded_pile(w: Workbench) -> None:
-    """Folded shirts, trousers, a pair of shoes beside them."""
+    """Builds folded shirts and trousers with a pair of shoes beside them."""
     z = 0.0
     for i in range(w.whole(4, 6)):
         thick = w.choice((0.03, 0.04))
@@ -141,7 +138,7 @@ def folded_pile(w: Workbench) -> None:
 
 
 def coat_hooks(w: Workbench) -> None:
-    """Rail of hooks with coats."""
+    """Builds a rail of hooks with coats."""
     width, iron = w.width(0.70, 1.10), w.look("iron")
     w.mount_height_m = 0.75
     w.box((0.0, 0.012), (-0.5 * width, 0.5 * width), (0.95, 0.99), iron)
@@ -155,7 +152,7 @@ def coat_hooks(w: Workbench) -> None:
 
 
 def laundry_basket(w: Workbench) -> None:
-    """Woven basket overflowing with clothes."""
+    """Builds a woven basket overflowing with clothes."""
     r, high = w.length(0.20, 0.25), w.length(0.45, 0.58)
     w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
     w.mesh(hoop(r + 0.008, 0.03, 0.04), (0.0, 0.0, high - 0.01), w.look("wood"), solid=False)
@@ -173,7 +170,7 @@ def laundry_basket(w: Workbench) -> None:
 
 
 def open_wardrobe(w: Workbench) -> None:
-    """Wooden clothes stand: rail between two A-frames, shelf with shoes, garments in a row."""
+    """Builds a wooden clothes stand: a rail between two A-frames, a shelf with shoes, and garments in a row."""
     width, high, wood = w.width(0.90, 1.25), w.length(1.45, 1.60), w.look("wood")
     for side in BOTH_SIDES:
         y = side * (0.5 * width - 0.02)
@@ -198,7 +195,7 @@ def open_wardrobe(w: Workbench) -> None:
 
 
 def coat_tree(w: Workbench) -> None:
-    """Coat stand: pole on four feet, arms with coats and a scarf."""
+    """Builds a coat stand: a pole on four feet, with coats and a scarf on its arms."""
     wood, high = w.look("wood"), w.length(1.70, 1.85)
     w.rod((0.0, 0.0, 0.05), (0.0, 0.0, high), 0.022, wood)
     w.ball((0.0, 0.0, high), 0.035, wood)
@@ -216,7 +213,7 @@ def coat_tree(w: Workbench) -> None:
 
 
 def wall_pegs_dress(w: Workbench) -> None:
-    """A dress and a shirt on hangers from two pegs."""
+    """Builds a dress and a shirt on hangers from two pegs."""
     wood = w.look("wood")
     w.mount_height_m = 0.70
     for side in BOTH_SIDES:
@@ -228,7 +225,7 @@ def wall_pegs_dress(w: Workbench) -> None:
 
 
 def sweater(w: Workbench) -> None:
-    """Folded sweater, its sleeves across, a cap on it."""
+    """Builds a folded sweater with its sleeves crossed and a cap on it."""
     cloth = w.new_look("bright")
     w.mesh(pillow((0.36, 0.32, 0.09), 6.0), (0.0, 0.0, 0.045), cloth)
     for side in BOTH_SIDES:
@@ -238,7 +235,7 @@ def sweater(w: Workbench) -> None:
 
 
 def clothes_heap(w: Workbench) -> None:
-    """Clothes dropped on the floor: shirts across each other, trousers over them, a crumpled rest on top."""
+    """Builds a heap of clothes on the floor: crossed shirts, trousers over them, and a crumpled piece on top."""
     for turn, z, high in ((0.3, 0.025, 0.60), (2.2, 0.065, 0.58)):
         at = (0.5 * high * math.cos(turn), 0.5 * high * math.sin(turn), z)
         w.mesh(_garment(high), at, w.new_look("bright"), tilt=-0.5 * math.pi, turn=turn, solid=z < 0.05)

@@ -1,6 +1,6 @@
 """Kitchen counters and islands.
 
-Ranges from the European kitchen grid (EN 1116: modules of 0.60 m, worktop 0.85-0.92 m high and 0.60-0.65 m deep) and
+Sizes follow the European kitchen grid (EN 1116: modules of 0.60 m, worktop 0.85-0.92 m high and 0.60-0.65 m deep) and
 Neufert, Architects' Data, for islands and bars.
 """
 
@@ -10,10 +10,7 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-    drape,
-)
+from sim.housegen.furniture.shapes import chamfered_box, drape
 from sim.housegen.furniture.workbench import Range, Workbench
 
 _TOP = 0.035
@@ -21,7 +18,7 @@ _TOP = 0.035
 
 
 def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tuple[Range, Range] | None) -> None:
-    """Cupboards under a worktop, lower where a sink hangs, on a recessed plinth."""
+    """Adds cupboards under a worktop, lower below a sink, on a recessed plinth."""
     w.box((x[0], x[1] - 0.06), y, (0.0, 0.10), w.look("dark"))
     if hole is None:
         w.box(x, y, (0.10, z), look)
@@ -34,7 +31,7 @@ def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tupl
 
 
 def kitchen_run(w: Workbench) -> None:
-    """Straight run: doors with a row of drawers, worktop, maybe sink and hob. Back along the wall."""
+    """Builds a straight run with doors, a row of drawers, a worktop and optionally a sink and a hob."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.88, 0.92)
     front, top = w.look("lacquer") if w.chance(0.6) else w.look("wood"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -58,7 +55,7 @@ def kitchen_run(w: Workbench) -> None:
 
 
 def island(w: Workbench) -> None:
-    """Free-standing block with an overhanging top for stools on its front side."""
+    """Builds a free-standing block with an overhanging top for stools on its front side."""
     width, depth, height = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.88, 0.92)
     body, top = w.look("lacquer"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -74,7 +71,7 @@ def island(w: Workbench) -> None:
 
 
 def open_run(w: Workbench) -> None:
-    """Workbench kitchen: thick wooden top on a steel frame, one closed block, an open shelf of crates below."""
+    """Builds a run with a thick wooden top on a steel frame, one closed block and an open shelf of crates below."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.92)
     steel, wood, front = w.look("metal"), w.look("wood"), w.look("lacquer")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -95,7 +92,7 @@ def open_run(w: Workbench) -> None:
 
 
 def slab_run(w: Workbench) -> None:
-    """Modern run: handleless drawers in two tiers, thick top, a splashback of its own."""
+    """Builds a modern run with handleless drawers in two tiers, a thick top and its own splashback."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.89, 0.93)
     front, top = w.look("lacquer") if w.chance(0.5) else w.look("wood"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -116,7 +113,7 @@ def slab_run(w: Workbench) -> None:
 
 
 def breakfast_bar(w: Workbench) -> None:
-    """Free-standing bar: shelves to the kitchen, panelled front, a raised narrow top for stools in front."""
+    """Builds a free-standing bar with shelves to the kitchen, a panelled front and a raised narrow top for stools."""
     width, depth, height = w.width(1.30, 2.20), w.depth(0.70, 0.85), w.height(0.88, 0.92)
     body, top = w.look("wood"), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -145,7 +142,7 @@ def breakfast_bar(w: Workbench) -> None:
 
 
 def trolley(w: Workbench) -> None:
-    """Island on legs: butcher's block over a drawer, slatted shelf, hooks and a rail."""
+    """Builds an island on legs: a butcher's block over a drawer, a slatted shelf, hooks and a rail."""
     width, depth, height, wood = w.width(1.10, 1.60), w.depth(0.60, 0.75), w.height(0.88, 0.92), w.look("wood")
     frame = w.look("lacquer")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -163,7 +160,7 @@ def trolley(w: Workbench) -> None:
 
 
 def curtained_run(w: Workbench) -> None:
-    """Country kitchen: thick wooden top on masonry piers, cloth curtains instead of doors."""
+    """Builds a country kitchen: a thick wooden top on masonry piers, with cloth curtains instead of doors."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.91)
     wood, pier, cloth = w.look("wood"), w.look("masonry"), w.look("curtain")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -195,7 +192,7 @@ def curtained_run(w: Workbench) -> None:
 
 
 def waterfall(w: Workbench) -> None:
-    """Island of stone slabs: the top turns down at both ends; dark fronts set back between them."""
+    """Builds an island of stone slabs whose top turns down at both ends, with dark fronts set back between them."""
     width, depth, height, stone = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.90, 0.94), w.look("stone")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (height - 0.06, height), stone)

@@ -9,27 +9,23 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.shapes import (
-    Ring,
-    loft,
-    pillow,
-)
+from sim.housegen.furniture.shapes import Ring, loft, pillow
 from sim.housegen.furniture.workbench import Workbench
 
 
 def square_cushion(w: Workbench) -> None:
-    """Throw cushion leaning backwards."""
+    """Builds a throw cushion that leans backwards."""
     side = w.choice((0.40, 0.45, 0.50))
     w.mesh(pillow((side, side, 0.14)), (0.0, 0.0, 0.5 * side), w.look("bright"), tilt=1.25)
 
 
 def lumbar_cushion(w: Workbench) -> None:
-    """Long low cushion."""
+    """Builds a long low cushion."""
     w.mesh(pillow((0.30, w.choice((0.50, 0.55)), 0.14)), (0.0, 0.0, 0.15), w.look("bright"), tilt=1.2)
 
 
 def bolster(w: Workbench) -> None:
-    """A roll."""
+    """Builds a cylindrical cushion."""
     half, r = 0.5 * w.length(0.40, 0.55), w.length(0.08, 0.10)
     w.rod((0.0, -half, r), (0.0, half, r), r, w.look("bright"))
     for side in (-1, 1):
@@ -37,7 +33,7 @@ def bolster(w: Workbench) -> None:
 
 
 def floor_cushion(w: Workbench) -> None:
-    """Large square seat cushion, maybe two on top of each other."""
+    """Builds a large square seat cushion, or two in a stack."""
     side = w.choice((0.55, 0.60, 0.65))
     w.mesh(pillow((side, side, 0.18), 5.0), (0.0, 0.0, 0.09), w.look("bright"))
     if w.chance(0.4):
@@ -45,7 +41,7 @@ def floor_cushion(w: Workbench) -> None:
 
 
 def floor_round(w: Workbench) -> None:
-    """Round meditation cushion."""
+    """Builds a round meditation cushion."""
     r, high = 0.5 * w.length(0.45, 0.60), w.length(0.14, 0.20)
     rings = [
         Ring(0.0, 0.85 * r, 0.85 * r),
@@ -57,20 +53,20 @@ def floor_round(w: Workbench) -> None:
 
 
 def rug(w: Workbench) -> None:
-    """A patterned rug."""
+    """Builds a patterned rug."""
     width, depth = w.width(1.4, 2.4), w.depth(0.9, 1.7)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.look("rug"), solid=False)
 
 
 def round_rug(w: Workbench) -> None:
-    """Round rug with rings."""
+    """Builds a round rug with rings."""
     r = 0.5 * w.width(1.2, 2.0)
     for i, share in enumerate((1.0, 0.86, 0.5)):
         w.cylinder((0.0, 0.0), (0.0, 0.006 + 0.002 * i), share * r, w.new_look("fabric"), solid=False)
 
 
 def round_cushion(w: Workbench) -> None:
-    """Round throw cushion with a button, standing on its edge."""
+    """Builds a round throw cushion with a button, standing on its edge."""
     r = 0.5 * w.choice((0.38, 0.42))
     tilt = 1.25
     w.mesh(
@@ -84,7 +80,7 @@ def round_cushion(w: Workbench) -> None:
 
 
 def banded_cushion(w: Workbench) -> None:
-    """Square throw cushion with a broad band of another cloth."""
+    """Builds a square throw cushion with a broad band of another cloth."""
     side = w.choice((0.42, 0.46, 0.50))
     w.mesh(pillow((side, side, 0.14)), (0.0, 0.0, 0.5 * side), w.look("bright"), tilt=1.25)
     w.mesh(
@@ -97,7 +93,7 @@ def banded_cushion(w: Workbench) -> None:
 
 
 def runner(w: Workbench) -> None:
-    """Long narrow striped rug for halls."""
+    """Builds a long narrow striped rug for halls."""
     width, depth = w.width(1.8, 2.8), w.depth(0.65, 0.85)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.007), w.look("fabric"), solid=False)
     band = w.look("bright")
@@ -107,7 +103,7 @@ def runner(w: Workbench) -> None:
 
 
 def shag(w: Workbench) -> None:
-    """Thick plain rug with a border."""
+    """Builds a thick plain rug with a border."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.0, 0.008), w.new_look("fabric"), solid=False)
     w.box(
@@ -120,7 +116,7 @@ def shag(w: Workbench) -> None:
 
 
 def oriental(w: Workbench) -> None:
-    """Patterned rug with fringes at both ends."""
+    """Builds a patterned rug with fringes at both ends."""
     width, depth = w.width(1.5, 2.4), w.depth(1.0, 1.7)
     w.box(
         (-0.5 * depth, 0.5 * depth), (-0.5 * width + 0.06, 0.5 * width - 0.06), (0.0, 0.009), w.look("rug"), solid=False
@@ -131,7 +127,7 @@ def oriental(w: Workbench) -> None:
 
 
 def knot_cushion(w: Workbench) -> None:
-    """Knot of thick rolls."""
+    """Builds a cushion that is a knot of thick rolls."""
     r, look = 0.06, w.look("bright")
     loop = [
         (0.0, -0.12, 0.06),

@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-)
+from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Workbench
 
 
 def treadmill(w: Workbench) -> None:
-    """Running deck with motor hood, uprights and a console; one steps on from the front (+x)."""
+    """Builds a treadmill with a motor hood, uprights and a console; its user steps on from the front (+x)."""
     length, half, dark, metal = w.depth(1.60, 1.85), 0.5 * w.length(0.74, 0.84), w.look("dark"), w.look("metal")
     x0, x1 = -0.5 * length, 0.5 * length
     w.box((x0 + 0.1, x1), (-half + 0.10, half - 0.10), (0.05, 0.14), w.look("rubber"))
@@ -37,7 +35,7 @@ def treadmill(w: Workbench) -> None:
 
 
 def bench_barbell(w: Workbench) -> None:
-    """Flat bench under a barbell on two stands."""
+    """Builds a flat bench under a barbell on two stands."""
     leather, metal, steel = w.look("leather"), w.look("iron"), w.look("chrome")
     w.mesh(chamfered_box((1.15, 0.28, 0.08), 0.02), (0.1, 0.0, 0.44), leather)
     w.box((-0.35, 0.60), (-0.03, 0.03), (0.35, 0.41), metal)
@@ -56,7 +54,7 @@ def bench_barbell(w: Workbench) -> None:
 
 
 def exercise_bike(w: Workbench) -> None:
-    """Spinning bike: flywheel, saddle, bars, pedals."""
+    """Builds a spinning bike with a flywheel, a saddle, bars and pedals."""
     dark, frame = w.look("dark"), w.look("paint")
     for x in (-0.45, 0.48):
         w.box((x - 0.04, x + 0.04), (-0.25, 0.25), (0.0, 0.06), dark)
@@ -90,7 +88,7 @@ def exercise_bike(w: Workbench) -> None:
 
 
 def dumbbell_rack(w: Workbench) -> None:
-    """Sloped rack with two rows of hexagonal dumbbells."""
+    """Builds a sloped rack with two rows of hexagonal dumbbells."""
     half, metal, rubber = 0.5 * w.width(0.95, 1.25), w.look("iron"), w.look("rubber")
     for side in BOTH_SIDES:
         y = side * (half - 0.03)
@@ -115,7 +113,7 @@ def dumbbell_rack(w: Workbench) -> None:
 
 
 def punching_bag(w: Workbench) -> None:
-    """Bag hanging from a standing frame."""
+    """Builds a bag that hangs from a standing frame."""
     iron, leather, high = w.look("iron"), w.look("leather"), w.length(1.95, 2.15)
     w.box((-0.55, 0.40), (-0.04, 0.04), (0.0, 0.06), iron)
     w.box((-0.55, -0.47), (-0.45, 0.45), (0.0, 0.06), iron)
@@ -129,7 +127,7 @@ def punching_bag(w: Workbench) -> None:
 
 
 def kettlebells(w: Workbench) -> None:
-    """A row of kettlebells on a low rack."""
+    """Builds a row of kettlebells on a low rack."""
     count = w.whole(3, 5)
     rubber, iron = w.look("rubber"), w.look("iron")
     half = 0.5 * 0.24 * count + 0.04
@@ -158,7 +156,7 @@ def kettlebells(w: Workbench) -> None:
 
 
 def mat_and_ball(w: Workbench) -> None:
-    """Yoga mat, a gymnastic ball and two small dumbbells."""
+    """Builds a yoga mat, a gymnastic ball and two small dumbbells."""
     w.box((-0.92, 0.92), (-0.31, 0.31), (0.0, 0.010), w.look("bright"), solid=False)
     r = w.length(0.27, 0.33)
     w.ball((-0.50, 0.31 + 0.05 + r, r), r, w.new_look("bright"))
@@ -169,7 +167,7 @@ def mat_and_ball(w: Workbench) -> None:
 
 
 def multi_gym(w: Workbench) -> None:
-    """Weight tower: stack of plates behind a seat, pull-down bar, cable column."""
+    """Builds a weight tower with a stack of plates behind a seat, a pull-down bar and a cable column."""
     iron, chrome, leather = w.look("iron"), w.look("chrome"), w.look("leather")
     high = w.length(1.95, 2.10)
     for side in BOTH_SIDES:
@@ -193,7 +191,7 @@ def multi_gym(w: Workbench) -> None:
 
 
 def rower(w: Workbench) -> None:
-    """Rowing machine: long rail, sliding seat, fan housing."""
+    """Builds a rowing machine with a long rail, a sliding seat and a fan housing."""
     metal, dark = w.look("metal"), w.look("dark")
     length = w.depth(2.05, 2.30)
     x0, x1 = -0.5 * length, 0.5 * length
@@ -214,7 +212,7 @@ def rower(w: Workbench) -> None:
 
 
 def step_and_roller(w: Workbench) -> None:
-    """Aerobic step, foam roller, medicine ball and two plates leaning."""
+    """Builds an aerobic step, a foam roller, a medicine ball and two leaning plates."""
     dark, bright = w.look("rubber"), w.look("bright")
     w.mesh(chamfered_box((0.36, 0.90, 0.08), 0.02), (0.0, 0.0, 0.14), dark)
     for side in BOTH_SIDES:
@@ -224,7 +222,7 @@ def step_and_roller(w: Workbench) -> None:
 
 
 def pull_up_tower(w: Workbench) -> None:
-    """Pull-up and dip station."""
+    """Builds a pull-up and dip station."""
     iron, dark, high = w.look("iron"), w.look("leather"), w.length(2.0, 2.15)
     for side in BOTH_SIDES:
         y = side * 0.40

@@ -1,6 +1,6 @@
 """Fireplaces and stoves.
 
-Ranges after Neufert, Architects' Data: openings 0.60-1.00 m wide and 0.55-0.80 m high, mantels at 1.05-1.30 m.
+Sizes follow Neufert, Architects' Data: openings 0.60-1.00 m wide and 0.55-0.80 m high, mantels at 1.05-1.30 m.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
 def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: float, look: Look) -> None:
-    """A block from x[0] to x[1] with a dark recess |y| < half between heights z; outer half width, total height."""
+    """Adds a block from x[0] to x[1] with a dark recess |y| < `half` between heights z.
+
+    The block is 2 * `outer` wide and `top` high.
+    """
     char = w.look("char")
     for side in BOTH_SIDES:
         low, high = sorted((side * half, side * outer))
@@ -34,7 +34,7 @@ def _opening(w: Workbench, x: Range, half: float, z: Range, outer: float, top: f
 
 
 def _logs(w: Workbench, x: float, z: float, half: float) -> None:
-    """Logs on a grate, a flame or two."""
+    """Adds logs on a grate and one or two flames."""
     wood = w.look("wood")
     w.rod((x, -0.6 * half, z + 0.05), (x, 0.6 * half, z + 0.05), 0.05, wood)
     w.rod((x - 0.06, -0.5 * half, z + 0.13), (x + 0.05, 0.5 * half, z + 0.13), 0.042, wood)
@@ -44,7 +44,7 @@ def _logs(w: Workbench, x: float, z: float, half: float) -> None:
 
 
 def mantel(w: Workbench) -> None:
-    """Classic surround: pilasters, frieze and shelf round a dark opening on a hearth."""
+    """Builds a classic surround: pilasters, a frieze and a shelf around a dark opening on a hearth."""
     half, high = 0.5 * w.length(0.62, 0.80), w.length(0.62, 0.74)
     outer, top, depth = half + w.length(0.18, 0.26), w.length(1.08, 1.22), w.length(0.30, 0.36)
     look = w.look("lacquer") if w.chance(0.5) else w.look("stone")
@@ -60,7 +60,7 @@ def mantel(w: Workbench) -> None:
 
 
 def stove_iron(w: Workbench) -> None:
-    """Iron stove on legs with a glazed door and a flue pipe to the ceiling."""
+    """Builds an iron stove on legs with a glazed door and a flue pipe to the ceiling."""
     iron, width, depth = w.look("iron"), w.length(0.48, 0.60), w.length(0.40, 0.46)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.22, 0.82), iron)
     w.legs(
@@ -92,7 +92,7 @@ def stove_iron(w: Workbench) -> None:
 
 
 def brick_breast(w: Workbench) -> None:
-    """Brick chimney breast to the ceiling, timber beam over the opening, raised hearth."""
+    """Builds a brick chimney breast to the ceiling with a timber beam over the opening and a raised hearth."""
     half, high = 0.5 * w.length(0.65, 0.85), w.length(0.62, 0.74)
     outer, depth, top = half + w.length(0.25, 0.40), w.length(0.40, 0.50), w.height(2.45, 2.55)
     brick = w.look("masonry")
@@ -109,7 +109,7 @@ def brick_breast(w: Workbench) -> None:
 
 
 def linear(w: Workbench) -> None:
-    """Modern block with a long low slot of fire."""
+    """Builds a modern block with a long low fire slot."""
     outer, depth, top = 0.5 * w.width(1.40, 1.90), w.length(0.30, 0.38), w.length(1.05, 1.30)
     body = w.look("lacquer") if w.chance(0.5) else w.look("stone")
     half, z = 0.82 * outer, (0.32, 0.62)
@@ -127,7 +127,7 @@ def linear(w: Workbench) -> None:
 
 
 def rustic_stone(w: Workbench) -> None:
-    """Stepped stone surround with a thick wooden mantel board on corbels."""
+    """Builds a stepped stone surround with a thick wooden mantel board on corbels."""
     half, high = 0.5 * w.length(0.70, 0.90), w.length(0.65, 0.78)
     outer, depth, stone = half + w.length(0.28, 0.40), w.length(0.38, 0.46), w.look("masonry")
     top = high + 0.42
@@ -144,7 +144,7 @@ def rustic_stone(w: Workbench) -> None:
 
 
 def electric(w: Workbench) -> None:
-    """Free-standing cabinet with a framed dark hearth between shelves."""
+    """Builds a free-standing cabinet with a framed dark hearth between shelves."""
     outer, depth, top = 0.5 * w.width(1.20, 1.50), w.length(0.34, 0.40), w.length(0.85, 1.0)
     wood = parts.wood_look(w)
     half, high = 0.40, 0.62
@@ -167,7 +167,7 @@ def electric(w: Workbench) -> None:
 
 
 def suspended(w: Workbench) -> None:
-    """Conical metal hearth hanging from its flue over a round stone."""
+    """Builds a conical metal hearth that hangs from its flue over a round stone."""
     iron, r, top = w.look("iron"), w.length(0.42, 0.52), w.height(2.35, 2.50)
     w.cylinder((0.0, 0.0), (0.0, 0.05), r + 0.12, w.look("stone"))
     w.mesh(
@@ -213,7 +213,7 @@ def suspended(w: Workbench) -> None:
 
 
 def tiled_stove(w: Workbench) -> None:
-    """Tall tiled stove: stepped tower with a small iron door and a bench round its foot."""
+    """Builds a tall tiled stove: a stepped tower with a small iron door and a bench around its foot."""
     tile, width, depth = w.look("pot"), w.length(0.75, 0.90), w.length(0.60, 0.70)
     half = 0.5 * width
     w.box((0.0, depth + 0.22), (-half - 0.20, half + 0.20), (0.0, 0.42), tile)

@@ -9,15 +9,12 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.shapes import (
-    Ring,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
 def pendant(w: Workbench) -> None:
-    """Shade on a cord."""
+    """Builds a ceiling lamp with a shade on a cord."""
     r, drop = 0.5 * w.length(0.32, 0.50), w.length(0.40, 0.70)
     w.cylinder((0.0, 0.0), (-0.03, 0.0), 0.05, w.look("iron"), solid=False)
     w.rod((0.0, 0.0, -drop), (0.0, 0.0, -0.02), 0.005, w.look("dark"), solid=False)
@@ -35,14 +32,14 @@ def pendant(w: Workbench) -> None:
 
 
 def ceiling_disc(w: Workbench) -> None:
-    """Flat round ceiling lamp."""
+    """Builds a flat round ceiling lamp."""
     r = 0.5 * w.length(0.32, 0.50)
     w.cylinder((0.0, 0.0), (-0.05, 0.0), r, w.look("metal"), solid=False)
     w.ellipsoid((0.0, 0.0, -0.05), (0.92 * r, 0.92 * r, 0.06), w.look("glow"), solid=False)
 
 
 def globe_pendant(w: Workbench) -> None:
-    """Three glass globes at different heights from a bar."""
+    """Builds a ceiling lamp with three glass globes that hang at different heights from a bar."""
     w.box((-0.04, 0.04), (-0.35, 0.35), (-0.03, 0.0), w.look("brass"), solid=False)
     for i in range(3):
         drop, y = w.length(0.25, 0.60), (i - 1) * 0.28
@@ -51,7 +48,7 @@ def globe_pendant(w: Workbench) -> None:
 
 
 def floor_lamp(w: Workbench) -> None:
-    """Disc foot, pole, drum shade."""
+    """Builds a floor lamp with a disc foot, a pole and a drum shade."""
     tall, metal, r = w.length(1.45, 1.70), w.look("metal"), 0.5 * w.length(0.32, 0.44)
     w.cylinder((0.0, 0.0), (0.0, 0.025), 0.15, metal)
     w.cylinder((0.0, 0.0), (0.02, tall - 0.05), 0.012, metal)
@@ -62,7 +59,7 @@ def floor_lamp(w: Workbench) -> None:
 
 
 def tripod_lamp(w: Workbench) -> None:
-    """Floor lamp on a wooden tripod."""
+    """Builds a floor lamp on a wooden tripod."""
     tall, wood, r = w.length(1.40, 1.60), w.look("wood"), 0.5 * w.length(0.40, 0.48)
     for i in range(3):
         a = math.tau * i / 3
@@ -78,7 +75,7 @@ def tripod_lamp(w: Workbench) -> None:
 
 
 def table_lamp(w: Workbench) -> None:
-    """Ceramic body, cone shade."""
+    """Builds a table lamp with a ceramic body and a conical shade."""
     tall, r, body = w.length(0.38, 0.56), 0.5 * w.length(0.22, 0.32), w.look("pot")
     w.mesh(
         loft(
@@ -100,7 +97,7 @@ def table_lamp(w: Workbench) -> None:
 
 
 def mushroom_lamp(w: Workbench) -> None:
-    """Table lamp: cylinder foot under a dome."""
+    """Builds a table lamp with a cylindrical foot under a dome."""
     tall, look = w.length(0.34, 0.46), w.look("shade")
     w.cylinder((0.0, 0.0), (0.0, 0.65 * tall), 0.05, w.look("brass"))
     w.cylinder((0.0, 0.0), (0.0, 0.015), 0.09, w.look("brass"))
@@ -121,7 +118,7 @@ def mushroom_lamp(w: Workbench) -> None:
 
 
 def chandelier(w: Workbench) -> None:
-    """Six candle arms round a hub."""
+    """Builds a chandelier with six candle arms around a hub."""
     metal, glow, drop = w.look("brass"), w.look("glow"), w.length(0.40, 0.60)
     w.cylinder((0.0, 0.0), (-0.03, 0.0), 0.06, metal, solid=False)
     w.rod((0.0, 0.0, -drop), (0.0, 0.0, -0.02), 0.008, metal, solid=False)
@@ -134,7 +131,7 @@ def chandelier(w: Workbench) -> None:
 
 
 def spot_rail(w: Workbench) -> None:
-    """Three spots on a rail."""
+    """Builds a ceiling rail with three spots."""
     metal = w.look("metal")
     w.box((-0.025, 0.025), (-0.40, 0.40), (-0.03, 0.0), metal, solid=False)
     for i in range(3):
@@ -146,7 +143,7 @@ def spot_rail(w: Workbench) -> None:
 
 
 def arc_lamp(w: Workbench) -> None:
-    """Floor lamp: a heavy foot, an arc of tube, a dome over whatever stands before it."""
+    """Builds a floor lamp with a heavy foot and an arc of tube that ends in a dome in front of it."""
     metal, r = w.look("chrome"), w.length(0.14, 0.18)
     w.cylinder((-0.35, 0.0), (0.0, 0.05), 0.16, w.look("stone"))
     arc = [(-0.35, 0.05), (-0.35, 1.00), (-0.24, 1.45), (0.02, 1.72), (0.32, 1.74), (0.52, 1.58)]
@@ -170,7 +167,7 @@ def arc_lamp(w: Workbench) -> None:
 
 
 def reading_lamp(w: Workbench) -> None:
-    """Slim floor lamp with a jointed arm and a cone."""
+    """Builds a slim floor lamp with a jointed arm and a cone."""
     metal, high = w.look("iron"), w.length(1.25, 1.40)
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.13, metal)
     w.rod((0.0, 0.0, 0.015), (0.0, 0.0, high), 0.010, metal)
@@ -185,7 +182,7 @@ def reading_lamp(w: Workbench) -> None:
 
 
 def desk_lamp(w: Workbench) -> None:
-    """Table lamp with two jointed arms and a small cone."""
+    """Builds a table lamp with two jointed arms and a small cone."""
     metal = w.look("metal")
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.08, metal)
     w.rod((0.0, 0.0, 0.015), (-0.10, 0.0, 0.24), 0.008, metal, round_ends=True)
@@ -200,14 +197,14 @@ def desk_lamp(w: Workbench) -> None:
 
 
 def globe_table(w: Workbench) -> None:
-    """Table lamp: a glowing ball on a ring of wood."""
+    """Builds a table lamp: a glowing ball on a ring of wood."""
     r = w.length(0.10, 0.14)
     w.mesh(loft([Ring(0.0, 0.09, 0.09), Ring(0.05, 0.07, 0.07)], 14, hull=True), (0.0, 0.0, 0.0), w.look("wood"))
     w.ball((0.0, 0.0, 0.045 + r), r, w.look("glow"))
 
 
 def sconce(w: Workbench) -> None:
-    """Wall lamp: bowl open above."""
+    """Builds a wall lamp with a bowl that is open at the top."""
     w.mount_height_m = 1.60
     metal = w.look("metal")
     w.box((0.0, 0.02), (-0.05, 0.05), (0.0, 0.20), metal, solid=False)
@@ -224,7 +221,7 @@ def sconce(w: Workbench) -> None:
 
 
 def swing_sconce(w: Workbench) -> None:
-    """Wall lamp: shade on a swinging arm."""
+    """Builds a wall lamp with a shade on a swinging arm."""
     w.mount_height_m = 1.35
     brass = w.look("brass")
     w.rod((0.0, 0.0, 0.12), (0.02, 0.0, 0.12), 0.05, brass, solid=False)
@@ -240,7 +237,7 @@ def swing_sconce(w: Workbench) -> None:
 
 
 def panel_lamp(w: Workbench) -> None:
-    """Square glowing panel on the ceiling."""
+    """Builds a square glowing panel on the ceiling."""
     half = 0.5 * w.length(0.40, 0.60)
     w.box((-half, half), (-half, half), (-0.045, 0.0), w.look("metal"), solid=False)
     w.box((-half + 0.02, half - 0.02), (-half + 0.02, half - 0.02), (-0.055, -0.02), w.look("glow"), solid=False)

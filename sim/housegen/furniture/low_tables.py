@@ -1,6 +1,6 @@
 """Coffee, side, bedside and hall tables.
 
-Ranges after Panero & Zelnik, Human Dimension and Interior Space (coffee tables 0.33-0.48 m high), and usual retail
+Sizes follow Panero & Zelnik, Human Dimension and Interior Space (coffee tables 0.33-0.48 m high), and usual retail
 dimensions (side and bedside tables 0.45-0.65 m high and 0.35-0.55 m wide; consoles 0.75-0.85 m high and 0.30-0.42 m
 deep).
 """
@@ -16,7 +16,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def coffee_shelf(w: Workbench) -> None:
-    """Low rectangular table with a shelf between its legs."""
+    """Builds a low rectangular table with a shelf between its legs."""
     width, depth, height = w.width(0.90, 1.25), w.depth(0.50, 0.65), w.length(0.40, 0.47)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.035, height), wood)
@@ -25,7 +25,7 @@ def coffee_shelf(w: Workbench) -> None:
 
 
 def coffee_drum(w: Workbench) -> None:
-    """A solid drum."""
+    """Builds a coffee table that is a solid drum."""
     radius, height = 0.5 * w.width(0.65, 0.90), w.length(0.33, 0.42)
     parts.round_top(w, radius, (height - 0.02, height), w.look("wood"))
     w.cylinder(
@@ -34,7 +34,7 @@ def coffee_drum(w: Workbench) -> None:
 
 
 def coffee_glass(w: Workbench) -> None:
-    """Glass sheet on a brass frame with a lower rim."""
+    """Builds a coffee table with a glass sheet on a brass frame with a lower rim."""
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.55, 0.70), w.length(0.38, 0.45), w.look("brass")
     x, y = parts.slab(w, depth, width, (height - 0.012, height), w.look("glass"))
     w.legs(x, y, (0.0, height - 0.012), 0.02, metal)
@@ -57,7 +57,7 @@ def coffee_glass(w: Workbench) -> None:
 
 
 def coffee_hairpin(w: Workbench) -> None:
-    """Thick round board on three hairpin legs."""
+    """Builds a coffee table with a thick round board on three hairpin legs."""
     radius, height, iron = 0.5 * w.width(0.70, 0.95), w.length(0.38, 0.45), w.look("iron")
     parts.round_top(w, radius, (height - 0.04, height), w.look("wood"))
     for i in range(3):
@@ -69,7 +69,7 @@ def coffee_hairpin(w: Workbench) -> None:
 
 
 def coffee_blocks(w: Workbench) -> None:
-    """Stone slab on two stone blocks."""
+    """Builds a coffee table with a stone slab on two stone blocks."""
     width, depth, height, stone = w.width(0.95, 1.25), w.depth(0.55, 0.70), w.length(0.32, 0.38), w.look("stone")
     parts.slab(w, depth, width, (height - 0.05, height), stone)
     for side in BOTH_SIDES:
@@ -78,7 +78,7 @@ def coffee_blocks(w: Workbench) -> None:
 
 
 def side_tripod(w: Workbench) -> None:
-    """Small round table on three legs."""
+    """Builds a small round table on three legs."""
     radius, height, wood = 0.5 * w.width(0.38, 0.52), w.length(0.48, 0.60), w.look("wood")
     parts.round_top(w, radius, (height - 0.022, height), w.look("lacquer") if w.chance(0.4) else wood)
     for i in range(3):
@@ -94,7 +94,7 @@ def side_tripod(w: Workbench) -> None:
 
 
 def side_cube(w: Workbench) -> None:
-    """Open cube: top, two sides, a shelf."""
+    """Builds an open cube with a top, two sides and a shelf."""
     width, height, wood = w.width(0.38, 0.50), w.length(0.45, 0.58), w.look("wood")
     depth = w.depth(0.35, 0.45)
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
@@ -105,7 +105,7 @@ def side_cube(w: Workbench) -> None:
 
 
 def bedside_legs(w: Workbench) -> None:
-    """Bedside table: one drawer box on four legs."""
+    """Builds a bedside table: one drawer box on four legs."""
     width, depth, height = w.width(0.40, 0.52), w.depth(0.36, 0.44), w.length(0.48, 0.62)
     wood, legs = w.look("lacquer") if w.chance(0.4) else w.look("wood"), w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.02, height), wood)
@@ -125,7 +125,7 @@ def bedside_legs(w: Workbench) -> None:
 
 
 def bedside_wire(w: Workbench) -> None:
-    """Round tray on a wire basket."""
+    """Builds a bedside table: a round tray on a wire basket."""
     radius, height, iron = 0.5 * w.width(0.40, 0.48), w.length(0.46, 0.56), w.look("iron")
     parts.round_top(w, radius, (height - 0.015, height), w.look("wood"))
     n = 8
@@ -141,7 +141,7 @@ def bedside_wire(w: Workbench) -> None:
 
 
 def console(w: Workbench) -> None:
-    """Narrow hall table, slender legs, one or two drawers."""
+    """Builds a narrow hall table with slender legs and one or two drawers."""
     width, depth, height = w.width(0.90, 1.30), w.depth(0.30, 0.40), w.length(0.76, 0.84)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), wood)
@@ -153,7 +153,7 @@ def console(w: Workbench) -> None:
 
 
 def console_arc(w: Workbench) -> None:
-    """Narrow hall table: stone shelf on two hoops of metal."""
+    """Builds a narrow hall table: a stone shelf on two metal hoops."""
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.30, 0.38), w.length(0.76, 0.82), w.look("brass")
     parts.slab(w, depth, width, (height - 0.03, height), w.look("stone"))
     for side in BOTH_SIDES:

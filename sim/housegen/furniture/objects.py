@@ -9,17 +9,12 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    hoop,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, hoop, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
 def book_stack(w: Workbench) -> None:
-    """Three or four books lying on each other."""
+    """Builds a stack of three or four books."""
     z = 0.0
     for _ in range(w.whole(3, 4)):
         thick, dx, dy = w.length(0.02, 0.04), w.length(0.075, 0.10), w.length(0.10, 0.13)
@@ -28,7 +23,7 @@ def book_stack(w: Workbench) -> None:
 
 
 def vase(w: Workbench) -> None:
-    """Vase with a few flowers."""
+    """Builds a vase with a few flowers."""
     r, high = w.length(0.05, 0.08), w.length(0.16, 0.26)
     w.mesh(
         loft(
@@ -51,14 +46,14 @@ def vase(w: Workbench) -> None:
 
 
 def box_crate(w: Workbench) -> None:
-    """Cardboard box, taped."""
+    """Builds a taped cardboard box."""
     dx, dy, dz = 0.5 * w.length(0.28, 0.42), 0.5 * w.length(0.34, 0.55), w.length(0.24, 0.38)
     w.box((-dx, dx), (-dy, dy), (0.0, dz), w.look("cardboard"))
     w.box((-dx - 0.001, dx + 0.001), (-0.025, 0.025), (dz - 0.08, dz + 0.002), w.look("paper"), solid=False)
 
 
 def fruit_bowl(w: Workbench) -> None:
-    """Shallow bowl of fruit."""
+    """Builds a shallow bowl of fruit."""
     r = w.length(0.12, 0.16)
     w.mesh(
         loft(
@@ -80,7 +75,7 @@ def fruit_bowl(w: Workbench) -> None:
 
 
 def kettle(w: Workbench) -> None:
-    """Kettle on its base."""
+    """Builds a kettle on its base."""
     look, dark = w.look("steel") if w.chance(0.5) else w.look("appliance"), w.look("dark")
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.085, dark)
     w.mesh(
@@ -99,7 +94,7 @@ def kettle(w: Workbench) -> None:
 
 
 def clock(w: Workbench) -> None:
-    """Mantel clock."""
+    """Builds a mantel clock."""
     wood = w.look("wood")
     w.box((-0.05, 0.05), (-0.12, 0.12), (0.0, 0.12), wood)
     w.rod((-0.045, 0.0, 0.12), (0.045, 0.0, 0.12), 0.095, wood)
@@ -109,7 +104,7 @@ def clock(w: Workbench) -> None:
 
 
 def photo_stand(w: Workbench) -> None:
-    """Framed photograph on a stand beside a candle."""
+    """Builds a framed photograph on a stand beside a candle."""
     w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
     w.box((0.004, 0.012), (-0.07, 0.07), (0.03, 0.205), w.look("paint"), tilt=-0.22, solid=False)
     w.bar((-0.10, 0.0, 0.0), (-0.015, 0.0, 0.15), 0.03, 0.008, w.look("wood"))
@@ -117,7 +112,7 @@ def photo_stand(w: Workbench) -> None:
 
 
 def basket(w: Workbench) -> None:
-    """Wicker basket with a blanket or toys."""
+    """Builds a wicker basket with a blanket or toys."""
     r, high = w.length(0.17, 0.24), w.length(0.24, 0.38)
     w.cylinder((0.0, 0.0), (0.0, high), r, w.look("wicker"))
     w.mesh(hoop(r + 0.010, 0.03, 0.03), (0.0, 0.0, high - 0.005), w.look("wicker"), solid=False)
@@ -133,7 +128,7 @@ def basket(w: Workbench) -> None:
 
 
 def place_setting(w: Workbench) -> None:
-    """Plate, bowl, cup."""
+    """Builds a plate, a bowl and a cup."""
     white = w.look("ceramic")
     w.mesh(
         loft([Ring(0.0, 0.07, 0.07), Ring(0.02, 0.13, 0.13), Ring(0.02, 0.12, 0.12), Ring(0.006, 0.06, 0.06)], 16),
@@ -153,7 +148,7 @@ def place_setting(w: Workbench) -> None:
 
 
 def bottles(w: Workbench) -> None:
-    """Two bottles and a jar on a tray."""
+    """Builds two bottles and a jar on a tray."""
     w.box((-0.10, 0.10), (-0.17, 0.17), (0.0, 0.015), w.look("wood"))
     glass = w.new_look("paint")
     for y, high in ((-0.10, 0.26), (0.0, 0.30)):
@@ -177,7 +172,7 @@ def bottles(w: Workbench) -> None:
 
 
 def waste_bin(w: Workbench) -> None:
-    """Pedal bin."""
+    """Builds a pedal bin."""
     r, high, look = w.length(0.12, 0.16), w.length(0.32, 0.60), w.look("appliance")
     w.cylinder((0.0, 0.0), (0.02, high - 0.05), r, look)
     w.cylinder((0.0, 0.0), (0.0, 0.03), r + 0.005, w.look("dark"))
@@ -186,7 +181,7 @@ def waste_bin(w: Workbench) -> None:
 
 
 def suitcase(w: Workbench) -> None:
-    """Wheeled suitcase with ribs and a drawn-out handle."""
+    """Builds a wheeled suitcase with ribs and a drawn-out handle."""
     high, look, dark = w.length(0.55, 0.68), w.look("bright"), w.look("dark")
     w.mesh(chamfered_box((0.25, 0.42, high), 0.04), (0.0, 0.0, 0.05 + 0.5 * high), look)
     for i in range(4):

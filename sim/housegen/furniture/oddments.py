@@ -1,4 +1,4 @@
-"""Furniture of no other category: pianos and room dividers.
+"""Furniture that belongs to no other category: pianos and room dividers.
 
 Usual retail dimensions: pianos 1.10-1.28 m high and 1.42-1.52 m wide, screens 1.60-1.80 m high.
 """
@@ -9,14 +9,12 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-)
+from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Workbench
 
 
 def digital_piano(w: Workbench) -> None:
-    """Keyboard on crossed legs with a music rest and a bench cushion's height of air below."""
+    """Builds a keyboard on crossed legs with a music rest."""
     half, dark, metal = 0.5 * w.length(1.20, 1.35), w.look("dark"), w.look("metal")
     w.mesh(chamfered_box((0.32, 2 * half, 0.12), 0.02), (0.0, 0.0, 0.74), dark)
     w.box((0.0, 0.145), (-half + 0.06, half - 0.06), (0.795, 0.806), w.look("ceramic"), solid=False)
@@ -31,7 +29,7 @@ def digital_piano(w: Workbench) -> None:
 
 
 def upright_piano(w: Workbench) -> None:
-    """Upright piano with keys, music desk and pedals."""
+    """Builds an upright piano with keys, a music desk and pedals."""
     high, half, look = (
         w.length(1.10, 1.28),
         0.5 * w.length(1.42, 1.52),
@@ -53,7 +51,7 @@ def upright_piano(w: Workbench) -> None:
 
 
 def folding_screen(w: Workbench) -> None:
-    """Room divider: three or four panels in zigzag."""
+    """Builds a room divider of three or four panels in zigzag."""
     panels, each, high = w.whole(3, 4), w.length(0.42, 0.50), w.length(1.65, 1.80)
     wood, cloth = w.look("wood"), w.look("curtain")
     fold = 0.35
@@ -88,7 +86,7 @@ def folding_screen(w: Workbench) -> None:
 
 
 def shoji_screen(w: Workbench) -> None:
-    """Room divider: four upright lattice panels of wood and paper in zigzag."""
+    """Builds a room divider of four upright lattice panels of wood and paper in zigzag."""
     panels, each, high, fold = 4, w.length(0.40, 0.46), w.length(1.60, 1.75), 0.30
     wood, paper = w.look("wood"), w.look("paper")
     run = each * math.cos(fold)

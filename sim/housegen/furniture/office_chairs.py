@@ -1,6 +1,6 @@
 """Office chairs on castors.
 
-Ranges after EN 1335 (seat 0.40-0.51 m high, base 0.60-0.70 m across) and Panero & Zelnik, Human Dimension and
+Sizes follow EN 1335 (seat 0.40-0.51 m high, base 0.60-0.70 m across) and Panero & Zelnik, Human Dimension and
 Interior Space.
 """
 
@@ -12,17 +12,14 @@ import math
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-    strip,
-)
+from sim.housegen.furniture.shapes import chamfered_box, strip
 from sim.housegen.furniture.workbench import Workbench
 
 OFFICE_KG = 12.0
 
 
 def _star_base(w: Workbench, radius: float, look: Look, seat: float) -> None:
-    """Five feet on casters under a gas spring."""
+    """Adds five feet on castors under a gas spring."""
     dark = w.look("rubber")
     for i in range(5):
         angle = math.tau * i / 5 + 0.3
@@ -34,7 +31,7 @@ def _star_base(w: Workbench, radius: float, look: Look, seat: float) -> None:
 
 
 def task_chair(w: Workbench) -> None:
-    """Office chair on a five-star base: padded seat, thin back on a stalk, maybe armrests."""
+    """Builds an office chair on a five-star base with a padded seat, a thin back on a stalk and optional armrests."""
     w.mass_kg = OFFICE_KG
     seat, half, height = w.length(0.44, 0.50), 0.5 * w.length(0.46, 0.50), w.length(0.86, 1.02)
     cloth, dark = w.look("fabric"), w.look("dark")
@@ -54,7 +51,7 @@ def task_chair(w: Workbench) -> None:
 
 
 def conference_chair(w: Workbench) -> None:
-    """Ribbed sling between polished side frames on a four-foot swivel base with casters."""
+    """Builds a chair with a ribbed sling between polished side frames on a four-foot swivel base with castors."""
     w.mass_kg = OFFICE_KG
     seat, half, height = w.length(0.43, 0.48), 0.5 * w.length(0.46, 0.50), w.length(0.80, 0.88)
     chrome, cover = w.look("chrome"), w.look("leather")
@@ -78,7 +75,7 @@ def conference_chair(w: Workbench) -> None:
 
 
 def executive(w: Workbench) -> None:
-    """High padded leather back with headrest and closed arms on a five-star base."""
+    """Builds a chair with a high padded leather back, a headrest and closed arms on a five-star base."""
     w.mass_kg = OFFICE_KG + 6
     seat, half, height = w.length(0.46, 0.51), 0.5 * w.length(0.50, 0.56), w.length(1.08, 1.20)
     leather, dark = w.look("leather"), w.look("dark")

@@ -1,6 +1,6 @@
 """Pictures.
 
-Usual retail dimensions: 0.30-1.40 m wide, hung with their middle at 1.45-1.60 m.
+Usual retail dimensions: 0.30-1.40 m wide, the middle hangs at 1.45-1.60 m.
 """
 
 from __future__ import annotations
@@ -8,14 +8,12 @@ from __future__ import annotations
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    named_mesh,
-)
+from sim.housegen.furniture.shapes import named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
 
 def frame(w: Workbench, width: float, height: float, border: float, thick: float, look: Look) -> None:
-    """Four mouldings round a rectangle that starts at z = 0 on the wall."""
+    """Adds four mouldings around a rectangle whose lower edge is at z = 0 on the wall."""
     y = 0.5 * width
     w.box((0.0, thick), (-y, y), (0.0, border), look)
     w.box((0.0, thick), (-y, y), (height - border, height), look)
@@ -25,7 +23,7 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
 
 
 def framed_abstract(w: Workbench) -> None:
-    """Framed sheet with mat and three to five coloured shapes."""
+    """Builds a framed sheet with a mat and three to five coloured shapes."""
     width, height = w.width(0.40, 1.00), w.height(0.40, 0.90)
     w.mount_height_m = 1.52 - 0.5 * height
     border = w.length(0.02, 0.045)
@@ -50,7 +48,7 @@ def framed_abstract(w: Workbench) -> None:
 
 
 def canvas_landscape(w: Workbench) -> None:
-    """Unframed canvas: sky, sun, bands of hills."""
+    """Builds an unframed canvas with a sky, a sun and bands of hills."""
     width, height = w.width(0.60, 1.20), w.height(0.45, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
     w.box((0.0, 0.032), (-0.5 * width, 0.5 * width), (0.0, height), w.new_look("paint"))
@@ -69,7 +67,7 @@ def canvas_landscape(w: Workbench) -> None:
 
 
 def triptych(w: Workbench) -> None:
-    """Three unframed canvases side by side that share one composition of bands."""
+    """Builds three unframed canvases side by side that share one composition of bands."""
     width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
     each, gap = (width - 0.08) / 3, 0.04
@@ -90,7 +88,7 @@ def triptych(w: Workbench) -> None:
 
 
 def portrait(w: Workbench) -> None:
-    """Portrait: head and shoulders in a broad gilt frame."""
+    """Builds a portrait with head and shoulders in a broad gilt frame."""
     width, height = w.width(0.40, 0.65), w.height(0.55, 0.85)
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.065
@@ -109,7 +107,7 @@ def portrait(w: Workbench) -> None:
 
 
 def photo_group(w: Workbench) -> None:
-    """Four to six small frames hung as one group."""
+    """Builds a group of four to six small frames."""
     columns, rows = w.whole(2, 3), 2
     width, height = w.width(0.70, 1.10), w.height(0.60, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
@@ -131,7 +129,7 @@ def photo_group(w: Workbench) -> None:
 
 
 def still_life(w: Workbench) -> None:
-    """Framed still life: a table's edge, a vase, fruit."""
+    """Builds a framed still life with the edge of a table, a vase and fruit."""
     width, height = w.width(0.50, 0.90), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
     border = 0.04
@@ -164,7 +162,7 @@ def still_life(w: Workbench) -> None:
 
 
 def scroll(w: Workbench) -> None:
-    """Hanging scroll: cloth between two rods with a sun over mountains."""
+    """Builds a hanging scroll: cloth between two rods with a sun over mountains."""
     width, height = w.width(0.40, 0.70), w.height(0.90, 1.30)
     w.mount_height_m = 1.45 - 0.5 * height
     wood, y = w.look("wood"), 0.5 * width
@@ -192,7 +190,7 @@ def scroll(w: Workbench) -> None:
 
 
 def tondo(w: Workbench) -> None:
-    """Round picture of nested circles in a thick ring."""
+    """Builds a round picture of nested circles in a thick ring."""
     r = 0.5 * w.width(0.50, 0.90)
     w.mount_height_m = 1.52 - r
     w.rod((0.0, 0.0, r), (0.030, 0.0, r), r, w.look("wood"))

@@ -8,12 +8,7 @@ from __future__ import annotations
 import math
 
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.shapes import (
-    Leaf,
-    Ring,
-    foliage,
-    loft,
-)
+from sim.housegen.furniture.shapes import Leaf, Ring, foliage, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -37,7 +32,7 @@ def _pot(w: Workbench, r: float, high: float) -> None:
 
 
 def broadleaf(w: Workbench) -> None:
-    """Big arching leaves out of a pot."""
+    """Builds a plant with big arching leaves in a pot."""
     r, high, tall = w.length(0.14, 0.20), w.length(0.22, 0.32), w.length(0.45, 0.90)
     _pot(w, r, high)
     leaves = []
@@ -57,7 +52,7 @@ def broadleaf(w: Workbench) -> None:
 
 
 def tree(w: Workbench) -> None:
-    """Small tree: bare stem, round crown."""
+    """Builds a small tree with a bare stem and a round crown."""
     r, high, tall = w.length(0.15, 0.20), w.length(0.26, 0.34), w.length(1.20, 1.65)
     _pot(w, r, high)
     crown = w.length(0.24, 0.32)
@@ -70,15 +65,12 @@ def tree(w: Workbench) -> None:
         (0.0, 0.02, 0.16, 0.6),
     ):
         w.ellipsoid(
-            (dx, dy, tall - 0.8 * crown + dz),
-            (s * crown, s * crown, 0.8 * s * crown),
-            w.look("hedge"),
-            solid=dz == 0.0,
+            (dx, dy, tall - 0.8 * crown + dz), (s * crown, s * crown, 0.8 * s * crown), w.look("hedge"), solid=dz == 0.0
         )
 
 
 def snake_plant(w: Workbench) -> None:
-    """Upright sword leaves in a cube pot."""
+    """Builds a plant with upright sword leaves in a cube pot."""
     half, high, tall = 0.5 * w.length(0.24, 0.34), w.length(0.22, 0.30), w.length(0.45, 0.80)
     w.box((-half, half), (-half, half), (0.0, high), w.look("pot"))
     w.box(
@@ -100,7 +92,7 @@ def snake_plant(w: Workbench) -> None:
 
 
 def palm(w: Workbench) -> None:
-    """Palm: several thin stems, each with a fan of narrow drooping leaves."""
+    """Builds a palm with several thin stems, each with a fan of narrow drooping leaves."""
     r, high, tall = w.length(0.14, 0.18), w.length(0.26, 0.34), w.length(1.10, 1.60)
     _pot(w, r, high)
     green, bark = w.look("foliage"), w.look("wood")
@@ -117,7 +109,7 @@ def palm(w: Workbench) -> None:
 
 
 def rubber_tree(w: Workbench) -> None:
-    """One stem with big oval leaves at all heights."""
+    """Builds a plant with one stem and big oval leaves at all heights."""
     r, high, tall = w.length(0.14, 0.18), w.length(0.24, 0.32), w.length(0.90, 1.40)
     _pot(w, r, high)
     w.rod((0.0, 0.0, high - 0.01), (0.0, 0.0, tall - 0.10), 0.014, w.look("wood"))
@@ -131,7 +123,7 @@ def rubber_tree(w: Workbench) -> None:
 
 
 def topiary(w: Workbench) -> None:
-    """Clipped shrub of two balls in a footed urn."""
+    """Builds a clipped shrub of two balls in a footed urn."""
     r, ball = w.length(0.15, 0.19), w.length(0.18, 0.24)
     look = w.look("pot")
     w.mesh(
@@ -156,7 +148,7 @@ def topiary(w: Workbench) -> None:
 
 
 def table_fern(w: Workbench) -> None:
-    """Small pot overflowing with arching leaves."""
+    """Builds a small pot full of arching leaves."""
     r, high = w.length(0.06, 0.09), w.length(0.08, 0.12)
     _pot(w, r, high)
     leaves = []
@@ -174,7 +166,7 @@ def table_fern(w: Workbench) -> None:
 
 
 def flower_pot(w: Workbench) -> None:
-    """Small flowering plant."""
+    """Builds a small flowering plant."""
     r, high = w.length(0.06, 0.08), w.length(0.09, 0.12)
     _pot(w, r, high)
     leaves = [
@@ -191,7 +183,7 @@ def flower_pot(w: Workbench) -> None:
 
 
 def cactus(w: Workbench) -> None:
-    """Column cactus with arms."""
+    """Builds a column cactus with arms."""
     r, high, tall = w.length(0.13, 0.17), w.length(0.20, 0.28), w.length(0.60, 1.10)
     w.cylinder((0.0, 0.0), (0.0, high), r, w.look("pot"))
     w.cylinder((0.0, 0.0), (high, high + 0.004), 0.9 * r, w.look("soil"), solid=False)
@@ -205,7 +197,7 @@ def cactus(w: Workbench) -> None:
 
 
 def monstera(w: Workbench) -> None:
-    """Round broad leaves on long stalks that spread from the pot."""
+    """Builds a plant with round broad leaves on long stalks that spread from the pot."""
     r, high, tall = w.length(0.15, 0.20), w.length(0.22, 0.30), w.length(0.60, 0.95)
     _pot(w, r, high)
     green = w.look("foliage")
@@ -219,7 +211,7 @@ def monstera(w: Workbench) -> None:
 
 
 def bonsai(w: Workbench) -> None:
-    """Crooked little tree in a flat tray."""
+    """Builds a small crooked tree in a flat tray."""
     w.box((-0.07, 0.07), (-0.11, 0.11), (0.0, 0.045), w.look("pot"))
     w.box((-0.06, 0.06), (-0.10, 0.10), (0.045, 0.049), w.look("soil"), solid=False)
     bark, green = w.look("wood"), w.look("hedge")

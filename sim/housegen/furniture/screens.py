@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-)
+from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
@@ -25,7 +23,7 @@ def _panel(w: Workbench, x: float, width: float, z: Range) -> None:
 
 
 def tv_stand(w: Workbench) -> None:
-    """Television on two feet, to stand on a bench."""
+    """Builds a television on two feet, for a bench."""
     width = w.width(0.80, 1.40)
     _panel(w, 0.0, width, (0.07, 0.07 + 0.575 * width))
     for side in BOTH_SIDES:
@@ -35,7 +33,7 @@ def tv_stand(w: Workbench) -> None:
 
 
 def tv_wall(w: Workbench) -> None:
-    """Television on the wall."""
+    """Builds a television on the wall."""
     width = w.width(0.90, 1.45)
     w.mount_height_m = 0.95
     _panel(w, 0.065, width, (0.0, 0.575 * width))
@@ -43,7 +41,7 @@ def tv_wall(w: Workbench) -> None:
 
 
 def monitor(w: Workbench) -> None:
-    """Computer monitor with keyboard."""
+    """Builds a computer monitor with a keyboard."""
     width, dark = w.length(0.52, 0.62), w.look("dark")
     _panel(w, 0.0, width, (0.11, 0.11 + 0.58 * width))
     w.box((-0.05, -0.02), (-0.03, 0.03), (0.01, 0.30), dark)
@@ -52,7 +50,7 @@ def monitor(w: Workbench) -> None:
 
 
 def tv_easel(w: Workbench) -> None:
-    """Screen on a wooden tripod."""
+    """Builds a television on a wooden tripod."""
     width, wood = w.width(0.95, 1.25), w.look("wood")
     z0 = w.length(0.62, 0.72)
     _panel(w, 0.0, width, (z0, z0 + 0.575 * width))
@@ -63,7 +61,7 @@ def tv_easel(w: Workbench) -> None:
 
 
 def crt(w: Workbench) -> None:
-    """Old television: a wooden box with a bulging screen, knobs and rabbit ears."""
+    """Builds an old television: a wooden box with a bulging screen, knobs and a V-shaped antenna."""
     width = w.length(0.55, 0.65)
     height, depth, wood = 0.72 * width, 0.62 * width, w.look("wood")
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (0.02, height), wood)
@@ -87,7 +85,7 @@ def crt(w: Workbench) -> None:
 
 
 def tv_arm(w: Workbench) -> None:
-    """Screen tilted on a wall arm."""
+    """Builds a television tilted on a wall arm."""
     width, iron = w.width(0.80, 1.15), w.look("iron")
     w.mount_height_m = 1.0
     h = 0.575 * width
@@ -105,7 +103,7 @@ def tv_arm(w: Workbench) -> None:
 
 
 def tv_pole(w: Workbench) -> None:
-    """Screen on a floor stand: two poles from a glass foot, a shelf with a box between them."""
+    """Builds a television on a floor stand: two poles on a glass foot, and a shelf with a box between them."""
     width, metal = w.width(0.95, 1.30), w.look("metal")
     high = 0.575 * width
     z0 = w.length(0.55, 0.70)
@@ -119,7 +117,7 @@ def tv_pole(w: Workbench) -> None:
 
 
 def laptop(w: Workbench) -> None:
-    """Open laptop, with a mouse."""
+    """Builds an open laptop with a mouse."""
     metal, half = w.look("metal"), 0.5 * w.length(0.32, 0.38)
     w.box((-0.11, 0.12), (-half, half), (0.0, 0.018), metal)
     w.box((-0.08, 0.03), (-half + 0.03, half - 0.03), (0.016, 0.020), w.look("dark"), solid=False)
@@ -129,7 +127,7 @@ def laptop(w: Workbench) -> None:
 
 
 def soundbar_tv(w: Workbench) -> None:
-    """Television on a central foot with a sound bar before it."""
+    """Builds a television on a central foot with a sound bar in front of it."""
     width, dark = w.width(0.90, 1.35), w.look("dark")
     _panel(w, 0.0, width, (0.11, 0.11 + 0.575 * width))
     w.box((-0.13, 0.11), (-0.22, 0.22), (0.0, 0.015), dark)
@@ -138,7 +136,7 @@ def soundbar_tv(w: Workbench) -> None:
 
 
 def dual_monitor(w: Workbench) -> None:
-    """Two screens in a shallow V on one arm, keyboard before them."""
+    """Builds two screens in a shallow V on one arm, with a keyboard in front of them."""
     width, dark = w.length(0.48, 0.54), w.look("dark")
     high = 0.58 * width
     w.box((-0.12, 0.0), (-0.10, 0.10), (0.0, 0.02), dark)

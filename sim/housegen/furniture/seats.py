@@ -1,6 +1,6 @@
-"""Seating that is neither chair nor sofa nor stool: benches, ottomans, poufs, bean bags.
+"""Seating other than chairs, sofas and stools: benches, ottomans, poufs, bean bags.
 
-Ranges after Panero & Zelnik, Human Dimension and Interior Space (benches 0.42-0.47 m high, 0.35-0.45 m deep,
+Sizes follow Panero & Zelnik, Human Dimension and Interior Space (benches 0.42-0.47 m high, 0.35-0.45 m deep,
 0.90-1.50 m wide) and usual retail dimensions of poufs (0.40-0.60 m across).
 """
 
@@ -9,16 +9,12 @@ from __future__ import annotations
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
 def bench_wood(w: Workbench) -> None:
-    """Wooden hall bench with a thin pad."""
+    """Builds a wooden hall bench with a thin pad."""
     width, depth, seat, wood = w.width(0.90, 1.40), w.depth(0.34, 0.42), w.length(0.42, 0.46), w.look("wood")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.box(x, y, (seat - 0.04, seat), wood)
@@ -32,7 +28,7 @@ def bench_wood(w: Workbench) -> None:
 
 
 def ottoman(w: Workbench) -> None:
-    """Upholstered block with a lid seam on short legs."""
+    """Builds an upholstered block with a lid seam on short legs."""
     width, depth, height, cloth = w.width(0.55, 1.20), w.depth(0.45, 0.60), w.length(0.40, 0.46), w.look("fabric")
     w.box(
         (-0.5 * depth + 0.01, 0.5 * depth - 0.01),
@@ -52,7 +48,7 @@ def ottoman(w: Workbench) -> None:
 
 
 def pouf(w: Workbench) -> None:
-    """Round knitted pouf."""
+    """Builds a round knitted pouf."""
     w.mass_kg = 4.0
     r, height = 0.5 * w.length(0.45, 0.60), w.length(0.34, 0.42)
     w.mesh(
@@ -73,7 +69,7 @@ def pouf(w: Workbench) -> None:
 
 
 def storage_bench(w: Workbench) -> None:
-    """Hall bench: open cubbies with shoes below, cushion on top."""
+    """Builds a hall bench with open cubbies with shoes below and a cushion on top."""
     width, depth, seat = w.width(0.90, 1.30), w.depth(0.36, 0.42), w.length(0.44, 0.48)
     look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -92,7 +88,7 @@ def storage_bench(w: Workbench) -> None:
 
 
 def beanbag(w: Workbench) -> None:
-    """Bean bag: slumped, with a raised back."""
+    """Builds a slumped bean bag with a raised back."""
     w.mass_kg = 4.0
     r, cloth = 0.5 * w.length(0.72, 0.90), w.look("bright")
     rings = [
@@ -107,7 +103,7 @@ def beanbag(w: Workbench) -> None:
 
 
 def tufted_bench(w: Workbench) -> None:
-    """Upholstered bed bench on crossed metal legs."""
+    """Builds an upholstered bed bench on crossed metal legs."""
     width, depth, seat = w.width(0.95, 1.35), w.depth(0.40, 0.48), w.length(0.44, 0.48)
     metal, cloth = w.look("brass"), w.look("fabric")
     count = max(2, round(width / 0.35))
@@ -132,7 +128,7 @@ def tufted_bench(w: Workbench) -> None:
 
 
 def settle(w: Workbench) -> None:
-    """Wooden hall bench with a panelled back and arms."""
+    """Builds a wooden hall bench with a panelled back and arms."""
     width, depth, high, seat, wood = (
         w.width(1.00, 1.40),
         w.depth(0.44, 0.52),
@@ -162,7 +158,7 @@ def settle(w: Workbench) -> None:
 
 
 def slab_bench(w: Workbench) -> None:
-    """Bench of stone or plank on two blocks."""
+    """Builds a bench of stone or plank on two blocks."""
     width, depth, seat = w.width(0.95, 1.40), w.depth(0.36, 0.42), w.length(0.42, 0.46)
     w.box((-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), (seat - 0.07, seat), w.look("wood"))
     for side in BOTH_SIDES:

@@ -1,7 +1,7 @@
 """Small procedural meshes: chamfered boxes, lofts, bent strips, foliage; each under 100 vertices.
 
 Vertices are rounded to 0.1 mm, so that the same parameters give the same mesh, the same name and short XML.
-MuJoCo collides a mesh by its convex hull; meshes without faces are drawn as their hull too.
+MuJoCo collides a mesh by its convex hull; meshes without faces are also rendered as their hull.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from sim.housegen.furniture.item import MeshShape
 
 MAX_VERTICES = 100
-"""What the XML budget of a house allows one mesh."""
+"""Limit for one mesh; it keeps the XML of a house small."""
 
 
 @dataclass(frozen=True)
 class Ring:
-    """A horizontal cross-section of a loft: a superellipse |x/rx|^p + |y/ry|^p = 1 at height z."""
+    """A horizontal cross-section of a loft that is a superellipse |x/rx|^p + |y/ry|^p = 1 at height z."""
 
     z_m: float
     rx_m: float
@@ -35,7 +35,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Leaf:
-    """A pointed leaf from base to tip, `width_m` wide, its middle lifted by `arch_m`."""
+    """A pointed leaf from base to tip, `width_m` wide, whose middle is raised by `arch_m`."""
 
     base_m: tuple[float, float, float]
     tip_m: tuple[float, float, float]
@@ -44,7 +44,7 @@ class Leaf:
 
 
 def named_mesh(kind: str, vertices_m: ArrayLike, faces: ArrayLike = ()) -> MeshShape:
-    """A mesh named after its content.
+    """Returns a mesh whose name contains a hash of its content.
 
     Raises:
         ValueError: more than `MAX_VERTICES` vertices.
@@ -58,7 +58,7 @@ def named_mesh(kind: str, vertices_m: ArrayLike, faces: ArrayLike = ()) -> MeshS
 
 
 def chamfered_box(size_m: tuple[float, float, float], chamfer_m: float) -> MeshShape:
-    """A box of full size `size_m` about the origin with its edges cut off by `chamfer_m`."""
+    """Returns a box of full size `size_m` about the origin with edges cut off by `chamfer_m`."""
     half = 0.5 * np.asarray(size_m)
     cut = np.minimum(chamfer_m, 0.98 * half)
     signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -69,7 +69,7 @@ def chamfered_box(size_m: tuple[float, float, float], chamfer_m: float) -> MeshS
 def frustum(
     bottom_m: tuple[float, float], top_m: tuple[float, float], height_m: float, lean_m: tuple[float, float] = (0, 0)
 ) -> MeshShape:
-    """A four-sided tapered block from z = 0 to `height_m`; `lean_m` shifts its top in x and y."""
+    """Returns a four-sided tapered block from z = 0 to `height_m`; `lean_m` shifts its top in x and y."""
     vertices = [
         (sx * 0.5 * size[0] + shift[0], sy * 0.5 * size[1] + shift[1], z)
         for size, shift, z in ((bottom_m, (0.0, 0.0), 0.0), (top_m, lean_m, height_m))
@@ -80,9 +80,9 @@ def frustum(
 
 
 def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> MeshShape:
-    """A skin over a stack of rings, closed at both ends; rings may turn back down to make a bowl.
+    """Returns a surface over a stack of rings, closed at both ends; rings may go down again to form a bowl.
 
-    With `hull` the faces are left to the convex hull, which halves the XML of a convex loft.
+    With `hull`, the mesh has no faces and MuJoCo uses the convex hull, which halves the XML of a convex loft.
     """
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)  # a corner of a rounded square is a vertex
     vertices = []
@@ -105,7 +105,7 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> Me
 
 
 def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -> MeshShape:
-    """A flat band about the z axis, its middle at z = 0, `radius_m` outside."""
+    """Returns a flat band about the z axis with outer radius `radius_m` and its middle at z = 0."""
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)
     inner = radius_m - thick_m
     vertices = np.vstack(
@@ -130,7 +130,7 @@ def hoop(radius_m: float, thick_m: float, height_m: float, segments: int = 20) -
 def arc_wall(
     radius_m: float, thick_m: float, base_m: float, angles_rad: Sequence[float], tops_m: Sequence[float]
 ) -> MeshShape:
-    """An upright curved wall about the z axis, from `base_m` up to a top for each angle; angles rise."""
+    """Returns an upright curved wall about the z axis, from `base_m` to a top per angle; angles must increase."""
     n = len(angles_rad)
     cos, sin = np.cos(angles_rad), np.sin(angles_rad)
     outer, inner, tops = radius_m, radius_m - thick_m, np.asarray(tops_m)
@@ -149,14 +149,14 @@ def arc_wall(
 
 
 def pillow(size_m: tuple[float, float, float], power: float = 4.5) -> MeshShape:
-    """A stuffed cushion of full size `size_m` about the origin, thick in the middle and thin at its seam."""
+    """Returns a cushion of full size `size_m` about the origin, thick in the middle and thin at the seam."""
     dx, dy, dz = (0.5 * side for side in size_m)
     levels = ((-1.0, 0.50), (-0.62, 0.82), (0.0, 1.0), (0.62, 0.82), (1.0, 0.50))
     return loft([Ring(z * dz, s * dx, s * dy, power=power) for z, s in levels], 16, hull=True)
 
 
 def strip(path_m: Sequence[tuple[float, float]], thickness_m: float, width_m: float) -> MeshShape:
-    """A sheet bent along a path in the (x, z) plane, `thickness_m` to the left of it, `width_m` along y about 0."""
+    """Returns a sheet bent along a path in the (x, z) plane: `thickness_m` to its left, `width_m` along y about 0."""
     path = np.asarray(path_m, dtype=np.float64)
     along = np.gradient(path, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -180,7 +180,7 @@ def strip(path_m: Sequence[tuple[float, float]], thickness_m: float, width_m: fl
 
 
 def drape(width_m: float, height_m: float, depth_m: float, folds: int, *, gather: float = 1.0) -> MeshShape:
-    """Hanging cloth from z = 0 to `height_m`, its folds running along y; `gather` < 1 narrows its lower edge."""
+    """Returns a hanging cloth from z = 0 to `height_m` with folds along y; `gather` < 1 narrows its lower edge."""
     n = 2 * folds + 1
     y = np.linspace(-0.5, 0.5, n) * width_m
     x = np.where(np.arange(n) % 2 == 0, 0.0, 0.6 * depth_m)
@@ -202,7 +202,7 @@ def drape(width_m: float, height_m: float, depth_m: float, folds: int, *, gather
 
 
 def foliage(leaves: Iterable[Leaf]) -> MeshShape:
-    """Many leaves in one mesh, six vertices each, each a thin closed body so that it shows from both sides."""
+    """Returns many leaves in one mesh. A leaf has six vertices and is a thin closed body, visible from both sides."""
     vertices: list[NDArray[np.float64]] = []
     faces: list[tuple[int, int, int]] = []
     for leaf in leaves:

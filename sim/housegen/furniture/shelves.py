@@ -1,6 +1,6 @@
-"""Shelves with books and things.
+"""Shelves with books and small objects.
 
-Ranges after Neufert, Architects' Data (book shelves 0.25-0.38 m deep, 0.28-0.36 m between boards, to 2.05 m high).
+Sizes follow Neufert, Architects' Data (book shelves 0.25-0.38 m deep, 0.28-0.36 m between boards, to 2.05 m high).
 """
 
 from __future__ import annotations
@@ -9,16 +9,12 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
 def _books(w: Workbench, x: Range, y: Range, z: float, room: float) -> None:
-    """A row of books on a board at height z: one box with painted spines, sometimes a lone one leaning."""
+    """Adds a row of books on a board at height z: one box with painted spines, sometimes with a single leaning book."""
     high = min(room - 0.03, w.length(0.20, 0.26))
     wide = max(high + 0.02, (y[1] - y[0]) * w.length(0.55, 0.95))
     wide = min(wide, y[1] - y[0])
@@ -38,7 +34,7 @@ def _boards(w: Workbench, x: Range, y: Range, levels: list[float], thick: float,
 
 
 def bookcase(w: Workbench) -> None:
-    """Tall bookcase, five boards full of books."""
+    """Builds a tall bookcase with five boards full of books."""
     width, depth, height = w.width(0.70, 1.00), w.depth(0.28, 0.34), w.height(1.80, 2.05)
     look = parts.wood_look(w)
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -56,7 +52,7 @@ def bookcase(w: Workbench) -> None:
 
 
 def ladder_shelf(w: Workbench) -> None:
-    """Leaning ladder with four boards that grow towards the floor."""
+    """Builds a leaning ladder with four boards that get deeper towards the floor."""
     width, height, depth = w.width(0.55, 0.75), w.height(1.70, 1.90), w.depth(0.40, 0.48)
     wood = w.look("wood")
     x0, x1, y = -0.5 * depth, 0.5 * depth, (-0.5 * width, 0.5 * width)
@@ -74,7 +70,7 @@ def ladder_shelf(w: Workbench) -> None:
 
 
 def wall_boards(w: Workbench) -> None:
-    """Two or three boards on the wall with books and a vase."""
+    """Builds two or three boards on the wall with books and a vase."""
     width, depth, count = w.width(0.70, 1.20), w.depth(0.20, 0.26), w.whole(2, 3)
     look, metal, y = parts.wood_look(w), w.look("iron"), (-0.5 * width, 0.5 * width)
     w.mount_height_m = 1.15
@@ -89,7 +85,7 @@ def wall_boards(w: Workbench) -> None:
 
 
 def pipe_shelf(w: Workbench) -> None:
-    """Boards in a steel frame with a crossed back."""
+    """Builds a steel frame with boards and a crossed back."""
     width, depth, height = w.width(0.80, 1.10), w.depth(0.32, 0.38), w.height(1.60, 1.85)
     iron, wood = w.look("iron"), w.look("wood")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -103,7 +99,7 @@ def pipe_shelf(w: Workbench) -> None:
 
 
 def etagere(w: Workbench) -> None:
-    """Glass boards between slim brass posts, vases and a few books."""
+    """Builds a shelf with glass boards between slim brass posts, with vases and a few books."""
     width, depth, height = w.width(0.60, 0.85), w.depth(0.32, 0.38), w.height(1.60, 1.85)
     brass, glass = w.look("brass"), w.look("glass")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -120,7 +116,7 @@ def etagere(w: Workbench) -> None:
 
 
 def corner_niche(w: Workbench) -> None:
-    """Open boxes of different sizes on the wall, books and vases in them."""
+    """Builds open boxes of different sizes on the wall, with books and vases in them."""
     width, depth, look = w.width(0.80, 1.20), w.depth(0.20, 0.25), parts.wood_look(w)
     w.mount_height_m = 1.10
     y0 = -0.5 * width
@@ -141,7 +137,7 @@ def corner_niche(w: Workbench) -> None:
 
 
 def cubes(w: Workbench) -> None:
-    """Square pigeonholes: boxes in some, books in others; hint `width_m` sets how many."""
+    """Builds square pigeonholes with boxes or books; hint `width_m` determines their number."""
     look = parts.wood_look(w)
     width = w.width(0.74, 1.50)
     columns, rows = max(1, round((width - 0.04) / 0.36)), w.whole(2, 4)

@@ -1,6 +1,6 @@
-"""Sinks that stand or hang by themselves, lie in a worktop or stand on a washstand.
+"""Sinks: free-standing, wall-hung, inset in a worktop, or on a washstand.
 
-Ranges after Neufert, Architects' Data, and Panero & Zelnik, Human Dimension and Interior Space: washbasins
+Sizes follow Neufert, Architects' Data, and Panero & Zelnik, Human Dimension and Interior Space: washbasins
 0.40-0.70 m wide, 0.35-0.52 m deep, rim 0.80-0.90 m high; kitchen bowls about 0.40 x 0.48 m, 0.18 m deep.
 """
 
@@ -10,10 +10,7 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -28,7 +25,7 @@ def _bowl(
     power: float = 2.0,
     foot: float = 0.6,
 ) -> None:
-    """A hollow bowl standing on `at`, opening upwards."""
+    """Adds a hollow bowl that stands on `at` and opens upwards."""
     rings = [
         Ring(0.0, foot * rx, foot * ry, power=power),
         Ring(0.55 * high, 0.92 * rx, 0.92 * ry, power=power),
@@ -42,7 +39,7 @@ def _bowl(
 
 
 def pedestal_sink(w: Workbench) -> None:
-    """Basin on a column."""
+    """Builds a basin on a column."""
     width, depth, rim = w.width(0.50, 0.62), w.depth(0.42, 0.50), w.length(0.82, 0.86)
     white = w.look("ceramic")
     _bowl(w, 0.5 * depth, 0.5 * width, 0.19, white, (0.0, 0.0, rim - 0.19), power=2.8, foot=0.5)
@@ -65,7 +62,7 @@ def pedestal_sink(w: Workbench) -> None:
 
 
 def wall_basin(w: Workbench) -> None:
-    """Rectangular basin hung on the wall with a bottle trap below."""
+    """Builds a rectangular basin hung on the wall with a bottle trap below."""
     width, depth = w.width(0.45, 0.65), w.depth(0.36, 0.46)
     w.mount_height_m = 0.56
     white, chrome, z = w.look("ceramic"), w.look("chrome"), 0.28
@@ -78,7 +75,7 @@ def wall_basin(w: Workbench) -> None:
 
 
 def inset_steel(w: Workbench) -> None:
-    """Steel kitchen bowl let into a worktop: origin at the worktop's surface is `rim`; hangs below it."""
+    """Builds a steel kitchen bowl for a worktop. Its origin is at the surface of the worktop; it extends below."""
     steel = w.look("steel")
     parts.basin(w, (-0.20, 0.20), (-0.24, 0.24), 0.18, 0.18, 0.012, steel)
     w.box((-0.215, 0.215), (-0.255, -0.238), (0.178, 0.184), steel, solid=False)
@@ -90,14 +87,14 @@ def inset_steel(w: Workbench) -> None:
 
 
 def vessel_round(w: Workbench) -> None:
-    """Round bowl that stands on a washstand."""
+    """Builds a round bowl that stands on a washstand."""
     r = w.length(0.19, 0.22)
     _bowl(w, r, r, 0.13, w.look("ceramic"), (0.0, 0.0, 0.0))
     parts.mixer_tap(w, (-r - 0.02, 0.0, 0.0), 0.16, 0.24, w.look("chrome"))
 
 
 def vessel_square(w: Workbench) -> None:
-    """Shallow rectangular bowl that stands on a washstand."""
+    """Builds a shallow rectangular bowl that stands on a washstand."""
     half = 0.5 * w.length(0.44, 0.52)
     parts.basin(w, (-0.17, 0.17), (-half, half), 0.12, 0.12, 0.02, w.look("ceramic"))
     parts.mixer_tap(w, (-0.20, 0.0, 0.0), 0.15, 0.22, w.look("chrome"))
@@ -105,7 +102,7 @@ def vessel_square(w: Workbench) -> None:
 
 
 def console_sink(w: Workbench) -> None:
-    """Oval basin in a slab on four metal legs with a rail."""
+    """Builds an oval basin in a slab on four metal legs with a rail."""
     width, depth, rim = w.width(0.60, 0.75), w.depth(0.45, 0.52), w.length(0.82, 0.87)
     metal, white = w.look("chrome"), w.look("ceramic")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
@@ -123,7 +120,7 @@ def console_sink(w: Workbench) -> None:
 
 
 def inset_stone(w: Workbench) -> None:
-    """Deep stone kitchen bowl let into a worktop."""
+    """Builds a deep stone kitchen bowl for a worktop."""
     stone = w.look("char")
     parts.basin(w, (-0.20, 0.20), (-0.24, 0.24), 0.18, 0.18, 0.03, stone)
     w.cylinder((0.0, 0.0), (0.028, 0.034), 0.03, w.look("steel"), solid=False)
@@ -131,7 +128,7 @@ def inset_stone(w: Workbench) -> None:
 
 
 def utility(w: Workbench) -> None:
-    """Deep laundry tub of plastic on a steel stand."""
+    """Builds a deep laundry tub of plastic on a steel stand."""
     half, rim = 0.5 * w.width(0.50, 0.60), w.length(0.84, 0.88)
     depth, white, metal = w.depth(0.46, 0.52), w.look("ceramic"), w.look("metal")
     x = (-0.5 * depth, 0.5 * depth)
@@ -150,7 +147,7 @@ def utility(w: Workbench) -> None:
 
 
 def trough(w: Workbench) -> None:
-    """Wide wash trough of stone on two brackets, two taps from the wall."""
+    """Builds a wide stone wash trough on two brackets, with two taps from the wall."""
     width, depth = w.width(0.85, 1.10), w.depth(0.42, 0.48)
     w.mount_height_m = 0.62
     stone, brass = w.look("stone"), w.look("brass")
@@ -167,7 +164,7 @@ def trough(w: Workbench) -> None:
 
 
 def double_steel(w: Workbench) -> None:
-    """One steel plate with a large and a small bowl."""
+    """Builds one steel plate with a large and a small bowl."""
     steel = w.look("steel")
     parts.basin(w, (-0.20, 0.20), (-0.24, 0.05), 0.18, 0.18, 0.012, steel)
     parts.basin(w, (-0.20, 0.20), (0.05, 0.24), 0.18, 0.14, 0.012, steel)

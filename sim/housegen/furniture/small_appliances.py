@@ -1,4 +1,4 @@
-"""Appliances on tops and walls: hobs, hoods, ovens for a top, coffee machines, toasters.
+"""Appliances on tops and walls: hobs, hoods, small ovens, coffee machines, toasters.
 
 Usual retail dimensions (hobs 0.58 x 0.51 m, microwaves 0.46-0.52 m wide, hoods 0.60-0.80 m wide).
 """
@@ -7,15 +7,12 @@ from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-    named_mesh,
-)
+from sim.housegen.furniture.shapes import chamfered_box, named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
 
 def hob(w: Workbench) -> None:
-    """Glass plate with four zones, lying on a worktop."""
+    """Builds a glass plate with four zones, for a worktop."""
     w.box((-0.25, 0.25), (-0.29, 0.29), (0.0, 0.008), w.look("screen"))
     for x in (-0.11, 0.11):
         for side in BOTH_SIDES:
@@ -23,7 +20,7 @@ def hob(w: Workbench) -> None:
 
 
 def gas_hob(w: Workbench) -> None:
-    """Steel plate with four burners under cast grids and a row of knobs."""
+    """Builds a steel plate with four burners under cast grids and a row of knobs."""
     steel, iron = w.look("steel"), w.look("iron")
     w.box((-0.25, 0.25), (-0.29, 0.29), (0.0, 0.010), steel)
     for x in (-0.14, 0.08):
@@ -37,7 +34,7 @@ def gas_hob(w: Workbench) -> None:
 
 
 def microwave(w: Workbench) -> None:
-    """On a top: dark window, keypad, handle."""
+    """Builds a microwave oven with a dark window, a keypad and a handle."""
     look = w.look("appliance")
     width, depth, height = w.length(0.46, 0.52), w.length(0.34, 0.40), w.length(0.26, 0.30)
     x = 0.5 * depth
@@ -62,7 +59,7 @@ def microwave(w: Workbench) -> None:
 
 
 def toaster_oven(w: Workbench) -> None:
-    """Small oven on a top: glass door, three knobs."""
+    """Builds a small oven with a glass door and three knobs."""
     look, metal = w.look("appliance"), w.look("chrome")
     w.mesh(chamfered_box((0.32, 0.42, 0.23), 0.02), (0.0, 0.0, 0.125), look)
     w.legs((-0.13, 0.13), (-0.18, 0.18), (0.0, 0.02), 0.03, w.look("rubber"))
@@ -75,7 +72,7 @@ def toaster_oven(w: Workbench) -> None:
 
 
 def range_hood(w: Workbench) -> None:
-    """Chimney hood above a hob."""
+    """Builds a chimney hood above a hob."""
     width, metal = w.width(0.58, 0.62), w.look("steel")
     w.mount_height_m = 1.55
     hood = [
@@ -93,7 +90,7 @@ def range_hood(w: Workbench) -> None:
 
 
 def flat_hood(w: Workbench) -> None:
-    """Slanted glass hood."""
+    """Builds a slanted glass hood."""
     width = w.width(0.58, 0.80)
     w.mount_height_m = 1.45
     w.box((0.0, 0.18), (-0.15, 0.15), (0.10, 0.80), w.look("dark"))
@@ -102,7 +99,7 @@ def flat_hood(w: Workbench) -> None:
 
 
 def coffee_machine(w: Workbench) -> None:
-    """Espresso machine with a cup."""
+    """Builds an espresso machine with a cup."""
     look, metal = w.look("appliance"), w.look("chrome")
     w.mesh(chamfered_box((0.16, 0.26, 0.36), 0.015), (-0.10, 0.0, 0.18), look)
     w.mesh(chamfered_box((0.36, 0.26, 0.04), 0.01), (0.0, 0.0, 0.02), look)
@@ -113,7 +110,7 @@ def coffee_machine(w: Workbench) -> None:
 
 
 def toaster(w: Workbench) -> None:
-    """Two-slot toaster with a lever."""
+    """Builds a two-slot toaster with a lever."""
     look = w.look("appliance")
     w.mesh(chamfered_box((0.17, 0.28, 0.19), 0.04), (0.0, 0.0, 0.105), look)
     w.legs((-0.06, 0.06), (-0.11, 0.11), (0.0, 0.015), 0.025, w.look("rubber"))

@@ -1,6 +1,6 @@
 """Sofas, with loose cushions on them.
 
-Ranges after Panero & Zelnik (sofa depth 0.81-1.02 m, seat 0.38-0.45 m high, 0.55-0.70 m of width a sitter, arms
+Sizes follow Panero & Zelnik (sofa depth 0.81-1.02 m, seat 0.38-0.45 m high, 0.55-0.70 m of width per seat, arms
 0.10-0.25 m) and usual retail dimensions (two seats 1.40-1.80 m wide, three seats 1.90-2.40 m).
 """
 
@@ -12,18 +12,13 @@ from dataclasses import dataclass
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    loft,
-    named_mesh,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft, named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
 
 @dataclass(frozen=True)
 class _Sofa:
-    """Main lengths; x from -depth/2 (back) to depth/2, y from -width/2 to width/2."""
+    """The main dimensions of a sofa; x from -depth/2 (back) to depth/2, y from -width/2 to width/2."""
 
     width: float
     depth: float
@@ -34,12 +29,12 @@ class _Sofa:
 
     @property
     def inner(self) -> float:
-        """Width between the arms."""
+        """The width between the arms."""
         return self.width - 2 * self.arm
 
     @property
     def seats(self) -> int:
-        """How many sit side by side."""
+        """The number of seats side by side."""
         return max(1, round(self.inner / 0.68))
 
 
@@ -49,7 +44,7 @@ def _measure(w: Workbench, arm: tuple[float, float], height: tuple[float, float]
 
 
 def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float, *, tufts: bool = False) -> None:
-    """A row of seat cushions in front of the back."""
+    """Adds a row of seat cushions in front of the back."""
     each = s.inner / s.seats
     shape = chamfered_box((s.depth - s.back, each - 0.006, thick), 0.03)
     for i in range(s.seats):
@@ -58,7 +53,7 @@ def _seat_cushions(w: Workbench, s: _Sofa, look: Look, thick: float, *, tufts: b
 
 
 def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> None:
-    """A row of loose back cushions leaning on the back."""
+    """Adds a row of loose back cushions that lean on the back."""
     each = s.inner / s.seats
     high = s.height - s.seat + 0.02
     shape = chamfered_box((thick, each - 0.01, high), 0.04)
@@ -72,7 +67,7 @@ def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> N
 
 
 def _loose_cushions(w: Workbench, s: _Sofa, front_of_back: float) -> None:
-    """None to three throw cushions against the back, near the arms first; hint `cushions` fixes how many."""
+    """Adds up to three throw cushions against the back, the outer ones first; hint `cushions` gives their number."""
     hinted = w.hints.get("cushions")
     count = int(hinted) if hinted is not None else w.choice((0, 1, 2, 2, 3))
     places = (0.5 * s.inner - 0.24, -0.5 * s.inner + 0.24, 0.08)
@@ -83,7 +78,7 @@ def _loose_cushions(w: Workbench, s: _Sofa, front_of_back: float) -> None:
 
 
 def block_arm(w: Workbench) -> None:
-    """Square modern sofa: block arms to the floor's feet, seat and back cushions."""
+    """Builds a square modern sofa with block arms down to the feet, and seat and back cushions."""
     s, cloth = _measure(w, (0.12, 0.20)), w.look("fabric")
     w.box((-0.5 * s.depth + 0.02, 0.5 * s.depth - 0.02), (-0.5 * s.inner, 0.5 * s.inner), (0.10, s.seat - 0.15), cloth)
     w.mesh(
@@ -111,7 +106,7 @@ def block_arm(w: Workbench) -> None:
 
 
 def rolled_arm(w: Workbench) -> None:
-    """Traditional sofa: scrolled arms, one long back, turned feet."""
+    """Builds a traditional sofa with scrolled arms, one long back and turned feet."""
     s, cloth, wood = _measure(w, (0.18, 0.22), (0.84, 0.94)), w.look("fabric"), w.look("wood")
     w.box(
         (-0.5 * s.depth + 0.03, 0.5 * s.depth - 0.02),
@@ -139,7 +134,7 @@ def rolled_arm(w: Workbench) -> None:
 
 
 def wooden_frame(w: Workbench) -> None:
-    """Slim Scandinavian sofa: open wooden arms and legs, loose cushions."""
+    """Builds a slim Scandinavian sofa with open wooden arms and legs and loose cushions."""
     s, cloth, wood = _measure(w, (0.06, 0.08), (0.76, 0.84)), w.look("fabric"), w.look("wood")
     half = 0.5 * s.width - 0.025
     for side in BOTH_SIDES:
@@ -165,7 +160,7 @@ def wooden_frame(w: Workbench) -> None:
 
 
 def chesterfield(w: Workbench) -> None:
-    """Leather, arms as high as the back, all three rolled, buttons in rows."""
+    """Builds a leather sofa with arms as high as the back, all three rolled, and rows of buttons."""
     s, hide = _measure(w, (0.20, 0.24), (0.70, 0.76)), w.look("leather")
     r = 0.5 * s.arm
     w.box(
@@ -210,11 +205,11 @@ def chesterfield(w: Workbench) -> None:
 
 
 def corner(w: Workbench) -> None:
-    """L-shaped sofa with a long seat (chaise) at one end."""
+    """Builds an L-shaped sofa with a long seat (chaise) at one end."""
     width, depth, chaise = w.width(2.20, 2.80), 0.92, w.depth(1.45, 1.65)
     s = _Sofa(width, depth, w.length(0.78, 0.86), w.length(0.41, 0.44), w.length(0.14, 0.20), 0.18)
     cloth, side = w.look("fabric"), w.choice(BOTH_SIDES)
-    far = side * 0.5 * width  # the chaise's outer edge
+    far = side * 0.5 * width  # outer edge of the chaise
     wide = 0.80
     x0 = -0.5 * depth
     low, high = sorted((far - side * wide, far))
@@ -261,7 +256,7 @@ def corner(w: Workbench) -> None:
 
 
 def daybed(w: Workbench) -> None:
-    """Backless couch: slatted metal ends, one mattress, bolsters along the wall."""
+    """Builds a couch without a back: slatted metal ends, one mattress, and bolsters along the wall."""
     width, depth, seat = w.width(1.85, 2.05), w.depth(0.80, 0.95), w.length(0.42, 0.46)
     metal, cloth = w.look("iron"), w.look("fabric")
     half, x0, x1 = 0.5 * width, -0.5 * depth, 0.5 * depth
@@ -290,7 +285,7 @@ def daybed(w: Workbench) -> None:
 
 
 def camelback(w: Workbench) -> None:
-    """Curved wooden crest rising in the middle, slender legs, thin arms."""
+    """Builds a sofa with a curved wooden crest that rises in the middle, slender legs and thin arms."""
     s, cloth, wood = _measure(w, (0.10, 0.13), (0.86, 0.96)), w.look("fabric"), w.look("wood")
     x0, half = -0.5 * s.depth, 0.5 * s.width
     w.mesh(chamfered_box((s.depth - 0.04, s.width - 0.04, 0.14), 0.03), (0.0, 0.0, s.seat - 0.16), cloth)
@@ -309,7 +304,7 @@ def camelback(w: Workbench) -> None:
 
 
 def bubble(w: Workbench) -> None:
-    """Low, round-ended modern sofa: a thick oval seat, one curved back, no arms."""
+    """Builds a low, round-ended modern sofa with a thick oval seat, one curved back and no arms."""
     width, depth, seat, height = w.width(1.70, 2.30), w.depth(0.90, 1.0), w.length(0.40, 0.43), w.length(0.70, 0.78)
     cloth = w.look("fabric")
     r, half = 0.5 * depth, 0.5 * width

@@ -1,6 +1,6 @@
-"""Stools, for bars and low.
+"""Bar stools and low stools.
 
-Ranges after Panero & Zelnik, Human Dimension and Interior Space (bar seats 0.62-0.78 m, low stools 0.42-0.47 m high,
+Sizes follow Panero & Zelnik, Human Dimension and Interior Space (bar seats 0.62-0.78 m, low stools 0.42-0.47 m high,
 0.30-0.40 m across).
 """
 
@@ -10,18 +10,12 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    frustum,
-    loft,
-    strip,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, strip
 from sim.housegen.furniture.workbench import Workbench
 
 
 def bar_wood(w: Workbench) -> None:
-    """Bar stool: square seat, four slightly splayed legs, footrests."""
+    """Builds a bar stool with a square seat, four slightly splayed legs and footrests."""
     w.mass_kg = 5.0
     seat, half, wood = w.length(0.66, 0.76), 0.5 * w.length(0.32, 0.38), w.look("wood")
     w.mesh(
@@ -45,7 +39,7 @@ def bar_wood(w: Workbench) -> None:
 
 
 def low_round(w: Workbench) -> None:
-    """Low stool: round seat, three or four splayed legs."""
+    """Builds a low stool with a round seat and three or four splayed legs."""
     w.mass_kg = 3.5
     seat, r, wood = w.length(0.43, 0.47), 0.5 * w.length(0.32, 0.38), w.look("wood")
     w.cylinder((0.0, 0.0), (seat - 0.04, seat), r, w.look("lacquer") if w.chance(0.4) else wood)
@@ -63,7 +57,7 @@ def low_round(w: Workbench) -> None:
 
 
 def saddle(w: Workbench) -> None:
-    """Backless bar stool: curved saddle seat on a sled of steel rod."""
+    """Builds a bar stool without a back: a curved saddle seat on a sled of steel rod."""
     w.mass_kg = 5.0
     seat, half, iron = w.length(0.62, 0.74), 0.19, w.look("iron")
     w.mesh(
@@ -85,7 +79,7 @@ def saddle(w: Workbench) -> None:
 
 
 def bar_swivel(w: Workbench) -> None:
-    """Bar stool on a trumpet foot with a gas spring, low back."""
+    """Builds a bar stool on a trumpet foot with a gas spring and a low back."""
     w.mass_kg = 8.0
     seat, metal, cover = w.length(0.64, 0.76), w.look("chrome"), w.look("leather")
     w.cylinder((0.0, 0.0), (0.0, 0.02), 0.20, metal)
@@ -98,7 +92,7 @@ def bar_swivel(w: Workbench) -> None:
 
 
 def step_stool(w: Workbench) -> None:
-    """Two treads between solid sides."""
+    """Builds a step stool: two treads between solid sides."""
     w.mass_kg = 5.0
     high, half, look = (
         w.length(0.42, 0.46),
@@ -115,7 +109,7 @@ def step_stool(w: Workbench) -> None:
 
 
 def vanity_stool(w: Workbench) -> None:
-    """Round upholstered seat with a skirt of legs in brass."""
+    """Builds a round upholstered seat on a ring of brass legs."""
     w.mass_kg = 5.0
     seat, r, metal = w.length(0.43, 0.47), 0.5 * w.length(0.36, 0.42), w.look("brass")
     w.mesh(
@@ -140,7 +134,7 @@ def vanity_stool(w: Workbench) -> None:
 
 
 def bar_steel(w: Workbench) -> None:
-    """Stacking bar stool of pressed steel: square seat, legs that spread into a square."""
+    """Builds a stacking bar stool of pressed steel with a square seat and legs that spread into a square."""
     w.mass_kg = 5.5
     seat, steel = w.length(0.64, 0.76), w.look("lacquer") if w.chance(0.5) else w.look("metal")
     w.mesh(chamfered_box((0.31, 0.31, 0.03), 0.012), (0.0, 0.0, seat - 0.015), steel)
@@ -157,7 +151,7 @@ def bar_steel(w: Workbench) -> None:
 
 
 def stump(w: Workbench) -> None:
-    """A block: an hourglass of wood."""
+    """Builds a solid wooden stool in the shape of an hourglass."""
     w.mass_kg = 12.0
     high, r = w.length(0.42, 0.46), 0.5 * w.length(0.30, 0.36)
     w.mesh(
@@ -176,7 +170,7 @@ def stump(w: Workbench) -> None:
 
 
 def folding_stool(w: Workbench) -> None:
-    """Camp stool: crossed legs under a sling of cloth."""
+    """Builds a camp stool with crossed legs under a sling of cloth."""
     w.mass_kg = 3.0
     seat, half, wood = w.length(0.42, 0.46), 0.5 * w.length(0.36, 0.42), w.look("wood")
     for side in BOTH_SIDES:

@@ -1,6 +1,6 @@
 """Columns and railings.
 
-Ranges after Neufert, Architects' Data: railings 0.90-1.10 m high, balusters at most 0.12 m apart.
+Sizes follow Neufert, Architects' Data: railings 0.90-1.10 m high, balusters at most 0.12 m apart.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def baluster_railing(w: Workbench) -> None:
-    """Hand rail on posts and balusters, along y."""
+    """Builds a railing along y with a hand rail on posts and balusters."""
     width, high, wood, white = w.width(1.0, 2.4), w.length(0.90, 1.05), w.look("wood"), w.look("lacquer")
     w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (high - 0.05, high), wood)
     w.box((-0.02, 0.02), (-0.5 * width, 0.5 * width), (0.06, 0.10), white)
@@ -24,7 +24,7 @@ def baluster_railing(w: Workbench) -> None:
 
 
 def glass_railing(w: Workbench) -> None:
-    """Glass pane under a metal rail."""
+    """Builds a railing with a glass pane under a metal rail."""
     width, high, metal = w.width(1.0, 2.4), w.length(0.95, 1.10), w.look("chrome")
     w.rod((0.0, -0.5 * width, high - 0.022), (0.0, 0.5 * width, high - 0.022), 0.022, metal)
     w.box((-0.006, 0.006), (-0.5 * width + 0.03, 0.5 * width - 0.03), (0.05, high - 0.03), w.look("glass"))
@@ -35,7 +35,7 @@ def glass_railing(w: Workbench) -> None:
 
 
 def round_column(w: Workbench) -> None:
-    """Round pillar with base and capital; hint `height_m` is the room's."""
+    """Builds a round pillar with a base and a capital; hint `height_m` is the height of the room."""
     high, r, look = w.height(2.5, 2.7), w.length(0.12, 0.17), w.look("lacquer")
     w.cylinder((0.0, 0.0), (0.0, high), r, look)
     for z in ((0.0, 0.12), (high - 0.12, high)):
@@ -43,14 +43,14 @@ def round_column(w: Workbench) -> None:
 
 
 def brick_pier(w: Workbench) -> None:
-    """Square pier of masonry with a stone foot."""
+    """Builds a square masonry pier with a stone foot."""
     high, half = w.height(2.5, 2.7), 0.5 * w.length(0.28, 0.38)
     w.box((-half, half), (-half, half), (0.0, high), w.look("masonry"))
     w.box((-half - 0.02, half + 0.02), (-half - 0.02, half + 0.02), (0.0, 0.10), w.look("stone"))
 
 
 def square_column(w: Workbench) -> None:
-    """Timber post with braces under a bolster."""
+    """Builds a timber post with braces under a bolster."""
     high, half, wood = w.height(2.5, 2.7), 0.5 * w.length(0.15, 0.22), w.look("wood")
     w.box((-half, half), (-half, half), (0.0, high), wood)
     w.box((-half, half), (-0.45, 0.45), (high - 0.14, high), wood)
@@ -59,7 +59,7 @@ def square_column(w: Workbench) -> None:
 
 
 def steel_cable_railing(w: Workbench) -> None:
-    """Posts with five cables under a rail."""
+    """Builds a railing of posts with five cables under a rail."""
     width, high, metal = w.width(1.0, 2.4), w.length(0.92, 1.05), w.look("metal")
     w.box((-0.03, 0.03), (-0.5 * width, 0.5 * width), (high - 0.03, high), w.look("wood"))
     posts = max(2, round(width / 1.0) + 1)

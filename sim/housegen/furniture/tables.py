@@ -1,7 +1,7 @@
 """Dining tables and desks.
 
-Ranges after Neufert, Architects' Data, and Panero & Zelnik, Human Dimension and Interior Space: dining tables
-0.72-0.77 m high and 0.75-1.00 m deep, 0.60 m of edge a diner; desks 0.70-0.77 m high and 0.50-0.80 m deep.
+Sizes follow Neufert, Architects' Data, and Panero & Zelnik, Human Dimension and Interior Space: dining tables
+0.72-0.77 m high and 0.75-1.00 m deep, 0.60 m of edge per diner; desks 0.70-0.77 m high and 0.50-0.80 m deep.
 """
 
 from __future__ import annotations
@@ -10,16 +10,12 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    Ring,
-    frustum,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, frustum, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
 def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
-    """Four boards under a top."""
+    """Adds four boards under a top."""
     for edge in x:
         w.box((edge - 0.011, edge + 0.011), y, z, look)
     for edge in y:
@@ -27,14 +23,17 @@ def _apron(w: Workbench, x: Range, y: Range, z: Range, look: Look) -> None:
 
 
 def _stem(w: Workbench, rings: list[Ring], look: Look) -> None:
-    """A turned stem: seen as a loft, touched as its foot and its post, so that legs have room under the top."""
+    """Adds a turned stem.
+
+    The visual geom is a loft. The collision geoms are foot and post, which leave room for legs under the top.
+    """
     w.mesh(loft(rings, 12), (0.0, 0.0, 0.0), look, solid=False)
     w.cylinder((0.0, 0.0), (0.0, rings[2].z_m), 0.8 * rings[0].rx_m, look)
     w.cylinder((0.0, 0.0), (rings[2].z_m, rings[-1].z_m), 0.8 * min(r.rx_m for r in rings), look)
 
 
 def farmhouse(w: Workbench) -> None:
-    """Rectangular wooden table with an apron and four square legs at its corners."""
+    """Builds a rectangular wooden table with an apron and four square legs at its corners."""
     width, depth, height = w.width(1.30, 2.00), w.depth(0.80, 0.95), w.length(0.73, 0.76)
     wood = w.look("wood")
     legs = w.look("lacquer") if w.chance(0.35) else wood
@@ -44,7 +43,7 @@ def farmhouse(w: Workbench) -> None:
 
 
 def splayed(w: Workbench) -> None:
-    """Thin top with rounded feel on four splayed, tapering legs."""
+    """Builds a table with a thin rounded top on four splayed, tapering legs."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.78, 0.90), w.length(0.73, 0.75)
     wood = w.look("wood")
     x, y = parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.4) else wood)
@@ -56,7 +55,7 @@ def splayed(w: Workbench) -> None:
 
 
 def round_pedestal(w: Workbench) -> None:
-    """Round top on one stem that flares into a foot."""
+    """Builds a table with a round top on one stem that flares into a foot."""
     radius, height = 0.5 * w.width(0.95, 1.25), w.length(0.73, 0.75)
     look = w.look("lacquer")
     parts.round_top(w, radius, (height - 0.025, height), w.look("stone") if w.chance(0.4) else w.look("wood"))
@@ -73,7 +72,7 @@ def round_pedestal(w: Workbench) -> None:
 
 
 def industrial(w: Workbench) -> None:
-    """Plank top on two welded steel frames."""
+    """Builds a table with a plank top on two welded steel frames."""
     width, depth, height = w.width(1.40, 2.20), w.depth(0.80, 0.95), w.length(0.74, 0.76)
     steel = w.look("iron")
     parts.slab(w, depth, width, (height - 0.045, height), w.look("wood"))
@@ -86,7 +85,7 @@ def industrial(w: Workbench) -> None:
 
 
 def trestle(w: Workbench) -> None:
-    """Heavy top on two board ends joined by a stretcher."""
+    """Builds a table with a heavy top on two board ends joined by a stretcher."""
     width, depth, height = w.width(1.50, 2.20), w.depth(0.85, 1.00), w.length(0.74, 0.77)
     wood = w.look("wood")
     parts.slab(w, depth, width, (height - 0.05, height), wood)
@@ -99,7 +98,7 @@ def trestle(w: Workbench) -> None:
 
 
 def glass_dining(w: Workbench) -> None:
-    """Glass top on a crossed base of bent metal."""
+    """Builds a table with a glass top on a crossed base of bent metal."""
     width, depth, height = w.width(1.30, 1.80), w.depth(0.85, 0.95), w.length(0.73, 0.75)
     parts.slab(w, depth, width, (height - 0.015, height), w.look("glass"))
     metal = w.look("brass")
@@ -113,7 +112,7 @@ def glass_dining(w: Workbench) -> None:
 
 
 def tulip_legs_round(w: Workbench) -> None:
-    """Round table with four straight round legs and a cross under the top."""
+    """Builds a round table with four straight round legs and a cross under the top."""
     radius, height, wood = 0.5 * w.width(0.95, 1.20), w.length(0.73, 0.76), w.look("wood")
     parts.round_top(w, radius, (height - 0.03, height), wood)
     half = 0.55 * radius
@@ -123,7 +122,7 @@ def tulip_legs_round(w: Workbench) -> None:
 
 
 def desk_pedestal(w: Workbench) -> None:
-    """Desk with drawers on one side and a panel leg on the other."""
+    """Builds a desk with drawers on one side and a panel leg on the other."""
     width, depth, height = w.width(1.20, 1.60), w.depth(0.60, 0.75), w.length(0.72, 0.75)
     wood, front = w.look("wood"), w.look("lacquer")
     x, _ = parts.slab(w, depth, width, (height - 0.03, height), wood)
@@ -139,7 +138,7 @@ def desk_pedestal(w: Workbench) -> None:
 
 
 def desk_frame(w: Workbench) -> None:
-    """Plain top on a steel frame with T feet, as in offices."""
+    """Builds an office desk with a plain top on a steel frame with T feet."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.65, 0.80), w.length(0.70, 0.76)
     steel = w.look("metal")
     parts.slab(w, depth, width, (height - 0.025, height), w.look("lacquer") if w.chance(0.5) else w.look("wood"))
@@ -152,7 +151,7 @@ def desk_frame(w: Workbench) -> None:
 
 
 def secretary(w: Workbench) -> None:
-    """Writing desk: slender legs, a drawer under the top, a low hutch of pigeonholes at the back."""
+    """Builds a writing desk with slender legs, a drawer under the top, and a low hutch of pigeonholes at the back."""
     width, depth, height = w.width(0.95, 1.25), w.depth(0.50, 0.60), w.length(0.74, 0.77)
     wood = w.look("wood")
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)

@@ -1,22 +1,18 @@
 """Toilets.
 
-Ranges after Neufert, Architects' Data: 0.35-0.42 m wide, 0.60-0.72 m deep, seat 0.39-0.45 m high.
+Sizes follow Neufert, Architects' Data: 0.35-0.42 m wide, 0.60-0.72 m deep, seat 0.39-0.45 m high.
 """
 
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
-from sim.housegen.furniture.shapes import (
-    Ring,
-    chamfered_box,
-    loft,
-)
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
 def _pan(w: Workbench, x0: float, x1: float, half: float, seat: float, look: Look, *, base: float = 0.6) -> None:
-    """Bowl from the wall side x0 to its nose x1, seat ring and lid up to height `seat`."""
+    """Adds a bowl from the wall side x0 to its nose x1, with a seat ring and a lid up to height `seat`."""
     middle, r = x1 - 0.5 * (x1 - x0), 0.5 * (x1 - x0)
     rings = [
         Ring(0.0, base * r, base * half, middle - 0.15 * r, power=2.6),
@@ -53,7 +49,7 @@ def _seat_and_lid(w: Workbench, x0: float, x1: float, half: float, seat: float, 
 
 
 def close_coupled(w: Workbench) -> None:
-    """Floor-standing pan with its cistern behind."""
+    """Builds a floor-standing pan with its cistern behind it."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.36, 0.40), w.length(0.40, 0.43)
     depth = w.length(0.62, 0.70)
     x0 = -0.5 * depth
@@ -66,7 +62,7 @@ def close_coupled(w: Workbench) -> None:
 
 
 def wall_hung(w: Workbench) -> None:
-    """Pan hung on a boxed-in cistern with a flush plate."""
+    """Builds a pan on a boxed-in cistern with a flush plate."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.35, 0.38), w.length(0.40, 0.43)
     boxed = w.look("lacquer")
     w.box((-0.36, -0.18), (-0.42, 0.42), (0.0, 1.12), boxed)
@@ -82,7 +78,7 @@ def wall_hung(w: Workbench) -> None:
 
 
 def high_cistern(w: Workbench) -> None:
-    """Old toilet: high cistern on the wall, pipe, wooden seat."""
+    """Builds an old toilet with a high cistern on the wall, a pipe and a wooden seat."""
     white, wood, brass, half, seat = w.look("ceramic"), w.look("wood"), w.look("brass"), 0.19, w.length(0.41, 0.44)
     x0 = -0.30
     w.box((x0 + 0.02, x0 + 0.20), (-0.10, 0.10), (0.10, seat - 0.05), white)
@@ -98,7 +94,7 @@ def high_cistern(w: Workbench) -> None:
 
 
 def low_level(w: Workbench) -> None:
-    """Cistern on the wall at shoulder height joined to the pan by a bent pipe; lever."""
+    """Builds a toilet with a cistern at shoulder height, joined to the pan by a bent pipe, and a lever."""
     white, chrome, half, seat = w.look("ceramic"), w.look("chrome"), 0.5 * w.length(0.36, 0.39), w.length(0.40, 0.43)
     x0 = -0.34
     w.mesh(chamfered_box((0.18, 0.46, 0.34), 0.03), (x0 + 0.09, 0.0, 0.86), white)
@@ -113,7 +109,7 @@ def low_level(w: Workbench) -> None:
 
 
 def square_modern(w: Workbench) -> None:
-    """Rounded block with a flat lid, straight sides down to the floor, cistern as wide as the pan."""
+    """Builds a rounded block with a flat lid, straight sides down to the floor, and a cistern as wide as the pan."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.35, 0.38), w.length(0.41, 0.44)
     depth = w.length(0.62, 0.68)
     x0 = -0.5 * depth
@@ -146,7 +142,7 @@ def square_modern(w: Workbench) -> None:
 
 
 def one_piece(w: Workbench) -> None:
-    """Skirted one-piece: tank flows into the pan in one curve."""
+    """Builds a skirted toilet whose tank and pan form one curve."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.37, 0.41), w.length(0.40, 0.43)
     x0 = -0.35
     rings = [

@@ -10,15 +10,12 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    chamfered_box,
-    drape,
-)
+from sim.housegen.furniture.shapes import chamfered_box, drape
 from sim.housegen.furniture.workbench import Workbench
 
 
 def towel_rail(w: Workbench) -> None:
-    """Towel over a rail."""
+    """Builds a towel over a rail."""
     width = w.width(0.50, 0.70)
     chrome, cloth = w.look("chrome"), w.look("towel")
     w.mount_height_m = 0.75
@@ -30,7 +27,7 @@ def towel_rail(w: Workbench) -> None:
 
 
 def towel_radiator(w: Workbench) -> None:
-    """Heated ladder of tubes on the wall with one or two towels over it."""
+    """Builds a heated ladder of tubes on the wall with one or two towels over it."""
     width, high = w.width(0.45, 0.60), w.length(1.00, 1.40)
     w.mount_height_m = 0.45
     white = w.look("ceramic") if w.chance(0.5) else w.look("chrome")
@@ -51,7 +48,7 @@ def towel_radiator(w: Workbench) -> None:
 
 
 def towel_hooks(w: Workbench) -> None:
-    """Two or three towels on pegs of a board."""
+    """Builds two or three towels on pegs of a board."""
     width, wood = w.width(0.50, 0.80), w.look("wood")
     w.mount_height_m = 0.70
     w.box((0.0, 0.018), (-0.5 * width, 0.5 * width), (0.86, 0.94), wood)
@@ -64,7 +61,7 @@ def towel_hooks(w: Workbench) -> None:
 
 
 def towel_ladder(w: Workbench) -> None:
-    """Wooden ladder leaning at the wall with towels over its rungs."""
+    """Builds a wooden ladder that leans at the wall with towels over its rungs."""
     half, high, wood = 0.5 * w.width(0.45, 0.58), w.length(1.55, 1.80), w.look("wood")
     depth = 0.34
     for side in BOTH_SIDES:
@@ -95,7 +92,7 @@ def towel_ladder(w: Workbench) -> None:
 
 
 def towel_stack(w: Workbench) -> None:
-    """Folded towels on each other."""
+    """Builds a stack of folded towels."""
     z = 0.0
     for i in range(w.whole(3, 4)):
         thick = w.choice((0.055, 0.065))
@@ -104,7 +101,7 @@ def towel_stack(w: Workbench) -> None:
 
 
 def towel_ring(w: Workbench) -> None:
-    """Hand towel drawn through a brass ring."""
+    """Builds a hand towel drawn through a brass ring."""
     cloth, brass = w.look("towel"), w.look("brass")
     w.mount_height_m = 0.80
     w.rod((0.0, 0.0, 0.56), (0.04, 0.0, 0.56), 0.022, brass)
@@ -116,7 +113,7 @@ def towel_ring(w: Workbench) -> None:
 
 
 def swing_rail(w: Workbench) -> None:
-    """Two bars that swing out of a wall plate, a towel over each."""
+    """Builds two bars that swing out of a wall plate, with a towel over each."""
     length, metal = w.length(0.38, 0.45), w.look("chrome")
     w.mount_height_m = 0.75
     w.box((0.0, 0.02), (-0.03, 0.03), (0.42, 0.58), metal)
@@ -140,7 +137,7 @@ def swing_rail(w: Workbench) -> None:
 
 
 def towel_stand(w: Workbench) -> None:
-    """Free-standing rack of two bars with towels."""
+    """Builds a free-standing rack of two bars with towels."""
     half, high, metal = 0.5 * w.width(0.50, 0.65), w.length(0.85, 1.0), w.look("iron")
     for side in BOTH_SIDES:
         y = side * half
@@ -154,7 +151,7 @@ def towel_stand(w: Workbench) -> None:
 
 
 def towel_rolls(w: Workbench) -> None:
-    """Three rolled towels in a pile."""
+    """Builds three rolled towels in a pile."""
     r = 0.062
     for y, z in ((-r, r), (r, r), (0.0, r + 1.732 * r)):
         w.rod((-0.17, y, z), (0.17, y, z), r, w.new_look("towel"))

@@ -12,7 +12,7 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def wall_mirror(w: Workbench) -> None:
-    """Framed rectangular mirror."""
+    """Builds a framed rectangular mirror."""
     width, height = w.width(0.45, 0.80), w.height(0.60, 1.00)
     w.mount_height_m = 1.05
     frame(w, width, height, 0.025, 0.028, w.look("metal"))
@@ -20,7 +20,7 @@ def wall_mirror(w: Workbench) -> None:
 
 
 def round_mirror(w: Workbench) -> None:
-    """Round mirror in a thin rim."""
+    """Builds a round mirror in a thin rim."""
     r = 0.5 * w.width(0.50, 0.80)
     w.mount_height_m = 1.52 - r
     w.rod((0.0, 0.0, r), (0.022, 0.0, r), r, w.look("brass"))
@@ -28,7 +28,7 @@ def round_mirror(w: Workbench) -> None:
 
 
 def standing_mirror(w: Workbench) -> None:
-    """Full-length mirror leaning on a stand."""
+    """Builds a full-length mirror that leans on a stand."""
     width, height, wood = w.width(0.42, 0.60), w.height(1.50, 1.75), w.look("wood")
     y = 0.5 * width
     lean = 0.12
@@ -43,7 +43,7 @@ def standing_mirror(w: Workbench) -> None:
 
 
 def arched_mirror(w: Workbench) -> None:
-    """Full-length mirror with a round top leaning on the wall."""
+    """Builds a full-length mirror with a round top that leans on the wall."""
     width, height = w.width(0.50, 0.70), w.height(1.50, 1.80)
     r, metal = 0.5 * width, w.look("metal")
     straight = height - r
@@ -54,7 +54,7 @@ def arched_mirror(w: Workbench) -> None:
 
 
 def cork_board(w: Workbench) -> None:
-    """Pin board with notes."""
+    """Builds a pin board with notes."""
     width, height = w.width(0.60, 1.00), w.height(0.45, 0.70)
     w.mount_height_m = 1.15
     frame(w, width, height, 0.02, 0.02, w.look("wood"))
@@ -65,7 +65,7 @@ def cork_board(w: Workbench) -> None:
 
 
 def whiteboard(w: Workbench) -> None:
-    """White board with a pen tray."""
+    """Builds a white board with a pen tray."""
     width, height, metal = w.width(0.90, 1.40), w.height(0.60, 0.90), w.look("metal")
     w.mount_height_m = 0.95
     frame(w, width, height, 0.02, 0.022, metal)
@@ -74,7 +74,7 @@ def whiteboard(w: Workbench) -> None:
 
 
 def chalk_board(w: Workbench) -> None:
-    """Black board in a wooden frame with scribbles and a ledge."""
+    """Builds a black board in a wooden frame with scribbles and a ledge."""
     width, height = w.width(0.60, 1.10), w.height(0.50, 0.80)
     w.mount_height_m = 1.05
     frame(w, width, height, 0.035, 0.025, w.look("wood"))
@@ -92,7 +92,7 @@ def chalk_board(w: Workbench) -> None:
 
 
 def planner(w: Workbench) -> None:
-    """Wall planner: a grid of coloured cards on a steel sheet."""
+    """Builds a wall planner: a grid of coloured cards on a steel sheet."""
     width, height, steel = w.width(0.60, 1.00), w.height(0.50, 0.75), w.look("steel")
     w.mount_height_m = 1.10
     w.box((0.0, 0.012), (-0.5 * width, 0.5 * width), (0.0, height), steel)

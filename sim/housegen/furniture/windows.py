@@ -1,17 +1,15 @@
-"""What hangs before windows: curtains and blinds; hint `width_m` is their outer width."""
+"""Curtains and blinds; hint `width_m` is their outer width."""
 
 from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import (
-    drape,
-)
+from sim.housegen.furniture.shapes import drape
 from sim.housegen.furniture.workbench import Workbench
 
 
 def single_curtain(w: Workbench) -> None:
-    """One panel of many folds, drawn to one side, on a flat track."""
+    """Builds one curtain of many folds on a flat track, drawn to one side."""
     width, height = w.width(1.4, 2.4), w.height(2.0, 2.3)
     w.box((0.0, 0.10), (-0.5 * width, 0.5 * width), (height - 0.03, height), w.look("metal"), solid=False)
     panel, side = w.length(0.3, 0.45) * width, w.choice((-1, 1))
@@ -21,7 +19,7 @@ def single_curtain(w: Workbench) -> None:
 
 
 def roller_blind(w: Workbench) -> None:
-    """Cloth roll half drawn, bar at its lower edge; hangs from the top of the hinted height."""
+    """Builds a half-drawn roller blind with a bar at its lower edge; it hangs from the top of the hinted height."""
     width, height = w.width(0.90, 1.60), w.height(1.00, 1.40)
     drawn = w.length(0.35, 0.75) * height
     w.rod((0.04, -0.5 * width, height - 0.03), (0.04, 0.5 * width, height - 0.03), 0.028, w.look("metal"), solid=False)
@@ -46,7 +44,7 @@ def roller_blind(w: Workbench) -> None:
 
 
 def slatted_blind(w: Workbench) -> None:
-    """Horizontal slats under a head rail."""
+    """Builds a blind of horizontal slats under a head rail."""
     width, height = w.width(0.90, 1.60), w.height(1.00, 1.40)
     look = w.look("wood")
     w.box((0.0, 0.06), (-0.5 * width, 0.5 * width), (height - 0.05, height), look, solid=False)
@@ -65,7 +63,7 @@ def slatted_blind(w: Workbench) -> None:
 
 
 def curtain_pair(w: Workbench) -> None:
-    """Two gathered panels on a rod with knobs."""
+    """Builds two gathered curtains on a rod with knobs."""
     width, height = w.width(1.4, 2.4), w.height(2.0, 2.3)
     rod, cloth, half = w.look("iron"), w.look("curtain"), 0.5 * width - 0.022
     z = height - 0.022
@@ -83,7 +81,7 @@ def curtain_pair(w: Workbench) -> None:
 
 
 def tied_back(w: Workbench) -> None:
-    """Two panels tied back at half height under a straight pelmet."""
+    """Builds two curtains tied back at half height under a straight pelmet."""
     width, height = w.width(1.4, 2.4), w.height(2.0, 2.3)
     cloth, tie = w.look("curtain"), w.look("brass")
     w.box((0.0, 0.14), (-0.5 * width, 0.5 * width), (height - 0.16, height), cloth, solid=False)
@@ -106,7 +104,7 @@ def tied_back(w: Workbench) -> None:
 
 
 def sheer(w: Workbench) -> None:
-    """One thin translucent panel over the whole width, hung by rings."""
+    """Builds one thin translucent curtain over the whole width, hung by rings."""
     width, height = w.width(1.4, 2.4), w.height(2.0, 2.3)
     metal, cloth = w.look("metal"), w.look("sheer")
     z = height - 0.014
@@ -117,7 +115,7 @@ def sheer(w: Workbench) -> None:
 
 
 def cafe(w: Workbench) -> None:
-    """Short gathered valance over two narrow panels."""
+    """Builds a short gathered valance over two narrow curtains."""
     width, height = w.width(1.4, 2.4), w.height(2.0, 2.3)
     wood, cloth = w.look("wood"), w.look("curtain")
     z = height - 0.018
@@ -135,7 +133,7 @@ def cafe(w: Workbench) -> None:
 
 
 def venetian(w: Workbench) -> None:
-    """Metal slats, let down part of the way."""
+    """Builds a blind of metal slats, let down part of the way."""
     width, height = w.width(0.90, 1.60), w.height(1.00, 1.40)
     look = w.look("lacquer")
     w.box((0.0, 0.05), (-0.5 * width, 0.5 * width), (height - 0.04, height), look, solid=False)
@@ -161,7 +159,7 @@ def venetian(w: Workbench) -> None:
 
 
 def roman(w: Workbench) -> None:
-    """Cloth blind drawn up in soft horizontal folds."""
+    """Builds a cloth blind drawn up in soft horizontal folds."""
     width, height = w.width(0.90, 1.60), w.height(1.00, 1.40)
     cloth = w.look("curtain")
     w.box((0.0, 0.045), (-0.5 * width, 0.5 * width), (height - 0.05, height), w.look("wood"), solid=False)

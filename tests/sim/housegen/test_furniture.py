@@ -19,7 +19,8 @@ from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Pool
 from sim.housegen.furniture.shapes import MAX_VERTICES
-from sim.housegen.furniture.workbench import Workbench, euler_from_matrix, matrix_from_euler
+from sim.housegen.furniture.transforms import euler_from_matrix, matrix_from_euler
+from sim.housegen.furniture.workbench import Workbench
 from sim.housegen.mjcf import ASSETS_DIR
 from sim.housegen.textures import TEXTURES
 from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
