@@ -1,13 +1,13 @@
-"""Light furniture that the robot can push: what of it is touched, what it weighs, how it slides.
+"""Light furniture that the robot can push: its collision geoms, its mass and its friction.
 
-A movable thing looks like its static twin and is touched as the same few blocks (`sim.housegen.merging`), but by boxes,
-capsules and spheres only: MuJoCo has exact contacts for pairs of these, while cylinders and meshes that touch lightly
-get wrong normals now and then, and jump. Rods become capsules, upright round things octagons of four boxes.
+A movable looks like the static item and collides as the same few boxes (`sim.housegen.collision`), but only with boxes,
+capsules and spheres: MuJoCo has exact contacts for pairs of these, while cylinders and meshes in light contact
+sometimes get wrong normals and jump. Rods become capsules, upright round parts become octagons of four boxes.
 
 Masses: retail weights of dining chairs are 4.5-9 kg and of office chairs 9-18 kg (sizepedia.org, How much does a chair
-weigh); the styles give theirs. A plant weighs what its pot holds: moist soilless potting mix has 0.3-0.5 kg a litre,
-and a decorative pot holds a smaller nursery pot. Friction: felt or nylon glides on a hard floor 0.2; bare
-pots 0.3 (polished wood 0.25-0.5, glazed 0.2-0.4); castors roll at 0.05.
+weigh); the styles set their own. The mass of a plant is that of the soil in its pot: moist soilless potting mix has
+0.3-0.5 kg per litre, and a decorative pot contains a smaller nursery pot. Friction: felt or nylon glides on a hard
+floor have 0.2, bare pots 0.3 (polished wood 0.25-0.5, glazed 0.2-0.4), rolling castors 0.05.
 """
 
 from __future__ import annotations
@@ -20,40 +20,40 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.housegen.collision import collision_boxes
 from sim.housegen.furniture.item import Geom, Item, MeshShape
-from sim.housegen.furniture.workbench import bounds, euler_from_matrix, geom_bounds, matrix_from_euler
-from sim.housegen.merging import collision_boxes
+from sim.housegen.furniture.transforms import bounds, euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.housegen.triangles import facets
 
 MAX_PUSH_N = 20.0
-"""What needs more to slide stays where it is: the robot gives up at 25 N."""
+"""Largest force that may be needed to push an item: the robot can exert 25 N. Heavier items stay static."""
 GRAVITY_M_S2 = 9.81
 GLIDES, POTTERY, CASTORS, RUBBER = 0.2, 0.3, 0.05, 0.4
-"""Sliding friction of what furniture stands on; it wins over the floor's."""
+"""Sliding friction of a movable's underside; it overrides the floor's."""
 ROLLING_M = 0.01
-"""Rolling friction of balls: one pushed to 0.5 m/s comes to rest within a metre or two."""
+"""Rolling friction of balls: a ball pushed to 0.5 m/s comes to rest within one or two metres."""
 SOIL_KG_M3 = 350.0
 PLANT_KG = (3.0, 6.5)
 FOLIAGE_SHARE = 0.05
-"""Weight of a square metre of a plant's stem and crown against one of its pot, which is full of soil."""
+"""Mass of a square metre of a plant's stem and crown relative to one of its pot, which is full of soil."""
 GYM_BALL_KG, MEDICINE_BALL_KG, LARGE_BALL_M = 1.2, 3.0, 0.2
-"""A gymnastic ball weighs 0.9-1.4 kg, a medicine ball 1-5 kg; what tells them apart is the radius."""
+"""A gymnastic ball weighs 0.9-1.4 kg, a medicine ball 1-5 kg; balls above the given radius are gymnastic balls."""
 DUMBBELL_KG, ROLLER_KG = 3.0, 0.6
 _ON_FLOOR_M = 0.02
 _SLENDER = 1.8
-"""A cylinder whose half length is this many radii is a rod."""
+"""A cylinder whose half length is at least this many radii is a rod."""
 _OCTAGON = 0.96
-"""Half width of the octagon that stands for a circle of radius 1: as much too wide at its corners as too narrow."""
+"""Half width of the octagon that replaces a circle of radius 1: it is as much too wide as too narrow."""
 
 
 @dataclass(frozen=True)
 class Movable:
-    """A thing with a free joint, in the item's frame."""
+    """A body with a free joint, in the item's frame."""
 
     item: Item
-    """How it looks: none of its geoms is solid."""
-    touched: tuple[Geom, ...]
-    """What bodies meet; never drawn."""
+    """Its appearance: none of its geoms is solid."""
+    collision_geoms: tuple[Geom, ...]
+    """Geoms that collide and are not rendered."""
     mass_kg: float
     centre_m: tuple[float, float, float]
     """Centre of mass."""
@@ -61,24 +61,24 @@ class Movable:
     """About the centre of mass: xx, yy, zz, xy, xz, yz."""
     friction: float
     rolls: bool = False
-    """It needs rolling friction to come to rest."""
-    at_m: tuple[float, float] = (0.0, 0.0)
-    """Where its frame lies in that of the item it was part of; it is not turned against it."""
+    """Whether it needs rolling friction to come to rest."""
+    offset_m: tuple[float, float] = (0.0, 0.0)
+    """Position of its frame in the frame of the item that it was part of; both have the same orientation."""
 
 
 def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
-    """Take apart what of an item stays in place and what can be pushed.
+    """Splits an item into what stays in place and what can be pushed.
 
     Returns:
-        The static rest, None where nothing is left, and the movable things; an item that is too heavy, is fixed to
-        something or carries other things is all rest.
+        The static rest, None where nothing is left, and the movables; an item that is too heavy, is fixed to
+        something or carries other items is all rest.
     """
     if item.mount != "floor" or item.children or item.walk_over:
         return item, ()
     if item.category == "gym_equipment":
         return _light_parts(item)
     if item.category in ("chair", "stool") and item.mass_kg is not None:
-        friction = CASTORS if _on_castors(item) else GLIDES
+        friction = CASTORS if _has_castors(item) else GLIDES
         made = _movable(item, item.mass_kg, friction)
     elif item.category == "plant":
         made = _movable(item, _plant_kg(item), POTTERY)
@@ -90,23 +90,24 @@ def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
 
 
 def _movable(item: Item, mass_kg: float, friction: float, *, rolls: bool = False) -> Movable:
+    """Returns an item as a body of this mass and friction."""
     solid = [geom for geom in item.geoms if geom.solid and not _is_foliage(item, geom)]
-    touched = [shape for geom in collision_boxes(solid, item) for shape in collision_shapes(geom)]
+    collision_geoms = [shape for geom in collision_boxes(solid, item) for shape in _exact_shapes(geom)]
     centre, inertia = _mass_properties(item, mass_kg)
     look = replace(item, geoms=tuple(replace(geom, solid=False) for geom in item.geoms))
-    return Movable(look, tuple(touched), round(mass_kg, 2), centre, inertia, friction, rolls)
+    return Movable(look, tuple(collision_geoms), round(mass_kg, 2), centre, inertia, friction, rolls)
 
 
 def _is_foliage(item: Item, geom: Geom) -> bool:
-    """Whether a geom is a plant's stem or crown: they give way, so that a plant is touched at its pot."""
+    """Returns whether a geom is a plant's stem or crown, which do not collide."""
     return item.category == "plant" and geom_bounds(geom)[0][2] >= _ON_FLOOR_M
 
 
-# ---- what is touched -------------------------------------------------------------------------------------------------
+# ---- collision geoms -------------------------------------------------------------------------------------------------
 
 
-def collision_shapes(geom: Geom) -> list[Geom]:
-    """Boxes, capsules and spheres that stand for one solid geom; the geom itself where it is one of these."""
+def _exact_shapes(geom: Geom) -> list[Geom]:
+    """Returns boxes, capsules and spheres that replace one solid geom; the geom itself if it is one of these."""
     if geom.shape == "cylinder":
         radius, half = geom.size_m
         if half >= _SLENDER * radius:
@@ -125,7 +126,7 @@ def collision_shapes(geom: Geom) -> list[Geom]:
 
 
 def _capsule(rod: Geom, radius: float, half: float) -> Geom:
-    """A capsule as long as a rod; one whose end stands on the floor touches it there with its tip."""
+    """Returns a capsule as long as a rod; the tip of a capsule that stands on the floor touches the floor."""
     axis, centre = _axis(rod), np.asarray(rod.pos_m)
     up = axis if axis[2] >= 0 else -axis
     low, high = centre - (half - radius) * up, centre + (half - radius) * up
@@ -136,7 +137,7 @@ def _capsule(rod: Geom, radius: float, half: float) -> Geom:
 
 
 def _layers(geom: Geom, mesh: MeshShape) -> list[Geom]:
-    """An upright round thing as one octagon, a high one as two, each as wide as the widest ring in it."""
+    """Returns an upright round mesh as one octagon, a high one as two, each as wide as its widest ring."""
     vertices = mesh.vertices_m
     low, high = float(vertices[:, 2].min()), float(vertices[:, 2].max())
     cuts = [low, 0.5 * (low + high), high] if high - low > 0.12 else [low, high]
@@ -151,7 +152,7 @@ def _layers(geom: Geom, mesh: MeshShape) -> list[Geom]:
 
 
 def _octagon(geom: Geom, at: tuple[float, float, float], half: tuple[float, float, float]) -> list[Geom]:
-    """Four boxes through the axis whose union is an octagonal prism, stretched where it is no circle."""
+    """Returns four boxes through the axis whose union is an octagonal prism with half sizes `half`."""
     rx, ry, hz = half
     long, short = _OCTAGON, _OCTAGON * math.tan(math.pi / 8)
     boxes = [
@@ -166,7 +167,7 @@ def _octagon(geom: Geom, at: tuple[float, float, float], half: tuple[float, floa
 
 
 def _box(geom: Geom, middle: NDArray, half: NDArray, turn: NDArray | None = None) -> Geom:
-    """A box given in the frame of a geom, in the geom's stead."""
+    """Returns a box, given in the frame of a geom, that replaces the geom."""
     rotation = matrix_from_euler(*geom.euler_rad)
     at = np.asarray(geom.pos_m) + rotation @ middle
     size = tuple(round(float(max(h, 0.002)), 4) for h in half)
@@ -174,11 +175,11 @@ def _box(geom: Geom, middle: NDArray, half: NDArray, turn: NDArray | None = None
     return replace(geom, shape="box", mesh=None, size_m=size, pos_m=_rounded(at), euler_rad=euler)
 
 
-# ---- what it weighs --------------------------------------------------------------------------------------------------
+# ---- mass ------------------------------------------------------------------------------------------------------------
 
 
 def _plant_kg(item: Item) -> float:
-    """Weight of the soil that the pot's outer box could hold, within what a decorative pot's insert holds."""
+    """Returns the mass of soil that the pot's bounding box could hold, limited to what a nursery pot holds."""
     pot = [geom for geom in item.geoms if geom.solid and geom_bounds(geom)[0][2] < _ON_FLOOR_M]
     low, high = bounds(pot)
     return float(np.clip(SOIL_KG_M3 * 0.6 * np.prod(high - low), *PLANT_KG))
@@ -187,10 +188,10 @@ def _plant_kg(item: Item) -> float:
 def _mass_properties(
     item: Item, mass_kg: float
 ) -> tuple[tuple[float, float, float], tuple[float, float, float, float, float, float]]:
-    """Centre of mass and inertia of a mass spread over the surfaces of the solid geoms.
+    """Returns centre of mass and inertia of a mass that is spread over the surfaces of the solid geoms.
 
-    Furniture is made of boards, tubes and shells, whose weight follows their area rather than their volume. The middles
-    of a triangle's edges, a third of it each, have its exact first and second moments.
+    Furniture is made of boards, tubes and shells, whose mass depends on their area rather than on their volume. The
+    midpoints of a triangle's edges, each with a third of its mass, have its exact first and second moments.
     """
     points, weights = [], []
     for geom in item.geoms:
@@ -215,12 +216,12 @@ def _mass_properties(
 
 
 def _light_parts(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
-    """Balls, dumbbells and rollers that lie on the floor by themselves become things of their own."""
+    """Splits off balls, dumbbells and rollers that lie separately on the floor, each as a movable of its own."""
     rest: list[Geom] = []
     made: list[Movable] = []
     for part in _separate(item.geoms):
-        weight = _light_kg(part)
-        if weight is None:
+        mass_kg = _light_kg(part)
+        if mass_kg is None:
             rest += part
             continue
         rolls = part[0].shape == "sphere" or len(part) == 1
@@ -228,12 +229,12 @@ def _light_parts(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         x, y, _ = _rounded(0.5 * (low + high))
         moved = tuple(replace(geom, pos_m=_rounded(np.subtract(geom.pos_m, (x, y, 0.0)))) for geom in part)
         alone = replace(item, geoms=moved, size_m=_rounded(high - low), surfaces=())
-        made.append(replace(_movable(alone, weight, RUBBER, rolls=rolls), at_m=(x, y)))
+        made.append(replace(_movable(alone, mass_kg, RUBBER, rolls=rolls), offset_m=(x, y)))
     return (replace(item, geoms=tuple(rest)) if rest else None), tuple(made)
 
 
 def _light_kg(part: Sequence[Geom]) -> float | None:
-    """Weight of a ball, a foam roller or a dumbbell on the floor; None for anything else."""
+    """Returns the mass of a ball, a foam roller or a dumbbell on the floor; None for anything else."""
     if bounds(part)[0][2] > _ON_FLOOR_M or not all(geom.solid for geom in part):
         return None
     if len(part) == 1 and part[0].shape == "sphere":
@@ -245,7 +246,7 @@ def _light_kg(part: Sequence[Geom]) -> float | None:
 
 
 def _separate(geoms: Sequence[Geom]) -> list[list[Geom]]:
-    """Groups of geoms whose boxes touch, in the order of their first geoms."""
+    """Returns groups of geoms whose boxes touch, in the order of their first geoms."""
     boxes = [geom_bounds(geom) for geom in geoms]
     group = list(range(len(geoms)))
     for i, (low, high) in enumerate(boxes):
@@ -256,12 +257,12 @@ def _separate(geoms: Sequence[Geom]) -> list[list[Geom]]:
     return [[geom for geom, g in zip(geoms, group, strict=True) if g == number] for number in dict.fromkeys(group)]
 
 
-def _on_castors(item: Item) -> bool:
+def _has_castors(item: Item) -> bool:
     return any(geom.shape == "sphere" and geom_bounds(geom)[0][2] < _ON_FLOOR_M for geom in item.geoms)
 
 
 def _axis(geom: Geom) -> NDArray[np.float64]:
-    """Direction (3,) of a geom's local z in the item frame."""
+    """Returns the direction (3,) of a geom's local z in the item frame."""
     return matrix_from_euler(*geom.euler_rad)[:, 2]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.housegen.furniture.item import Geom, Item
-from sim.housegen.furniture.workbench import euler_from_matrix, geom_bounds, matrix_from_euler
+from sim.housegen.furniture.transforms import euler_from_matrix, geom_bounds, matrix_from_euler
 from sim.housegen.mjcf import PlacedItem
 from sim.housegen.rectangles import OPPOSITE, Rect, Side, footprint
 
@@ -31,9 +30,8 @@ class Placement:
         return self.placed.item
 
     def to_world(self, x_m: float, y_m: float) -> tuple[float, float]:
-        """Returns the world position of a point of the item's frame."""
-        c, s = math.cos(self.placed.yaw_rad), math.sin(self.placed.yaw_rad)
-        return self.placed.x_m + c * x_m - s * y_m, self.placed.y_m + s * x_m + c * y_m
+        """Returns the world position in plan of a point of the item's frame."""
+        return self.placed.to_world(x_m, y_m)
 
 
 def floor_placement(item: Item, x_m: float, y_m: float, yaw_rad: float, side: Side | None = None) -> Placement:
