@@ -1,4 +1,4 @@
-"""A random walk and the Stubborn agent in the same episode of the Gymnasium environment.
+"""Runs a random agent and the Stubborn agent in the same episode of the Gymnasium environment.
 
 python examples/gym_agents.py
 """
@@ -12,7 +12,7 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 
 def play(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
-    """One episode with an agent of that name; returns the last `info`."""
+    """Runs one episode with the agent of a name; returns the last `info`."""
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", sensors=("depth", "semantic"), max_steps=max_steps)
     world, env = env.unwrapped, RecordEpisodeStatistics(env)
     assert isinstance(world, ObjectNavEnv)

@@ -1,13 +1,13 @@
-"""Labelled views as WebDataset shards, for training segmentation networks.
+"""Generates labelled views as WebDataset shards, for training segmentation networks.
 
 python tools/generate_views.py --split train --views 100000 --out /data/views --workers 2
 python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide --workers 2
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
-of freshly generated ones. With --pool wide all are freshly generated, and have more styles of furniture than any house
-of a split. Killed and started again it goes on; the same options give the same bytes. Several machines
-may share the work with --shard 0/4, 1/4, ...; whoever ends last writes an index of everything.
+of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
+The same command continues a killed run; the same options give the same bytes. Several machines can share the work
+with --shard 0/4, 1/4, ...; the last to finish writes an index of all shards.
 """
 
 from __future__ import annotations
@@ -32,38 +32,38 @@ from sim.env.scene import Scene
 from sim.episodes.splits import Split, load_split
 from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
-from sim.evaluation.parallel import Share, ordered_map
-from sim.housegen.furniture import CATALOGUE, styles
-from sim.housegen.shipped import Recipe, train_recipe
+from sim.evaluation.parallel import Shard, ordered_map
+from sim.housegen.furniture import CATALOGUE
+from sim.housegen.split_recipes import Recipe, train_recipe
 from sim.houses.house import House
 from sim.interface import CameraModel, ConfigError
 from sim.robot.config import RobotConfig
-from sim.sensors.camera import describe_gl
+from sim.sensors.opengl import describe_gl
 from sim.sensors.profiles import get_profile
 
 FRESH_SEEDS_FROM = 1_000_000
-"""Seeds of freshly generated houses: none of a shipped split is as high."""
+"""Smallest seed of new houses; the seeds of the shipped splits are lower."""
 
 WIDE = "wide"
-"""The pool of houses with styles that no split shows."""
+"""The pool with styles of furniture that no split has."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Which views, how many, and where they go."""
+    """Generate labelled views of houses."""
 
     split: str = "train"
-    """Houses of a shipped split, or of a folder laid out like one."""
+    """Houses of a shipped split, or of a folder with the same layout."""
     pool: str | None = None
-    """wide: freshly generated houses alone, with train's furniture and many more styles."""
+    """wide: new houses only, with the furniture of train and many more styles."""
     views: int = 1000
-    """How many, over all shards."""
+    """Number of views in all shards."""
     out: Path
-    """Folder of the shards; shards that are there and whole are kept."""
+    """Folder of the shards; complete shards in it are kept."""
     workers: int = 1
-    """Processes."""
+    """Number of processes."""
     shard: str = "0/1"
-    """i/n: make every n-th shard from the i-th on."""
+    """i/n: generate every n-th shard from the i-th on."""
     executor: str = "local"
     """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
     address: str | None = None
@@ -71,39 +71,39 @@ class Args:
     profile: str = "good"
     """Rendering quality: good or fast."""
     seed: int = 0
-    """Draws houses and poses."""
+    """Seed of houses and poses."""
     views_per_shard: int = 250
-    """Views of one house."""
+    """Number of views in a shard, all of one house."""
     shrink: int = 1
-    """Store views smaller by this factor: 2 gives 320 x 240."""
+    """Factor by which the views are reduced: 2 gives 320 x 240."""
     rgb: str = "jpg"
-    """Colour as jpg or png."""
+    """Format of the colour images: jpg or png."""
     check: bool = False
-    """Compare the checksums of all shards that are there, not only their sizes."""
+    """Compare the checksums of existing shards, besides their sizes."""
 
 
 @dataclass(frozen=True)
 class ShardTask:
-    """One shard to make."""
+    """One shard to generate."""
 
     number: int
     views: int
     house: str
     fresh_seed: int | None
-    """Seed of a house that is in no split."""
+    """Seed of a new house; None: the house is one of the split."""
 
 
 def main(args: Args) -> int:
-    """Make what is missing, then write the index; returns the exit status."""
-    picked = _picked(args)
+    """Generates the missing shards, then writes the index; returns the exit status."""
+    is_ours = _shard_filter(args)
     executor = make_executor(args.executor, workers=args.workers, address=args.address)
     split = load_split(args.split)
     tasks, config = plan(args, split), _config(args, split)
     args.out.mkdir(parents=True, exist_ok=True)
     notes = {task.number: _kept(args, task, config) for task in tasks}
     missing = [task for task in tasks if notes[task.number] is None]
-    todo = [task for task in missing if picked(task.number)]
-    print(f"{len(tasks)} shards, {len(tasks) - len(missing)} of them there, {len(todo)} to make here.", flush=True)
+    todo = [task for task in missing if is_ours(task.number)]
+    print(f"{len(tasks)} shards, {len(tasks) - len(missing)} complete, {len(todo)} to generate here.", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
         made += note.views
@@ -111,18 +111,18 @@ def main(args: Args) -> int:
         print(f"{note.shard}: {note.views} views of {note.house}, {note.size_bytes >> 20} MB, {rate:.1f} views/s")
         sys.stdout.flush()
         notes[int(note.shard.rsplit("-", 1)[1])] = note
-    # Others may have made theirs meanwhile.
-    whole = [
+    # Other machines may have finished shards in the meantime.
+    complete = [
         n for task in tasks if (n := notes[task.number] or read_note(args.out, shard_name(task.number), verify=False))
     ]
     command = "python tools/generate_views.py " + _command(args)
-    index = write_index(args.out, whole, command=command, config=config)
+    index = write_index(args.out, complete, command=command, config=config)
     print(_summary(index))
     return 0
 
 
 def plan(args: Args, split: Split) -> list[ShardTask]:
-    """Every shard, whoever makes it."""
+    """Returns all shards, on all machines."""
     rng = np.random.default_rng([args.seed, 0])
     houses = [split.houses[i] for i in rng.permutation(len(split.houses)).tolist()]
     if not houses:
@@ -138,10 +138,10 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
 
 
 def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
-    """One shard, in any process.
+    """Generates one shard, in any process.
 
     Raises:
-        ConfigError: it cannot be written.
+        ConfigError: the shard cannot be written.
         HouseError: the house gives no views.
     """
     began = time.perf_counter()
@@ -163,7 +163,7 @@ def _house(args: Args, task: ShardTask) -> House:
         return load_split(args.split).load_house(task.house)
     try:
         return House(task.house, _recipe(args, task.fresh_seed).make().spec)
-    except HouseError:  # a seed without a house: its neighbour, for everybody who makes this shard
+    except HouseError:  # this seed gives no house: another fixed one replaces it
         return House(task.house, _recipe(args, task.fresh_seed + FRESH_SEEDS_FROM // 2).make().spec)
 
 
@@ -173,10 +173,10 @@ def _recipe(args: Args, seed: int) -> Recipe:
 
 
 def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | None:
-    """The note of a shard that is there and whole.
+    """Returns the note of a complete shard; None where it is missing or broken.
 
     Raises:
-        ConfigError: it was made with other options.
+        ConfigError: the shard was generated with other options.
     """
     note = read_note(args.out, shard_name(task.number), verify=args.check)
     if note is None:
@@ -185,13 +185,13 @@ def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | No
         if config.get(key) != note.config.get(key):
             raise ConfigError(
                 f"--out '{args.out}' holds shards with {key} = {note.config.get(key)!r}, this run has "
-                f"{config.get(key)!r}; take another folder, or the same options to go on."
+                f"{config.get(key)!r}; use another folder, or the same options to continue."
             )
     return note if (note.house, note.views) == (task.house, task.views) else None
 
 
 def _config(args: Args, split: Split) -> dict[str, Any]:
-    """What the bytes of a shard hang on, beside its number."""
+    """Returns the options and versions that the bytes of a shard depend on, besides its number."""
     packages = ("stubborn-objectnav", "mujoco", "numpy", "opencv-python-headless")
     return {
         "split": split.name,
@@ -209,13 +209,14 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
 
 
 def _styles_sha256() -> str:
-    """Of the names of the styles that houses of the pool `wide` draw from: with one more they are other houses."""
-    names = [f"{category}/{name}" for category in CATALOGUE for name in styles(category, WIDE)]
+    """Returns a hash of the names of the styles in the pool `wide`: a new style changes the houses."""
+    styles = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category, WIDE))
+    names = [f"{style.category}/{style.name}" for style in styles]
     return hashlib.sha256("\n".join(names).encode()).hexdigest()
 
 
-def _picked(args: Args) -> Callable[[int], bool]:
-    """Which shards are made here; refuses options that cannot be."""
+def _shard_filter(args: Args) -> Callable[[int], bool]:
+    """Returns the test for shards that are generated here; raises ConfigError for invalid options."""
     for name in ("views", "workers", "views_per_shard", "shrink"):
         if getattr(args, name) < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
@@ -228,11 +229,11 @@ def _picked(args: Args) -> Callable[[int], bool]:
         raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
-    return Share.parse(args.shard).takes
+    return Shard.parse(args.shard).contains
 
 
 def _command(args: Args) -> str:
-    """The options that make the same shards."""
+    """Returns the options that generate the same shards."""
     keys = ("split", "pool", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
     given = [(key, value) for key in keys if (value := getattr(args, key)) is not None]
     return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(value))}" for key, value in given) + " --out DIR"

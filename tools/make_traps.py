@@ -15,7 +15,7 @@ from pathlib import Path
 
 from sim import cli
 from sim.episodes import habitat
-from sim.episodes.reachable_goals import survey
+from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
 from sim.housegen.mjcf import ASSETS_DIR, TEXTURE_DIR
@@ -49,7 +49,7 @@ def main(args: Args) -> int:
         path = args.out / f"{name}.xml"
         write_scene(path, trap)
         task = Task(World(load_house(path)))
-        goals[name] = {goal: listed for goal, listed in survey(task).listed.items() if goal == trap.goal}
+        goals[name] = {goal: listed for goal, listed in find_reachable_goals(task).listed.items() if goal == trap.goal}
         episodes += draw_episodes(name, trap, task)
         print(f"{name}: {episodes[-1].shortest_path_m:.1f} m, {path.stat().st_size / 1000:.0f} KB")
     write_split(args.out, list(in_turns(episodes)), goals, version=args.version)

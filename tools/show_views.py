@@ -1,4 +1,4 @@
-"""A sheet of random views out of shards: colour, depth and labels side by side.
+"""Draws a sheet of random views from shards: colour, depth and labels side by side.
 
 python tools/show_views.py --views runs/views --out runs/views.png
 """
@@ -23,20 +23,20 @@ WIDTH_PX = 400
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Which views to draw."""
+    """Draw a sheet of random views."""
 
     views: Path
     """Folder of shards."""
     out: Path
     """The PNG file."""
     count: int = 12
-    """How many views."""
+    """Number of views."""
     seed: int = 0
-    """Draws them."""
+    """Seed of the choice of views."""
 
 
 def main(args: Args) -> int:
-    """Draw the sheet and say where it is."""
+    """Draws the sheet and prints its path."""
     if args.count < 1:
         raise ConfigError(f"--count must be at least 1, got {args.count}.")
     rng = np.random.default_rng(args.seed)
@@ -44,9 +44,9 @@ def main(args: Args) -> int:
     picked = [shards[i] for i in rng.permutation(len(shards))[: args.count]]
     views: list[LabelledView] = []
     for number, shard in enumerate(picked):
-        there = list(read_shard(shard))
+        in_shard = list(read_shard(shard))
         share = -(-(args.count - len(views)) // (len(picked) - number))
-        views += [there[i] for i in rng.permutation(len(there))[:share]]
+        views += [in_shard[i] for i in rng.permutation(len(in_shard))[:share]]
     args.out.parent.mkdir(parents=True, exist_ok=True)
     cv2.imwrite(str(args.out), cv2.cvtColor(tile([draw(view) for view in views], columns=2), cv2.COLOR_RGB2BGR))
     print(f"{len(views)} views in {args.out}")
@@ -54,7 +54,7 @@ def main(args: Args) -> int:
 
 
 def draw(view: LabelledView) -> NDArray[np.uint8]:
-    """Colour, depth (near is bright, no return is black) and labels of a view."""
+    """Returns an image of colour, depth (near is bright, no return is black) and labels of a view."""
     near = np.where(view.depth_m > 0.0, 255.0 - 230.0 * view.depth_m / max(float(view.depth_m.max()), 0.1), 0.0)
     grey = cv2.cvtColor(near.astype(np.uint8), cv2.COLOR_GRAY2RGB)
     height_px = round(WIDTH_PX * view.rgb.shape[0] / view.rgb.shape[1])

@@ -1,9 +1,9 @@
-"""Shards of views as folders of PNG files, for training code that wants those.
+"""Unpacks shards of views into folders of PNG files, for training code that reads those.
 
 python tools/unpack_views.py --views runs/views --out runs/views_png
 
 Writes `rgb/<key>.png`, `depth/<key>.png` (uint16 millimetres), `semantic/<key>.png` (uint8 mpcat40 id; 0 is void) and
-`record/<key>.json`. What is there already is left alone, so that it can be stopped and started again.
+`record/<key>.json`. Existing views are kept, so that the same command continues a stopped run.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """From where to where."""
+    """Unpack shards of views into PNG files."""
 
     views: Path
     """Folder of shards."""
     out: Path
-    """Folder of the folders; made if missing."""
+    """Folder for the PNG files; it is created."""
 
 
 def main(args: Args) -> int:
-    """Unpack every shard and say how many views there were."""
+    """Unpacks every shard and prints the number of views."""
     count = 0
     for shard in list_shards(args.views):
         for view in read_shard(shard):

@@ -1,8 +1,8 @@
-"""Views in WebDataset tar shards: written whole or not at all, byte for byte the same from the same seed.
+"""WebDataset tar shards of views: written completely or not at all; the same seed gives the same bytes.
 
 A shard `views-000012.tar` holds `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16 millimetres), `key.semantic.png`
-(uint8 mpcat40 id) and `key.json` for each view. Beside it `views-000012.json` says what is in it, with its checksum;
-a shard without that, or with another checksum, is broken and is made again.
+(uint8 mpcat40 id) and `key.json` for each view. The note beside it, `views-000012.json`, holds its statistics and its
+checksum; a shard without a note, or with another checksum, is broken and is made again.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ from sim.interface import MPCAT40, ConfigError
 
 JPEG_QUALITY = 92
 PNG_LEVEL = 1
-"""zlib's fastest: twice as fast as the default and a tenth larger."""
+"""Level of zlib, the fastest: twice as fast as the default, with files a tenth larger."""
 INDEX_FILE = "index.json"
 
 
 @dataclass
 class ShardNote:
-    """What the file beside a shard says."""
+    """Content of the note, the JSON file beside a shard."""
 
     shard: str
     house: str
@@ -43,27 +43,27 @@ class ShardNote:
     sha256: str
     size_bytes: int
     pixels: dict[str, int]
-    """Pixels of each mpcat40 category."""
+    """Number of pixels of each mpcat40 category."""
     views_with: dict[str, int]
-    """Views that show each category."""
+    """Number of views that show each category."""
     config: dict[str, Any] = field(default_factory=dict)
-    """What the bytes hang on."""
+    """Options and versions that the bytes depend on."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """Where the time went: render, encode, write."""
+    """Time by stage: render, encode, write."""
 
 
 def shard_name(number: int) -> str:
-    """`views-000012`"""
+    """Returns the name of a shard, for example `views-000012`."""
     return f"views-{number:06d}"
 
 
 def write_shard(
     folder: Path, name: str, views: Iterable[View], *, house: str, config: Mapping[str, Any], rgb_format: str = "jpg"
 ) -> ShardNote:
-    """Write views as one shard and its note, in that order, so that a note means a whole shard.
+    """Writes views as one shard, then its note, so that a shard with a note is complete.
 
     Raises:
-        ConfigError: the disk is full or cannot be written; nothing half-written stays.
+        ConfigError: the disk is full or cannot be written; partial files are removed.
     """
     tar, note_file = folder / f"{name}.tar", folder / f"{name}.json"
     part = folder / f".{name}.{os.getpid()}.part"
@@ -92,8 +92,8 @@ def write_shard(
         write_atomically(note_file, (json.dumps(note.__dict__, indent=1) + "\n").encode())
     except OSError as error:
         raise ConfigError(
-            f"Shard '{tar}' cannot be written: {error.strerror or error}. The shards that are there are whole; "
-            "the same command goes on when there is room."
+            f"Shard '{tar}' cannot be written: {error.strerror or error}. The finished shards are complete; "
+            "run the same command again to continue."
         ) from None
     finally:
         with contextlib.suppress(OSError):
@@ -102,12 +102,12 @@ def write_shard(
 
 
 def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
-    """The note of a shard; None where the shard has to be made (again).
+    """Returns the note of a shard; None where the shard is missing or broken.
 
     Args:
-        folder: where the shards lie.
-        name: of the shard.
-        verify: compare the checksum of the whole file, else only its size.
+        folder: folder of the shards.
+        name: name of the shard.
+        verify: whether to compare the checksum of the file, besides its size.
     """
     tar = folder / f"{name}.tar"
     try:
@@ -120,7 +120,7 @@ def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
 
 
 def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Write `index.json`: the shards, counts by category and the command that made them; returns its content."""
+    """Writes `index.json`: the shards, counts by category and the command that made them; returns its content."""
     views = sum(note.views for note in notes)
     total = max(1, sum(sum(note.pixels.values()) for note in notes))
     categories = {
@@ -161,14 +161,14 @@ def _encoded(view: View, rgb_format: str) -> list[tuple[str, bytes]]:
 
 
 def _image(suffix: str, image: NDArray, options: Sequence[int]) -> bytes:
-    done, buffer = cv2.imencode(suffix, image, options)
-    if not done:
+    succeeded, buffer = cv2.imencode(suffix, image, options)
+    if not succeeded:
         raise ConfigError(f"OpenCV cannot write '{suffix}' images here.")
     return buffer.tobytes()
 
 
 def _entry(name: str, size: int) -> tarfile.TarInfo:
-    """A member without time and owner, so that the same views are the same bytes."""
+    """Returns an archive member without time and owner, so that the same views give the same bytes."""
     entry = tarfile.TarInfo(name)
     entry.size, entry.mode = size, 0o644
     return entry

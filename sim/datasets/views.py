@@ -1,7 +1,7 @@
-"""Labelled views for training a segmentation network: where to look from, what to keep, what a view says of itself.
+"""Labelled views for training a segmentation network: sampling of poses, rejection of bare walls, metadata.
 
-Half of the views look from anywhere a robot can stand in any direction; the other half lie along shortest ways between
-two places of the house, on the 30 deg grid of headings that an exploring robot has.
+Half of the views are from random free positions in random directions; the other half are along shortest paths between
+two positions of the house, on the 30 deg grid of headings of an exploring robot.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, MPCAT40_ID, TURN_RAD, CameraModel, wrap_angle
 from sim.world.freespace import FreeSpace
 
-DULL_SHARE = 0.97
-"""A view is thrown away when wall, floor, ceiling and void cover more than this ..."""
-DULL_DEPTH_M = 1.2
-"""... and half of it is nearer than this: a wall from nearby teaches nothing."""
-VIEWS_A_PATH = 12
-"""Views taken along one way at most."""
+BARE_SHARE = 0.97
+"""A view is rejected if wall, floor, ceiling and void cover more than this share and its median depth is small."""
+BARE_DEPTH_M = 1.2
+"""Median depth below which such a view is rejected: a near wall holds no information."""
+VIEWS_PER_PATH = 12
+"""Largest number of views along one path."""
 _MAX_TRIES = 40
-_PLAIN = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
+_STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 
 
 @dataclass(frozen=True)
@@ -39,35 +39,35 @@ class View:
     rgb: NDArray[np.uint8]
     """(h, w, 3)"""
     depth_mm: NDArray[np.uint16]
-    """(h, w) millimetres along the optical axis; 0: no return or nearer than the camera's range, its end: farther."""
+    """(h, w) millimetres along the optical axis; 0: no return or below the camera's range; its maximum: beyond it."""
     semantic: NDArray[np.uint8]
     """(h, w) mpcat40 id"""
     record: dict[str, Any]
-    """House, pose, intrinsics, profile and versions, as JSON has them."""
+    """House, pose, intrinsics, profile and versions; JSON types."""
 
 
 def sample_views(
     scene: Scene, rng: np.random.Generator, count: int, *, stem: str, record: dict[str, Any], block_px: int = 1
 ) -> Iterator[View]:
-    """Views of one house; the same generator state gives the same views.
+    """Yields views of one house; the same generator state gives the same views.
 
     Args:
-        scene: the house, its robot not seen.
-        rng: draws the poses.
-        count: how many.
+        scene: the house; the robot is not rendered.
+        rng: generator of the poses.
+        count: number of views.
         stem: the keys are `<stem>_<number>`.
-        record: goes into each view's own record.
-        block_px: views are shrunk by this factor: colour is averaged, depth and labels take the middle pixel.
+        record: entries of each view's record.
+        block_px: factor by which views are reduced: colour is averaged, depth and labels take the middle pixel.
 
     Raises:
-        HouseError: there is nowhere to stand, or nothing but walls to see.
+        HouseError: the house has no free position, or shows only bare walls.
     """
     space = scene.task.truth.space(0.0)
     cells = np.argwhere(space.largest_part())
     name = scene.world.house.name
     if len(cells) == 0:
-        raise HouseError(f"House '{name}': the robot can stand nowhere, so there is no view of it.")
-    _stand_anywhere(scene, space, cells, rng)
+        raise HouseError(f"House '{name}': the robot fits nowhere, so there is no view of it.")
+    _start_world(scene, space, cells, rng)
     poses = _poses(space, cells, rng)
     taken = tries = 0
     while taken < count:
@@ -76,24 +76,24 @@ def sample_views(
         tries += 1
         pose, kind = next(poses)
         images = scene.camera.render(scene.world.data, pose, ("depth", "semantic"))
-        if is_dull(images["semantic"], images["depth"]):
+        if is_bare(images["semantic"], images["depth"]):
             continue
         images |= scene.camera.render(scene.world.data, pose, ("rgb",))
         yield _view(f"{stem}_{taken:05d}", images, pose, scene.camera.camera, block_px, record | {"pose_kind": kind})
         taken += 1
 
 
-def is_dull(semantic: NDArray[np.uint8], depth: NDArray[np.float32]) -> bool:
-    """Whether a view shows nothing but bare walls from nearby; every fourth pixel is looked at.
+def is_bare(semantic: NDArray[np.uint8], depth: NDArray[np.float32]) -> bool:
+    """Returns whether a view shows only near bare walls; it tests every fourth pixel in each direction.
 
-    No return counts as near: it is what a surface in front of the lens gives.
+    A pixel without return counts as near, as a surface right in front of the camera has no return.
     """
-    plain = _PLAIN[semantic[::4, ::4]].mean()
-    return bool(plain > DULL_SHARE and np.median(depth[::4, ::4]) < DULL_DEPTH_M)
+    structure = _STRUCTURE[semantic[::4, ::4]].mean()
+    return bool(structure > BARE_SHARE and np.median(depth[::4, ::4]) < BARE_DEPTH_M)
 
 
 def intrinsics(camera: CameraModel, block_px: int) -> dict[str, float]:
-    """Pinhole intrinsics of a shrunk view, pixel centres at half pixels."""
+    """Returns the pinhole intrinsics of a reduced view; pixel centres are at half pixels."""
     focal_px = camera.focal_px / block_px
     return {
         "width_px": camera.width_px // block_px,
@@ -105,8 +105,8 @@ def intrinsics(camera: CameraModel, block_px: int) -> dict[str, float]:
     }
 
 
-def shrink(image: NDArray, block_px: int) -> NDArray:
-    """Every block of pixels as one: (h, w, 3) colour is averaged, (h, w) anything else takes the block's middle."""
+def reduce_image(image: NDArray, block_px: int) -> NDArray:
+    """Returns an image with one pixel for each block: the mean of colour (h, w, 3), else the middle pixel (h, w)."""
     if block_px == 1:
         return image
     height, width = image.shape[:2]
@@ -119,30 +119,30 @@ def shrink(image: NDArray, block_px: int) -> NDArray:
 def _view(
     key: str, images: dict[str, NDArray], pose: Pose, camera: CameraModel, block_px: int, record: dict[str, Any]
 ) -> View:
-    depth_mm = np.rint(shrink(images["depth"], block_px) * 1000.0).astype(np.uint16)
-    of_camera = {"intrinsics": intrinsics(camera, block_px), "camera_height_m": camera.height_m}
+    depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
+    camera_entry = {"intrinsics": intrinsics(camera, block_px), "camera_height_m": camera.height_m}
     pose_entry = {name: round(value, 4) for name, value in asdict(pose).items()}
     return View(
         key,
-        shrink(images["rgb"], block_px),
+        reduce_image(images["rgb"], block_px),
         depth_mm,
-        shrink(images["semantic"], block_px),
-        {"key": key, "pose": pose_entry, **of_camera, **record},
+        reduce_image(images["semantic"], block_px),
+        {"key": key, "pose": pose_entry, **camera_entry, **record},
     )
 
 
 def _poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Iterator[tuple[Pose, str]]:
-    """Poses without end, anywhere and along a way in turn."""
+    """Yields poses without end, along a path and anywhere in turn."""
     while True:
         along = list(_path_poses(space, cells, rng))
-        picked = np.sort(rng.permutation(len(along))[:VIEWS_A_PATH])
+        picked = np.sort(rng.permutation(len(along))[:VIEWS_PER_PATH])
         for i in picked.tolist():
             yield along[i], "path"
             yield _any_pose(space, cells, rng), "anywhere"
 
 
-def _stand_anywhere(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
-    """Start the world: things that can be pushed come to rest; a cell's corner may be too tight for the body."""
+def _start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
+    """Starts the world at a random free position where the body fits, so that movable objects come to rest."""
     for _ in range(_MAX_TRIES):
         try:
             scene.world.reset(_any_pose(space, cells, rng))
@@ -158,7 +158,7 @@ def _any_pose(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generato
 
 
 def _path_poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Iterator[Pose]:
-    """Where a robot stands on the shortest way between two places: after each forward and after each turn."""
+    """Yields the poses of a robot on the shortest path between two positions, after each forward and each turn."""
     goal = np.zeros(space.frame.shape, np.bool_)
     goal[tuple(cells[rng.integers(len(cells))])] = True
     left_m = space.geodesic(goal)
@@ -175,7 +175,7 @@ def _path_poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Genera
 
 
 def _step(space: FreeSpace, left_m: NDArray[np.float32], here: Pose, first_yaw: float) -> Pose | None:
-    """The forward that brings the robot nearest to the way's end; None where none brings it nearer."""
+    """Returns the pose after the forward that comes nearest to the goal; None where no forward comes nearer."""
     yaws = first_yaw + TURN_RAD * np.arange(round(math.tau / TURN_RAD))
     ends = np.stack([here.x_m + FORWARD_M * np.cos(yaws), here.y_m + FORWARD_M * np.sin(yaws)], axis=1)
     cells = space.frame.to_cells(ends)

@@ -32,7 +32,7 @@ class HouseGoals:
     """Names of goal instances for which no place of the free space satisfies success."""
 
 
-def survey(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
+def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
     """Returns the goals of a house that a robot in its largest free space can reach, and those it cannot."""
     rooms, space = task.world.rooms, task.truth.space()
     inside = space.largest_part()

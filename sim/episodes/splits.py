@@ -1,8 +1,8 @@
 """Splits: houses and their episodes (house, goal, start), in a fixed order.
 
 A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see
-`sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it may have a list of
-recipes, `train/houses.json` (see `sim.housegen.house_list`); such houses are generated on first use.
+`sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it
+may have a list of recipes, `train/houses.json` (see `sim.housegen.house_list`); such houses are generated on first use.
 
 `val/unreachable.json` names the objects that no episode asks for, because no place of the free space reaches them.
 """

@@ -1,4 +1,4 @@
-"""The environment is a citizen of Gymnasium: vectors, wrappers, its checker, and an example that plays."""
+"""The environment works with Gymnasium: vectors, wrappers, its checker, and an example."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ def env(options: dict[str, Any]) -> Iterator[gymnasium.Env]:
 
 
 @pytest.mark.filterwarnings("error")
-def test_gymnasiums_checker_accepts_a_shipped_house_as_it_comes() -> None:
+def test_gymnasiums_checker_accepts_a_shipped_house() -> None:
     env = gymnasium.make(ENV_ID, split="traps", camera=SMALL)
     check_env(env.unwrapped)
     env.close()
 
 
 @pytest.mark.parametrize("vectorization_mode", ["sync", "async"])
-def test_a_vector_of_two_plays_as_two_environments_alone(options: dict[str, Any], vectorization_mode: str) -> None:
+def test_a_vector_of_two_equals_two_single_environments(options: dict[str, Any], vectorization_mode: str) -> None:
     seeds, actions = (3, 4), [(1, 2), (1, 1), (3, 1), (0, 1)]
     of_vector = {"vector_kwargs": {"context": "spawn"}} if vectorization_mode == "async" else {}
     envs = gymnasium.make_vec(ENV_ID, num_envs=2, vectorization_mode=vectorization_mode, **of_vector, **options)
@@ -71,8 +71,8 @@ def test_a_vector_of_two_plays_as_two_environments_alone(options: dict[str, Any]
         alone.close()
 
 
-def test_the_bare_id_makes_async_vectors_with_gymnasiums_own_context(house: Path) -> None:
-    """In a process of its own: here, other tests have drawn."""
+def test_the_id_without_module_makes_async_vectors_with_gymnasiums_own_context(house: Path) -> None:
+    """Runs in a process of its own, because other tests have rendered in this one."""
     code = (
         "import gymnasium, sim.gym\n"
         f"envs = gymnasium.make_vec('{ENV_ID}', num_envs=2, vectorization_mode='async', house=r'{house}', "
@@ -85,7 +85,7 @@ def test_the_bare_id_makes_async_vectors_with_gymnasiums_own_context(house: Path
     assert answer.stdout.strip() == "(2, 480, 640) [0.0, 0.0]", answer.stderr
 
 
-def test_a_forked_worker_of_a_process_that_drew_says_so_and_does_not_hang(house: Path) -> None:
+def test_a_forked_worker_of_a_process_that_rendered_raises_and_does_not_hang(house: Path) -> None:
     code = (
         "import gymnasium, sim.gym\n"
         f"options = dict(house=r'{house}', goal='sofa', sensors=('depth',))\n"
@@ -100,7 +100,7 @@ def test_a_forked_worker_of_a_process_that_drew_says_so_and_does_not_hang(house:
     assert "RenderError: OpenGL does not survive a fork" in answer.stderr
 
 
-def test_the_time_limit_of_gymnasium_truncates_and_the_task_goes_on_counting(options: dict[str, Any]) -> None:
+def test_the_time_limit_of_gymnasium_truncates_and_the_task_continues_to_count(options: dict[str, Any]) -> None:
     env = gymnasium.make(ENV_ID, max_episode_steps=3, **options)
     env.reset(seed=0)
     steps = [env.step(Action.TURN_LEFT) for _ in range(3)]
@@ -118,7 +118,7 @@ def test_episode_statistics_count_reward_and_length(env: gymnasium.Env) -> None:
     assert (info["episode"]["l"], info["episode"]["r"]) == (2, info["success"])
 
 
-def test_render_is_what_the_camera_sees_in_colour(env: gymnasium.Env) -> None:
+def test_render_returns_the_colour_image(env: gymnasium.Env) -> None:
     observation, _ = env.reset(seed=0)
     np.testing.assert_array_equal(env.render(), observation["rgb"])
     observation, *_ = env.step(Action.TURN_LEFT)
@@ -144,7 +144,7 @@ def test_rendering_changes_no_observation(options: dict[str, Any]) -> None:
 
 
 def test_record_video_takes_every_frame(env: gymnasium.Env, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With MoviePy where it is installed, else with a stand-in for its encoder alone."""
+    """Uses MoviePy where it is installed, else a substitute for its encoder."""
     given: list[tuple[int, float]] = []
     try:
         import moviepy  # noqa: F401 # pyright: ignore[reportMissingImports]
@@ -162,7 +162,7 @@ def test_record_video_takes_every_frame(env: gymnasium.Env, tmp_path: Path, monk
 
 
 def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int, float]]) -> None:
-    """`moviepy` with nothing but what `RecordVideo` calls; notes how many frames came at which rate."""
+    """Replaces `moviepy` by the functions that `RecordVideo` calls; records number and rate of the frames."""
 
     class ImageSequenceClip:
         def __init__(self, frames: list[np.ndarray], fps: float) -> None:
@@ -180,7 +180,7 @@ def _stand_in_for_moviepy(monkeypatch: pytest.MonkeyPatch, given: list[tuple[int
     monkeypatch.setitem(sys.modules, "moviepy.video.io.ImageSequenceClip", clip)
 
 
-def test_the_example_plays_both_agents_in_one_episode() -> None:
+def test_the_example_runs_both_agents_in_one_episode() -> None:
     from examples.gym_agents import play
 
     ends = [play(name, max_steps=4) for name in ("random", "stubborn")]

@@ -1,4 +1,4 @@
-"""The tool that makes views: the same whoever makes them, goes on where it was, mends what is broken."""
+"""Generation of views: any process gives the same bytes, a stopped run continues, broken shards are replaced."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def sums(out: Path) -> dict[str, str]:
     return {entry["shard"]: entry["sha256"] for entry in json.loads((out / "index.json").read_text())["shards"]}
 
 
-def test_workers_and_machines_make_the_same_shards_as_one_process(split: Path, tmp_path: Path) -> None:
+def test_workers_and_machines_write_the_same_shards_as_one_process(split: Path, tmp_path: Path) -> None:
     assert main(options(split, tmp_path / "one")) == 0
     command = [sys.executable, "tools/generate_views.py", "--split", str(split), "--out", str(tmp_path / "two")]
     command += ["--views", "9", "--views-per-shard", "3", "--shrink", "4", "--profile", "fast", "--workers", "2"]
@@ -51,7 +51,7 @@ def test_workers_and_machines_make_the_same_shards_as_one_process(split: Path, t
     assert sums(tmp_path / "one") == sums(tmp_path / "two") == sums(tmp_path / "three")
 
 
-def test_what_is_whole_stays_and_what_is_broken_is_made_again(split: Path, tmp_path: Path) -> None:
+def test_complete_shards_are_kept_and_broken_ones_generated_again(split: Path, tmp_path: Path) -> None:
     main(options(split, tmp_path))
     before = sums(tmp_path)
     first, second, third = list_shards(tmp_path)
@@ -79,7 +79,7 @@ def test_shards_of_other_options_are_never_mixed(split: Path, tmp_path: Path) ->
         main(options(split, tmp_path, views=3, seed=1))
 
 
-def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
+def test_train_continues_with_new_houses_and_no_other_split_does() -> None:
     splits = {name: load_split(name) for name in ("train", "val")}
     train, val = (
         plan(Args(split=name, out=Path("x"), views=230, views_per_shard=1), split) for name, split in splits.items()
@@ -92,7 +92,7 @@ def test_train_goes_on_with_fresh_houses_and_no_other_split_does() -> None:
     assert all(task.fresh_seed is None for task in val)
 
 
-def test_the_wide_pool_is_freshly_generated_houses_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
     index = json.loads((tmp_path / "index.json").read_text())
     assert [entry["house"] for entry in index["shards"]] == [f"wide_{FRESH_SEEDS_FROM}"]

@@ -1,4 +1,4 @@
-"""Making the episodes of a split: balanced, playable, the same each time."""
+"""Generated episodes of a split are balanced, can be run, and are the same each time."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import pytest
 from sim.episodes import habitat
 from sim.episodes.splits import load_split, read_unreachable
 from sim.errors import EpisodeError
-from sim.interface import ConfigError
+from sim.interface import ConfigError, SuccessRule
+from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
-from tools.make_episodes import Args, main, take_turns
+from tools.make_episodes import Args, balanced_goals, main
 
 
 @pytest.fixture
@@ -34,7 +35,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("count", [3, 7, 20, 60])
 def test_the_first_episodes_are_balanced_over_houses_and_goals(count):
     goals = {"a": ("bed", "sofa", "sink"), "b": ("bed", "sofa"), "c": ("sink", "bed", "sofa", "plant")}
-    turns = take_turns(goals, count)
+    turns = balanced_goals(goals, count)
     houses = collections.Counter(house for house, _ in turns)
     asked = collections.Counter(goal for _, goal in turns)
     assert all(goal in goals[house] for house, goal in turns)
@@ -44,12 +45,12 @@ def test_the_first_episodes_are_balanced_over_houses_and_goals(count):
 
 def test_a_house_without_goals_is_refused():
     with pytest.raises(EpisodeError, match="'b' has no goal"):
-        take_turns({"a": ("bed",), "b": ()}, 4)
+        balanced_goals({"a": ("bed",), "b": ()}, 4)
 
 
-def test_the_episodes_can_be_played_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
+def test_the_episodes_can_be_run_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
     assert main(Args(split=folder, episodes=6)) == 0
-    assert "second: cannot be reached, and so is no goal: sink_00" in capsys.readouterr().out
+    assert "second: cannot be reached and is no goal: sink_00" in capsys.readouterr().out
     assert read_unreachable(folder) == {"second": ("sink_00",)}
     split = load_split(folder)
     assert [episode.house for episode in split.episodes] == ["first", "second"] * 3
@@ -64,7 +65,7 @@ def test_the_episodes_can_be_played_and_goals_that_cannot_be_reached_are_listed(
             assert task.metrics()["distance_to_goal"] > 1.9
 
 
-def test_view_points_are_places_where_the_goal_counts(folder):
+def test_a_stop_at_a_view_point_succeeds(folder):
     main(Args(split=folder, episodes=2))
     world = World(load_split(folder).load_house("first"))
     region = Task(world).truth.target("picture").region
@@ -86,7 +87,7 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_other_starts(folder
     assert made(0) != made(1)
 
 
-def test_processes_make_the_same_bytes_as_one(folder):
+def test_two_processes_write_the_same_bytes_as_one(folder):
     def made(workers: int) -> list[bytes]:
         main(Args(split=folder, episodes=4, workers=workers))
         return [file.read_bytes() for file in sorted(folder.rglob("*.gz"))]
@@ -94,7 +95,7 @@ def test_processes_make_the_same_bytes_as_one(folder):
     assert made(2) == made(1)
 
 
-def test_episodes_of_houses_that_are_gone_are_gone_too(folder):
+def test_episodes_of_removed_houses_are_removed(folder):
     main(Args(split=folder, episodes=4))
     (folder / "second.xml").unlink()
     main(Args(split=folder, episodes=4))
@@ -105,3 +106,17 @@ def test_episodes_of_houses_that_are_gone_are_gone_too(folder):
 def test_a_folder_without_houses_is_refused(tmp_path):
     with pytest.raises(ConfigError, match="0 houses"):
         main(Args(split=tmp_path))
+
+
+def test_the_success_rule_decides_the_recorded_distances(folder):
+    rule = SuccessRule(distance_m=0.5)
+    main(Args(split=folder, episodes=3, success=rule))
+    split = load_split(folder)
+    for episode in split.episodes:
+        world = World(split.load_house(episode.house))
+        distances = [
+            Task(world, TaskConfig(success=each)).distance_from(episode.goal, episode.start)
+            for each in (rule, SuccessRule())
+        ]
+        assert distances[0] == pytest.approx(episode.shortest_path_m, abs=1e-6)
+        assert distances[0] - distances[1] == pytest.approx(0.5, abs=0.1)

@@ -1,4 +1,4 @@
-"""Labelled views: what is sampled, how it is stored, and what a killed or broken run leaves behind."""
+"""Labelled views: their poses, their shards, and the files of a killed or broken run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import webdataset
 
 from sim.datasets import shards
 from sim.datasets.shards import read_note, write_index, write_shard
-from sim.datasets.views import View, is_dull, sample_views
+from sim.datasets.views import View, is_bare, sample_views
 from sim.env.scene import Scene
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError
 from sim.robot.config import RobotConfig
@@ -39,7 +39,7 @@ def views_of(scene: Scene, seed: int = 0, count: int = 6, block_px: int = 2) -> 
     return list(sample_views(scene, rng, count, stem="v", record=RECORD, block_px=block_px))
 
 
-def test_views_are_taken_from_free_space_and_show_what_is_there(scene: Scene) -> None:
+def test_views_are_from_free_space_and_show_the_objects_of_the_house(scene: Scene) -> None:
     views = views_of(scene, count=12)
     space = scene.task.truth.space(0.0)
     for view in views:
@@ -47,13 +47,13 @@ def test_views_are_taken_from_free_space_and_show_what_is_there(scene: Scene) ->
         assert space.clearance(pose["x_m"], pose["y_m"]) >= RobotConfig().model.radius_m - 0.02
         assert view.rgb.shape == (240, 320, 3)
         assert view.depth_mm.shape == view.semantic.shape == (240, 320)
-        assert not is_dull(view.semantic, (view.depth_mm / 1000.0).astype(np.float32))
+        assert not is_bare(view.semantic, (view.depth_mm / 1000.0).astype(np.float32))
     assert {view.record["pose_kind"] for view in views} == {"path", "anywhere"}
     assert any((view.semantic == MPCAT40_ID["sofa"]).mean() > 0.05 for view in views)
 
 
 def test_path_views_follow_one_another_as_a_robot_moves(scene: Scene) -> None:
-    """Along a way only headings 30 deg apart appear, relative to its first one."""
+    """Along a path the headings are multiples of 30 deg from the first one."""
     from sim.datasets.views import _path_poses
 
     space = scene.task.truth.space(0.0)
@@ -65,17 +65,17 @@ def test_path_views_follow_one_another_as_a_robot_moves(scene: Scene) -> None:
         assert (moved, round(turn) % 360) in [(0.0, 30), (0.0, 330)] or (abs(moved - 0.25) < 1e-6 and abs(turn) < 1e-6)
 
 
-def test_a_bare_wall_from_nearby_is_dull_and_a_far_one_or_a_thing_is_not() -> None:
+def test_a_near_bare_wall_is_rejected_and_a_far_one_or_an_object_is_not() -> None:
     wall = np.full((480, 640), MPCAT40_ID["wall"], np.uint8)
-    assert is_dull(wall, np.full((480, 640), 0.8, np.float32))
-    assert is_dull(wall, np.zeros((480, 640), np.float32))
-    assert not is_dull(wall, np.full((480, 640), 2.0, np.float32))
+    assert is_bare(wall, np.full((480, 640), 0.8, np.float32))
+    assert is_bare(wall, np.zeros((480, 640), np.float32))
+    assert not is_bare(wall, np.full((480, 640), 2.0, np.float32))
     with_picture = wall.copy()
     with_picture[100:220, 100:300] = MPCAT40_ID["picture"]
-    assert not is_dull(with_picture, np.full((480, 640), 0.8, np.float32))
+    assert not is_bare(with_picture, np.full((480, 640), 0.8, np.float32))
 
 
-def test_depth_is_millimetres_and_the_pose_is_where_it_was_seen_from(scene: Scene) -> None:
+def test_depth_is_in_millimetres_and_the_record_holds_the_pose(scene: Scene) -> None:
     view = views_of(scene, count=1, block_px=1)[0]
     entry = view.record["pose"]
     from sim.geometry.pose import Pose
@@ -118,7 +118,7 @@ def test_webdataset_and_our_reader_see_the_same_views(scene: Scene, tmp_path: Pa
         assert np.array_equal(depth, view.depth_mm)
 
 
-def test_a_shard_counts_as_there_only_while_it_is_whole(scene: Scene, tmp_path: Path) -> None:
+def test_a_shard_has_a_note_only_while_it_is_complete(scene: Scene, tmp_path: Path) -> None:
     tar, note = tmp_path / "views-000000.tar", tmp_path / "views-000000.json"
     assert read_note(tmp_path, "views-000000", verify=False) is None
     write_shard(tmp_path, "views-000000", views_of(scene, count=2), house="room", config={})

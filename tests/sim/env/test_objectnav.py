@@ -16,7 +16,9 @@ from gymnasium.utils.env_checker import check_env
 from sim.env.objectnav import ObjectNavEnv
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel, ConfigError
+from sim.interface import Action, CameraModel, ConfigError, SuccessRule
+from sim.sensors.profiles import get_profile
+from sim.task.config import TaskConfig
 from tests.helpers.worlds import room, with_box
 
 SMALL = CameraModel(width_px=64, height_px=48)
@@ -39,7 +41,7 @@ def env(house: Path) -> Iterator[ObjectNavEnv]:
 
 
 @pytest.mark.filterwarnings("error")
-def test_gymnasiums_checker_has_no_complaint(house: Path) -> None:
+def test_gymnasiums_checker_accepts_the_environment(house: Path) -> None:
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", house=house, camera=SMALL, render_mode="rgb_array")
     check_env(env.unwrapped)
     env.close()
@@ -55,7 +57,7 @@ def test_make_needs_no_import_of_ours(house: Path) -> None:
     assert answer.stdout.strip() == "['compass', 'depth', 'gps', 'objectgoal']"
 
 
-def test_gps_and_compass_are_relative_to_the_start_whatever_its_heading(house: Path) -> None:
+def test_gps_and_compass_are_relative_to_the_start_at_any_heading(house: Path) -> None:
     for yaw_rad in (0.0, 2.0):
         env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, yaw_rad), camera=SMALL)
         observation, _ = env.reset(seed=0)
@@ -84,6 +86,52 @@ def test_stop_far_from_the_goal_terminates_with_reward_0(env: ObjectNavEnv) -> N
     _, reward, terminated, _, info = env.step(Action.STOP)
     assert (reward, terminated, info["success"], info["spl"]) == (0.0, True, 0, 0)
     assert info["distance_to_goal"] == pytest.approx(2.1, abs=0.1)
+
+
+@pytest.mark.parametrize(("distance_m", "success"), [(1.0, 1), (0.5, 0)])
+def test_a_smaller_success_distance_fails_where_one_metre_succeeds(
+    house: Path, distance_m: float, success: int
+) -> None:
+    """The sofa's front is at x = 2.1 m."""
+    start = Pose(1.3, 0.0, 0.0)
+    env = ObjectNavEnv(
+        house=house, goal="sofa", start=start, camera=SMALL, sensors=(), success=SuccessRule(distance_m=distance_m)
+    )
+    _, info = env.reset(seed=0)
+    assert info["distance_to_goal"] == pytest.approx(max(0.0, 0.8 - distance_m), abs=0.03)
+    *_, info = env.step(Action.STOP)
+    assert info["success"] == success
+    env.close()
+
+
+@pytest.mark.parametrize(("height_m", "success"), [(0.88, 0), (1.3, 1)])
+def test_the_line_of_sight_is_at_the_height_of_the_camera(tmp_path: Path, height_m: float, success: int) -> None:
+    low_wall = with_box(room(6, 4), "wall_10", centre_m=(0, -0.5, 0.6), half_m=(0.05, 1.5, 0.6))
+    house = with_box(low_wall, "bed_00", centre_m=(0.55, -1.2, 0.25), half_m=(0.5, 0.5, 0.25))
+    file = tmp_path / "low_wall.xml"
+    file.write_text(house.spec.to_xml())
+    camera = CameraModel(width_px=64, height_px=48, height_m=height_m)
+    env = ObjectNavEnv(house=file, goal="bed", start=Pose(-0.5, -1.2, 0.0), camera=camera, sensors=())
+    env.reset(seed=0)
+    assert env.step(Action.STOP)[4]["success"] == success
+    env.close()
+
+
+def test_the_task_configuration_and_its_single_values_are_the_same_options(house: Path) -> None:
+    rule = SuccessRule(distance_m=0.5)
+    whole = ObjectNavEnv(house=house, task=TaskConfig(success=rule, max_steps=7))
+    single = ObjectNavEnv(house=house, success=rule, max_steps=7)
+    assert whole.task_config == single.task_config
+    assert whole.success_rule is rule
+
+
+def test_a_profile_is_a_name_or_an_object(house: Path) -> None:
+    images = []
+    for profile in ("good", get_profile("good")):
+        env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.0), camera=SMALL, profile=profile)
+        images.append(env.reset(seed=0)[0]["rgb"])
+        env.close()
+    np.testing.assert_array_equal(*images)
 
 
 def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) -> None:
@@ -123,7 +171,7 @@ def test_the_same_seed_gives_the_same_episode_and_another_seed_another(house: Pa
 
 
 def test_the_robot_is_in_no_image(house: Path) -> None:
-    """Looking along a wall-less floor the robot's own hull would cover the lower half."""
+    """If the hull were rendered, it would cover the lower half of this image."""
     env = ObjectNavEnv(house=house, goal="sofa", start=Pose(0, 0, math.pi), camera=SMALL)
     observation, _ = env.reset(seed=0)
     assert set(np.unique(observation["semantic"])) <= {0, 1, 2}
@@ -143,7 +191,7 @@ def test_the_robot_is_in_no_image(house: Path) -> None:
         ({"house": None, "split": "nosplit"}, ConfigError, "val"),
     ],
 )
-def test_what_will_not_do_is_named(house: Path, options: dict, error: type[Exception], told: str) -> None:
+def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exception], told: str) -> None:
     with pytest.raises(error, match=told):
         ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
 

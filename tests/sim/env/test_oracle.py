@@ -1,4 +1,4 @@
-"""The oracle reaches what can be reached, on nearly the shortest way and without touching anything."""
+"""The oracle reaches every goal that can be reached, on nearly the shortest path and without contact."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tests.helpers.worlds import room, with_box, with_movable
 
 
 @dataclass
-class Place:
+class RunningEpisode:
     world: World
     task: Task
 
     @property
-    def scene(self) -> Place:
+    def scene(self) -> RunningEpisode:
         return self
 
 
@@ -30,7 +30,7 @@ def play(house, goal: str, start: Pose) -> dict:
     task = Task(world)
     world.reset(start)
     task.begin(goal, start)
-    oracle = Oracle(Place(world, task))
+    oracle = Oracle(RunningEpisode(world, task))
     oracle.reset(goal, seed=0)
     while not task.done:
         action = oracle.act({})
@@ -46,7 +46,7 @@ def maze():
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -2.0])
-def test_the_oracle_walks_a_maze_from_any_heading(yaw):
+def test_the_oracle_finds_its_path_through_a_maze_from_any_heading(yaw):
     result = play(maze(), "bed", Pose(-3.0, -2.0, yaw))
     assert result["success"] == 1.0
     assert result["spl"] > 0.9
@@ -60,15 +60,15 @@ def test_the_oracle_turns_no_more_than_it_must():
     assert result["num_steps"] == math.ceil(result["shortest_path"] / 0.25) + 1
 
 
-def test_the_oracle_stops_at_once_where_the_goal_already_counts():
+def test_the_oracle_stops_at_once_where_a_stop_succeeds():
     house = with_box(room(6, 4), "bed_00", centre_m=(2.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     result = play(house, "bed", Pose(1.0, 0.0, 0.0))
     assert result["num_steps"] == 1
     assert result["success"] == result["spl"] == 1.0
 
 
-def test_the_oracle_finds_another_way_where_something_unseen_blocks_it():
-    # A heavy box that the charts of another world do not hold: its world's file has it elsewhere.
+def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
+    # A heavy box that is moved after the free space was computed.
     house = with_box(room(8, 5), "bed_00", centre_m=(3.5, 0, 0.25), half_m=(0.4, 0.8, 0.25))
     house = with_movable(house, "stool_00", xy_m=(-3.5, 2.0), mass_kg=300.0, friction=1.0)
     world = World(house)
@@ -79,7 +79,7 @@ def test_the_oracle_finds_another_way_where_something_unseen_blocks_it():
     joint = world.model.jnt_qposadr[world.model.body_jntadr[world.model.body("stool_00").id]]
     world.data.qpos[joint : joint + 2] = (0.0, 0.0)
     task.begin("bed", start)
-    oracle = Oracle(Place(world, task))
+    oracle = Oracle(RunningEpisode(world, task))
     oracle.reset("bed", seed=0)
     while not task.done:
         action = Action(oracle.act({}))

@@ -1,4 +1,4 @@
-"""What the episodes of the shipped splits promise together: balanced, far and near enough, every goal in places."""
+"""Episodes of the shipped splits are balanced over houses and goals, and their distances are within the limits."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from sim.episodes.splits import Split, load_split
 from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS
 
 SPLITS = {"val": (20, 1000), "test": (20, 1000), "train": (200, 2000)}
-"""Houses and episodes of each."""
+"""Number of houses and episodes of each split."""
 LEAST_HOUSES = 5
-"""In how many houses each category is asked for."""
+"""Smallest number of houses with episodes of a category."""
 TURNS_AT_START, LONGEST_ORACLE_STEPS = 6, 300
 
 load = functools.cache(load_split)
@@ -63,7 +63,7 @@ def test_each_goal_is_asked_for_in_several_houses(split: str) -> None:
 
 
 @every_split
-def test_a_start_is_two_metres_from_its_goal_and_the_oracle_is_there_well_inside_the_steps(split: str) -> None:
+def test_a_start_is_two_metres_from_its_goal_and_the_oracle_needs_far_fewer_steps_than_allowed(split: str) -> None:
     for episode in load(split).episodes:
         assert episode.shortest_path_m is not None
         assert MIN_DISTANCE_M <= episode.shortest_path_m <= MAX_DISTANCE_M

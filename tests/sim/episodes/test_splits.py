@@ -1,4 +1,4 @@
-"""Splits on disk and back, and Habitat's frame against ours."""
+"""Splits written and read again, and conversions between Habitat's frame and ours."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_the_files_have_what_habitats_loader_reads(folder):
     assert np.linalg.norm(entry["start_rotation"]) == pytest.approx(1.0)
 
 
-def test_the_hash_changes_with_a_house_and_with_an_episode_and_with_nothing_else(folder):
+def test_the_hash_changes_with_a_house_and_with_an_episode_only(folder):
     before = load_split(folder).sha256
     write_split(folder, EPISODES, {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
     assert load_split(folder).sha256 == before
@@ -101,14 +101,14 @@ def test_the_hash_changes_with_a_house_and_with_an_episode_and_with_nothing_else
     assert len({before, fewer, load_split(folder).sha256}) == 3
 
 
-def test_what_is_written_is_the_same_bytes_each_time(folder):
+def test_a_split_is_written_as_the_same_bytes_each_time(folder):
     files = sorted(folder.rglob("*.gz"))
     before = [file.read_bytes() for file in files]
     write_split(folder, EPISODES, {"a": {"bed": []}, "b": {"bed": []}}, version="1.2.0")
     assert [file.read_bytes() for file in files] == before
 
 
-def test_an_unknown_split_is_refused_with_what_there_is():
+def test_an_unknown_split_is_refused_with_the_names_that_exist():
     with pytest.raises(ConfigError, match="Unknown split 'nowhere'"):
         load_split("nowhere")
     with pytest.raises(ConfigError) as refused:
@@ -143,7 +143,7 @@ def test_episodes_without_their_house_are_refused(folder):
         load_split(folder)
 
 
-def test_an_unknown_episode_or_house_is_refused_with_what_is_near(folder):
+def test_an_unknown_episode_or_house_is_refused_with_the_closest_name(folder):
     split = load_split(folder)
     with pytest.raises(EpisodeError, match=r"no episode 'tiny_00003'.*Did you mean 'tiny_000"):
         split.episode("tiny_00003")

@@ -15,7 +15,7 @@ import pytest
 from sim.env.scene import Scene
 from sim.episodes import habitat
 from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M, sample_episode
-from sim.episodes.reachable_goals import survey
+from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import Episode, Split, load_split, one_house, shipped_splits
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
@@ -62,7 +62,7 @@ def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     if fresh:
         rng = np.random.default_rng(0)
         episodes = [sample_episode(scene.task, name, rng) for _ in range(3)]
-        yield Case(scene, episodes, dict(survey(scene.task).listed))
+        yield Case(scene, episodes, dict(find_reachable_goals(scene.task).listed))
     else:
         episodes = [episode for episode in split.episodes if episode.house == name]
         yield Case(scene, episodes, goals_in_file(split, name))

@@ -1,4 +1,4 @@
-"""Each cause of failure, on walks made by hand."""
+"""Each cause of failure, on synthetic trajectories."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SEEN, UNSEEN = 0.01, 0.0079
 
 
 def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = None, **known: object) -> Trajectory:
-    """An episode along places (n + 1, 2), the goal 9 m away all the time and out of sight unless said otherwise."""
+    """Returns an episode along positions (n + 1, 2); by default the goal is always 9 m away and out of sight."""
     n = len(places_m) - 1
     poses = np.zeros((n + 1, 4), np.float32)
     poses[:, :2] = places_m
@@ -50,7 +50,7 @@ def line(steps: int, speed_m: float = 0.2) -> np.ndarray:
 
 
 def shuttle(steps: int, length_m: float = 3.0, speed_m: float = 0.2) -> np.ndarray:
-    """To and fro on one line."""
+    """Returns positions to and fro on one line."""
     along = np.abs((speed_m * np.arange(steps + 1) + length_m) % (2 * length_m) - length_m)
     return np.c_[along, np.zeros(steps + 1)]
 
@@ -79,7 +79,7 @@ def test_a_stop_on_a_storey_without_instance_is_a_false_detection_too() -> None:
 
 
 @pytest.mark.parametrize(("nearest_m", "cause"), [(1.4, "misc"), (1.6, "false_detection")])
-def test_a_stop_just_short_of_the_right_thing_is_no_false_detection(nearest_m: float, cause: str) -> None:
+def test_a_stop_slightly_too_far_from_the_right_object_is_no_false_detection(nearest_m: float, cause: str) -> None:
     assert cause_of_failure(walk(line(30), end="stop", seen_at=3, nearest_instance_m=nearest_m)) == cause
 
 
@@ -87,25 +87,25 @@ def test_a_stop_beside_an_instance_behind_a_wall_that_was_never_seen_is_a_false_
     assert cause_of_failure(walk(line(30), end="stop", nearest_instance_m=0.4)) == "false_detection"
 
 
-def test_an_instance_on_another_storey_only_is_stairs_even_for_who_is_trapped() -> None:
+def test_an_instance_on_another_storey_only_is_stairs_even_for_a_trapped_robot() -> None:
     nowhere = np.full(501, np.nan, np.float32)
     assert cause_of_failure(walk(line(500), goal_on_storey=False, distance_m=nowhere)) == "stairs"
     assert cause_of_failure(walk(np.zeros((501, 2)), goal_on_storey=False, distance_m=nowhere)) == "stairs"
 
 
-def test_who_sees_the_goal_and_drives_on_has_missed_it() -> None:
+def test_an_agent_that_sees_the_goal_and_continues_has_missed_it() -> None:
     assert cause_of_failure(walk(line(500), seen_at=100)) == "missed_detection"
 
 
-def test_who_never_sees_the_goal_on_new_ground_has_not_explored_enough() -> None:
+def test_an_agent_that_never_sees_the_goal_on_new_ground_has_not_explored_enough() -> None:
     assert cause_of_failure(walk(line(500))) == "explore"
 
 
-def test_who_sees_the_goal_when_the_steps_run_out_is_misc() -> None:
-    assert cause_of_failure(walk(line(500), seen_at=450)) == "misc"  # 10 m driven; the way there and half again is 13.5
+def test_an_agent_that_sees_the_goal_shortly_before_max_steps_is_misc() -> None:
+    assert cause_of_failure(walk(line(500), seen_at=450)) == "misc"  # 10 m driven; 1.5 times the distance is 13.5 m
 
 
-def test_who_stood_where_a_stop_succeeds_and_went_on_has_missed_it() -> None:
+def test_an_agent_that_continues_where_a_stop_succeeds_has_missed_the_goal() -> None:
     distance_m = np.full(501, 9.0, np.float32)
     distance_m[480] = 0.0
     assert cause_of_failure(walk(line(500), seen_at=475, distance_m=distance_m)) == "missed_detection"
@@ -114,7 +114,7 @@ def test_who_stood_where_a_stop_succeeds_and_went_on_has_missed_it() -> None:
     assert cause_of_failure(walk(line(500), seen_at=475, distance_m=distance_m)) == "misc"
 
 
-def test_who_came_near_the_goal_but_not_to_it_is_misc() -> None:
+def test_an_agent_that_comes_near_the_goal_but_not_to_it_is_misc() -> None:
     distance_m = np.full(501, 9.0, np.float32)
     distance_m[300] = 0.9
     assert cause_of_failure(walk(line(500), seen_at=100, distance_m=distance_m)) == "misc"
@@ -126,23 +126,23 @@ def test_a_goal_passed_before_it_was_ever_seen_was_not_missed() -> None:
     assert cause_of_failure(walk(line(500), distance_m=distance_m)) == "explore"
 
 
-def test_who_cannot_get_away_is_trapped() -> None:
+def test_a_robot_that_cannot_leave_is_trapped() -> None:
     assert cause_of_failure(walk(after(line(300), np.zeros((201, 2))))) == "trapped"
 
 
-def test_what_went_wrong_first_counts_between_trap_and_missed_goal() -> None:
+def test_the_first_problem_counts_between_trap_and_missed_goal() -> None:
     held_at_300 = after(line(300), np.zeros((201, 2)))
     assert cause_of_failure(walk(held_at_300, seen_at=100)) == "missed_detection"
     assert cause_of_failure(walk(held_at_300, seen_at=280)) == "trapped"
     assert cause_of_failure(walk(held_at_300, seen_at=400)) == "trapped"
 
 
-def test_who_drives_to_and_fro_is_in_a_loop() -> None:
+def test_a_robot_that_drives_to_and_fro_is_in_a_loop() -> None:
     assert cause_of_failure(walk(shuttle(500))) == "loop"
     assert cause_of_failure(walk(shuttle(500), seen_at=2)) == "loop"
 
 
-def test_a_loop_through_the_rooms_is_one_and_its_first_round_is_not() -> None:
+def test_the_second_round_of_a_circle_is_a_loop_and_the_first_is_not() -> None:
     angle = 0.04 * np.arange(501)  # 5 m from the middle, 157 steps a round
     circle = 5.0 * np.c_[np.cos(angle), np.sin(angle)]
     begin = first_looping_step(walk(circle))
@@ -151,24 +151,24 @@ def test_a_loop_through_the_rooms_is_one_and_its_first_round_is_not() -> None:
     assert first_looping_step(walk(circle[:157])) is None
 
 
-def test_a_way_back_through_what_is_known_is_no_loop() -> None:
+def test_a_return_over_known_ground_is_no_loop() -> None:
     there_and_back = after(line(100), line(100)[::-1])
     assert cause_of_failure(walk(after(there_and_back, np.flip(line(300), axis=1)))) == "explore"
 
 
-def test_who_turns_on_the_spot_is_trapped_and_not_in_a_loop() -> None:
+def test_a_robot_that_turns_on_the_spot_is_trapped_and_not_in_a_loop() -> None:
     spot = walk(np.zeros((501, 2)))
     assert cause_of_failure(spot) == "trapped"
     assert first_looping_step(spot) is None
 
 
-def test_who_hardly_drives_is_in_no_loop() -> None:
+def test_a_robot_that_hardly_drives_is_in_no_loop() -> None:
     assert first_looping_step(walk(shuttle(500, length_m=2.5, speed_m=0.06))) is None  # 9 m in 150 steps
     assert first_looping_step(walk(shuttle(500, length_m=2.5, speed_m=0.07))) is not None
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3, 1.1])
-def test_new_ground_does_not_depend_on_the_direction_and_old_ground_is_not_new_beside_the_old_way(yaw: float) -> None:
+def test_new_ground_does_not_depend_on_the_direction_and_old_ground_is_not_new_beside_the_old_path(yaw: float) -> None:
     turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
     there = line(100) @ turn.T
     beside = (line(100) + np.array([0.0, 0.4])) @ turn.T
@@ -177,7 +177,7 @@ def test_new_ground_does_not_depend_on_the_direction_and_old_ground_is_not_new_b
     assert new[101:].sum() <= 1
 
 
-def test_the_trapped_rule_says_what_the_metric_says() -> None:
+def test_the_trapped_rule_equals_the_metric() -> None:
     rng = np.random.default_rng(0)
     for pull in np.linspace(0.0, 0.3, 12):
         places = np.zeros((300, 2))

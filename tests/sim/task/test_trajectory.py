@@ -1,4 +1,4 @@
-"""A trajectory's file: comes back as it was, is small, and says clearly what it is not."""
+"""The file of a trajectory keeps all values, is small, and invalid files are refused with a clear message."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def walked(steps: int) -> Trajectory:
     return recorder.trajectory(end_reason="max_steps", nearest_instance_m=1.25)
 
 
-def test_a_trajectory_comes_back_as_it_was_written(tmp_path: Path) -> None:
+def test_a_trajectory_written_and_read_is_the_same(tmp_path: Path) -> None:
     before, about = walked(30), {"agent": "stubborn", "goal": "chair", "start": [0.0, 1.0], "versions": {"a": "1"}}
     write_trajectory(tmp_path / "t" / "e.npz", before, about)
     after = read_trajectory(tmp_path / "t" / "e.npz")
@@ -63,9 +63,7 @@ def test_no_half_written_file_is_left(tmp_path: Path) -> None:
     assert (tmp_path / "e.npz").read_bytes() == before
 
 
-def test_a_write_that_fails_half_way_leaves_only_what_was_there(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_write_that_fails_leaves_only_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_trajectory(tmp_path / "e.npz", walked(3), {})
     before = (tmp_path / "e.npz").read_bytes()
 
@@ -80,7 +78,7 @@ def test_a_write_that_fails_half_way_leaves_only_what_was_there(
     assert (tmp_path / "e.npz").read_bytes() == before
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_created_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(ConfigError, match="Cannot write the trajectory"):
         write_trajectory(tmp_path / "file" / "e.npz", walked(3), {})
@@ -129,7 +127,7 @@ def _pickled(file: Path) -> None:
         (_shorter_actions, "for 4 actions"),
     ],
 )
-def test_what_is_no_trajectory_is_told_with_its_name(harm, told: str, tmp_path: Path) -> None:
+def test_a_file_that_is_no_trajectory_is_named(harm, told: str, tmp_path: Path) -> None:
     file = tmp_path / "e.npz"
     write_trajectory(file, walked(5), {})
     harm(file)
