@@ -1,4 +1,4 @@
-"""The body as MuJoCo compiles it."""
+"""The compiled body of the robot."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_the_hull_fills_the_declared_cylinder(alone: mujoco.MjModel):
         (STATIC_MASK, (1, 0), False),
     ],
 )
-def test_masks_say_who_meets_whom(one, other, meet):
+def test_collision_masks_decide_which_geoms_collide(one, other, meet):
     assert bool((one[0] & other[1]) | (other[0] & one[1])) is meet
 
 

@@ -1,4 +1,4 @@
-"""The record of what was touched."""
+"""The record of the contacts of the hull."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.helpers.worlds import open_floor, random_obstacles, with_box, with_po
 FORWARD = Action.MOVE_FORWARD
 
 
-def test_a_contact_names_the_thing_the_place_and_the_push():
+def test_a_contact_has_instance_position_and_direction():
     world = World(with_box(open_floor(), "cabinet_07", centre_m=(0.5, 0.0, 0.3), half_m=(0.1, 1.0, 0.3)))
     world.reset(Pose(0.0, 0.0, 0.0))
     (contact,) = world.move(FORWARD).contacts
@@ -32,7 +32,7 @@ def test_a_contact_names_the_thing_the_place_and_the_push():
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_the_push_comes_from_the_side_that_was_hit(side):
+def test_the_force_comes_from_the_side_of_the_obstacle(side):
     world = World(with_post(open_floor(), "column_00", xy_m=(0.3, side * 0.12), radius_m=0.02))
     world.reset(Pose(0.0, 0.0, 0.0))
     (contact,) = world.move(FORWARD).contacts
@@ -59,7 +59,7 @@ def test_an_unlabelled_invisible_obstacle_has_a_geom_but_no_instance():
 
 
 class DeepestContact:
-    """Watches every physics step for how deep the hull is in something."""
+    """Records the deepest overlap of the hull over all physics steps."""
 
     def __init__(self, world: World) -> None:
         self._hull = {world.model.geom(f"robot/{name}_hull").id for name in ("lower", "upper")}
@@ -75,8 +75,8 @@ class DeepestContact:
 
 
 @pytest.mark.parametrize("seed", sample(range(200), 25))
-def test_among_random_obstacles_nothing_gives_way_and_the_record_holds(seed):
-    """Penetration below 3 mm, headings kept, and `collided` says what the displacement says."""
+def test_among_random_obstacles_overlaps_are_small_and_contacts_explain_blocked_motions(seed):
+    """Overlaps stay below 3 mm, headings are kept, and `collided` agrees with the displacement."""
     world = World(random_obstacles(seed))
     rng = np.random.default_rng(seed)
     start_yaw = float(rng.uniform(-3, 3))
@@ -99,7 +99,7 @@ def test_among_random_obstacles_nothing_gives_way_and_the_record_holds(seed):
 
 @pytest.mark.parametrize("kind", ["cylinder", "corner", "face"])
 def test_the_lightest_touch_has_the_right_normal_and_depth(kind):
-    """Without its skin the hull gets normals wrong by up to 180 deg where it touches by micrometres (MuJoCo 4.0)."""
+    """Without its skin, contacts of micrometres have normals that are wrong by up to 180 deg (MuJoCo 4.0)."""
     middle = np.array((3.217, -1.843))
     if kind == "cylinder":
         house, reach_m = with_post(open_floor(), "stool_00", xy_m=(3.217, -1.843), radius_m=0.17, height_m=0.44), 0.17

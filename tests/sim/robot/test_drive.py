@@ -1,4 +1,4 @@
-"""What each action does where nothing is in the way, and that it stops where something is."""
+"""The motion of each action in free space, and that obstacles stop it."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_500_free_actions_are_exact_and_do_not_drift(base):
         assert math.degrees(wrap_angle(world.pose.yaw_rad - heading)) == pytest.approx(0.0, abs=0.1)
 
 
-def test_a_motion_records_what_the_pose_shows():
+def test_a_motion_agrees_with_the_change_of_the_pose():
     world = world_with(open_floor())
     for action in (FORWARD, LEFT, RIGHT):
         before, time_s = world.pose, world.data.time
@@ -92,7 +92,7 @@ def test_every_action_ends_at_rest():
         assert np.abs(world.data.qvel[robot + base.start : robot + base.stop]).max() < 0.01
 
 
-def test_stop_moves_nothing():
+def test_stop_changes_no_state():
     world = world_with(open_floor())
     before = world.data.qpos.copy(), world.data.time
     motion = world.move(Action.STOP)
@@ -160,7 +160,7 @@ def test_no_speed_tunnels_through_a_thin_leg(speed_m_s, offset_m):
 
 
 @pytest.mark.parametrize(("gap_m", "passes"), [(0.30, False), (0.35, False), (0.37, True), (0.40, True)])
-def test_a_gap_lets_pass_what_is_narrower(gap_m, passes):
+def test_the_robot_passes_a_gap_wider_than_itself(gap_m, passes):
     house = open_floor()
     for number, side in enumerate((1, -1)):
         house = with_box(
@@ -176,7 +176,7 @@ def test_a_gap_lets_pass_what_is_narrower(gap_m, passes):
     ("bottom_m", "top_m", "passes"),
     [(0.0, 0.025, True), (0.0, 0.05, False), (0.80, 0.90, False), (0.89, 0.99, True), (0.40, 0.42, False)],
 )
-def test_the_hull_meets_what_is_at_its_height_and_nothing_else(bottom_m, top_m, passes):
+def test_the_hull_collides_only_with_obstacles_at_its_height(bottom_m, top_m, passes):
     house = with_box(
         open_floor(),
         "table_00",
@@ -188,7 +188,7 @@ def test_the_hull_meets_what_is_at_its_height_and_nothing_else(bottom_m, top_m, 
     assert (world.pose.x_m > 1.2) is passes
 
 
-def test_a_light_thing_is_pushed_along_and_a_heavy_one_stops():
+def test_a_light_object_is_pushed_along_and_a_heavy_one_stops_the_robot():
     light = world_with(with_movable(open_floor(), "chair_00", xy_m=(0.5, 0.0), mass_kg=2.0))
     motions = drive(light, FORWARD, FORWARD, FORWARD)
     assert [motion.ended for motion in motions] == ["reached"] * 3
@@ -208,7 +208,7 @@ def test_wheels_that_spin_on_ice_are_blocked_without_a_collision():
         assert motion.contacts == ()
 
 
-def test_a_blocked_turn_leaves_the_heading_reference_where_it_was():
+def test_a_blocked_turn_does_not_change_the_heading_reference():
     world = world_with(open_floor(friction=0.0))
     assert world.move(LEFT).ended == "blocked"
     world.model.geom("floor_00").friction[0] = 1.0
@@ -217,7 +217,7 @@ def test_a_blocked_turn_leaves_the_heading_reference_where_it_was():
 
 
 def test_on_a_slippery_floor_the_wheels_slip():
-    """The floor's own friction counts, not the tyres'."""
+    """The friction of the floor counts, not that of the tyres."""
     motion = world_with(open_floor(friction=0.02)).move(FORWARD)
     assert abs(motion.displacement_m - FORWARD_M) > 0.05
     assert not motion.collided
@@ -231,7 +231,7 @@ def test_a_solid_rug_is_climbed(rug_m):
         assert motion.displacement_m == pytest.approx(FORWARD_M, abs=0.001)
 
 
-def test_seams_between_floor_boxes_are_not_felt():
+def test_seams_between_floor_boxes_do_not_disturb_the_motion():
     house = room(6.0, 6.0, box_floor=True)
     for number in range(12):
         centre = (-0.2 + 0.3 * number, 0.0, -0.02)
@@ -241,7 +241,7 @@ def test_seams_between_floor_boxes_are_not_felt():
         assert motion.displacement_m == pytest.approx(FORWARD_M, abs=0.001)
 
 
-def test_headings_stay_on_the_grid_of_the_start_whatever_was_hit():
+def test_headings_stay_multiples_of_a_turn_after_collisions():
     house = with_post(with_post(open_floor(), "table_00", xy_m=(0.4, 0.1)), "table_01", xy_m=(0.3, -0.4))
     world = world_with(house, start=Pose(0.0, 0.0, 0.2))
     rng = np.random.default_rng(3)
