@@ -1,9 +1,9 @@
-"""Two runs of `sim.run` on the same episodes: how they differ, paired by episode.
+"""Compares two runs of `sim.run` on the same episodes: fields in which their configurations differ, and results.
 
 python tools/compare_runs.py runs/before runs/after
 
-Differences are the second run minus the first, with 95 % bootstrap intervals over the episodes that both have played.
-One whose interval holds 0 is unresolved.
+Differences are the second run minus the first, paired by episode, over the episodes of both runs. Their 95 % bootstrap
+intervals resample houses, then the episodes of each house. A difference is unresolved if its interval holds 0.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ import tyro
 
 from sim import cli
 from sim.analysis import display
-from sim.analysis.comparison import MIN_PAIRS, Run, read_run, require_same_episodes
+from sim.analysis.comparison import Run, differences_table, read_run, require_same_episodes
 from sim.analysis.report.figures import METRICS
 from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
+from sim.evaluation.bootstrap import MIN_PAIRS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,28 +35,31 @@ class Args:
 
 
 def main(args: Args) -> int:
-    """Read, compare, tell; returns the exit status."""
-    table = compare(read_run(args.first), read_run(args.second))
-    display.make_console().print(to_rich(table))
+    """Reads and compares the runs and prints the tables; returns the exit status."""
+    first, second = read_run(args.first), read_run(args.second)
+    tables = [compare(first, second), differences_table(first, second)]
+    console = display.make_console()
+    for table in tables:
+        console.print(to_rich(table))
     if args.out is not None:
         args.out.mkdir(parents=True, exist_ok=True)
-        (args.out / "comparison.md").write_text(to_markdown([table]), encoding="utf-8")
-        write_csv(args.out / "comparison.csv", [table])
+        (args.out / "comparison.md").write_text(to_markdown(tables), encoding="utf-8")
+        write_csv(args.out / "comparison.csv", tables)
     return 0
 
 
 def compare(first: Run, second: Run) -> ResultTable:
-    """The two runs' means and their paired differences, a row a metric.
+    """Returns the means of two runs and their paired differences, one row per metric.
 
     Raises:
-        ConfigError: they were made on different splits, or share no episode.
+        ConfigError: the runs are of different splits, or share no episode.
     """
     common = require_same_episodes(first, second)
     a, b = ([of.lines[i] for i in common] for of in (first, second))
     rows = [(metric.title, [metric.cell(a), metric.cell(b), metric.difference(a, b)]) for metric in METRICS]
     changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
     notes = [
-        f"A: {first.path}, B: {second.path}; {len(common)} episodes that both have played.",
+        f"A: {first.path}, B: {second.path}; {len(common)} episodes of both runs.",
         f"unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
     if changed:

@@ -1,11 +1,11 @@
-"""One run out of several: the shards of `sim.run --shard i/n`, or any runs with the same options.
+"""Merges several runs into one: the shards of `sim.run --shard i/n`, or any runs with the same options.
 
 python tools/merge_runs.py runs/big                       # runs/big/shard_*_of_* into runs/big
 python tools/merge_runs.py runs/a runs/b --out runs/both
 
-Lines, trajectories, videos and recordings are copied, the summary is made anew. It may be run as often as one likes,
-also while shards are still being played: what is new is added. The merged folder is a run like any other: `sim.run`
-with the same options and that --out plays what is missing.
+Lines, trajectories, videos and recordings are copied, and the summary is computed from all lines. The command can be
+repeated, also while shards are still running: it adds new episodes. The merged folder is a run: `sim.run` with the same
+options and this --out runs the missing episodes.
 """
 
 from __future__ import annotations
@@ -23,13 +23,14 @@ import tyro
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Line, Run, read_run
+from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.results import NOT_COMPARED, RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError
 
 SHARDS = "shard_*_of_*"
 COPIED = ("trajectories", "videos", "rerun")
-"""Folders of a run with a file or more an episode."""
+"""Folders of a run with files of single episodes."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,11 +40,11 @@ class Args:
     runs: tyro.conf.Positional[tuple[Path, ...]]
     """Folders of runs; or one folder that holds shards."""
     out: Path | None = None
-    """Where the merged run goes; by default the one folder given."""
+    """Folder of the merged run; by default the one folder given."""
 
 
 def main(args: Args) -> int:
-    """Merge; returns 1 where episodes broke or are missing."""
+    """Merges the runs; returns 1 if episodes are missing or ended with an error."""
     folders, out = sources(args)
     runs = [read_run(folder) for folder in folders]
     for run in runs[1:]:
@@ -52,11 +53,11 @@ def main(args: Args) -> int:
     console = display.make_console()
     merged = RunDirectory(out, merged_config(runs))
     try:
-        there = {line["episode_id"]: line for line in merged.lines}
+        existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
-            if episode_id not in there:
+            if episode_id not in existing:
                 merged.append(line)
-            elif without_times(there[episode_id]) != without_times(line):
+            elif without_times(existing[episode_id]) != without_times(line):
                 raise _conflict(episode_id, out, line)
         summary = merged.write_summary({"split": merged.config["split_identity"]})
         display.print_results(console, merged.lines, summary)
@@ -65,16 +66,16 @@ def main(args: Args) -> int:
     for folder in folders:
         copy_files(folder, out)
     missing = int(merged.config["episodes"]) - len(merged.lines)
-    told = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
-    console.print(told, highlight=False, soft_wrap=True)
+    message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
+    console.print(message, highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
 
 
 def sources(args: Args) -> tuple[list[Path], Path]:
-    """The folders to merge, and where to.
+    """Returns the folders to merge, and the folder of the merged run.
 
     Raises:
-        ConfigError: nothing to merge, or nowhere to put it.
+        ConfigError: there is nothing to merge, or no output folder.
     """
     if len(args.runs) == 1 and (shards := sorted(args.runs[0].glob(SHARDS))):
         return shards, args.out or args.runs[0]
@@ -85,20 +86,20 @@ def sources(args: Args) -> tuple[list[Path], Path]:
 
 
 def require_same_options(first: Run, other: Run) -> None:
-    """Raise ConfigError where two runs differ in what results hang on."""
-    for key in sorted((set(first.config) | set(other.config)) - NOT_COMPARED):
-        a, b = first.config.get(key), other.config.get(key)
-        if a != b:
+    """Raises ConfigError where two runs differ in an option that changes results."""
+    for path, a, b in differing_fields(first.config, other.config):
+        if path.partition(".")[0] not in NOT_COMPARED:
             raise ConfigError(
-                f"'{first.path}' has {key} = {json.dumps(a)}, '{other.path}' has {json.dumps(b)}: these are two runs."
+                f"'{first.path}' has {path} = {field_text(a)}, '{other.path}' has {field_text(b)}: "
+                "runs with different options cannot be merged."
             )
 
 
 def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:
-    """All lines by episode, sorted; an episode that two runs have played counts once.
+    """Returns all lines by episode id, sorted; an episode of two runs counts once.
 
     Raises:
-        ConfigError: they have played it differently.
+        ConfigError: the results of an episode differ between two runs.
     """
     lines: dict[str, Line] = {}
     for run in runs:
@@ -109,12 +110,12 @@ def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:
 
 
 def without_times(line: Line) -> dict[str, Any]:
-    """What two runs of the same episode agree in."""
+    """Returns the entries of a line that are equal in two runs of the same episode."""
     return {key: value for key, value in line.items() if key not in TIMES}
 
 
 def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
-    """The config of the whole: of no shard, by all the code that played."""
+    """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes."""
     versions = [run.config.get("versions", {}) for run in runs]
     codes = [code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes", [of.get("code")])]
     episodes = max(int(run.config["episodes"]) for run in runs)
@@ -122,20 +123,20 @@ def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
 
 
 def copy_files(folder: Path, out: Path) -> None:
-    """Copy what episodes have left beside their lines, and is not there yet."""
+    """Copies the files of single episodes that do not exist in the merged run."""
     for name in COPIED:
         for file in sorted((folder / name).glob("*")):
-            to = out / name / file.name
-            if file.is_file() and not to.exists():
-                to.parent.mkdir(parents=True, exist_ok=True)
-                part = to.with_name(f".{to.name}.part")
+            target = out / name / file.name
+            if file.is_file() and not target.exists():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                part = target.with_name(f".{target.name}.part")
                 shutil.copy2(file, part)
-                part.replace(to)
+                part.replace(target)
 
 
 def _conflict(episode_id: str, path: Path, line: Line) -> ConfigError:
-    told = json.dumps({key: line.get(key) for key in ("success", "num_steps", "end_reason")})
-    return ConfigError(f"'{path}' has played '{episode_id}' differently from another run, where it gave {told}.")
+    other = json.dumps({key: line.get(key) for key in ("success", "num_steps", "end_reason")})
+    return ConfigError(f"'{path}' has another result of '{episode_id}' than another run, which has {other}.")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""The paper's tables from result lines: which runs each needs, and what it makes of them.
+"""The tables of the paper, built from result lines: which runs each table needs, and its rows.
 
-Every table has means with 95 % bootstrap intervals over the episodes that all its runs have played, and the differences
-of pairs of runs, paired by episode.
+Every table has means with 95 % bootstrap intervals over the episodes that all its runs have, and paired differences
+between runs. Intervals resample houses, then the episodes of each (`sim.evaluation.bootstrap`).
 """
 
 from __future__ import annotations
@@ -10,66 +10,83 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from sim.analysis.comparison import Line, estimate, paired_difference
-from sim.analysis.metrics import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric
+from sim.analysis.comparison import Line
+from sim.analysis.metrics import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric, houses_of
 from sim.analysis.tables import Cell, ResultTable
-from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.composition.agents import find_agent
+from sim.errors import ConfigError
+from sim.evaluation.bootstrap import estimate, paired_difference
+from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
+from stubborn import agents
 
-TRUTH = "gt"
-SEMANTICS_DO_NOT_MATTER = ("oracle", "random")
-"""Agents that look at no segmentation; they are played once, with `gt`."""
+GROUND_TRUTH = "gt"
+"""The segmentation of agents that use none: they are run once, under this name."""
+
+
+def uses_segmentation(agent: str) -> bool:
+    """Returns False for an agent whose results do not depend on `--semantics`."""
+    return find_agent(agent).uses_segmentation
 
 
 @dataclass(frozen=True)
-class Player:
-    """Who plays, with which segmentation."""
+class AgentSetup:
+    """An agent with a source of segmentation: what one run evaluates."""
 
     agent: str
     semantics: str
 
     @property
     def label(self) -> str:
-        """In a table with several kinds of segmentation."""
-        return self.agent if self.agent in SEMANTICS_DO_NOT_MATTER else f"{self.agent} ({self.semantics})"
+        """Name in a table with several kinds of segmentation."""
+        return f"{self.agent} ({self.semantics})" if uses_segmentation(self.agent) else self.agent
 
 
-Lines = Mapping[Player, Sequence[Line]]
-"""For each player the lines of the same episodes, in the same order."""
-ABLATION = {"I": "stubborn-i", "II": "stubborn-ii", "III": "stubborn-iii", "IV": "stubborn-iv", "V": "stubborn"}
-"""Row V is `stubborn`, so that its episodes serve the other tables."""
+Lines = Mapping[AgentSetup, Sequence[Line]]
+"""The lines of each setup, of the same episodes in the same order."""
+
+
+def ablation_rows(names: Iterable[str]) -> dict[str, str]:
+    """Returns the agent of each row, by Roman numeral; the last row is the whole agent, `stubborn`.
+
+    Args:
+        names: the agents of the ablation in order: stubborn-i, stubborn-ii, ...
+    """
+    rows = {name.rpartition("-")[2].upper(): name for name in names}
+    return {**rows, list(rows)[-1]: "stubborn"}  # its episodes also serve the other tables
+
+
+ABLATION = ablation_rows(agents.ABLATION)
 
 
 @dataclass(frozen=True)
 class PaperTable:
-    """One of the paper's tables."""
+    """One of the tables of the paper."""
 
     agents: tuple[str, ...]
-    """Who plays unless somebody else is asked for; the first is what the others are compared with."""
+    """The default agents; the others are compared with the first."""
     semantics: str
-    """Where segmentation comes from unless something else is asked for."""
-    build: Callable[[Lines, Sequence[Player]], list[ResultTable]]
+    """The default source of segmentation."""
+    build: Callable[[Lines, Sequence[AgentSetup]], list[ResultTable]]
 
-    def players(self, agents: Sequence[str] = (), semantics: str | None = None) -> tuple[Player, ...]:
-        """The runs that it needs."""
+    def setups(self, agents: Sequence[str] = (), semantics: str | None = None) -> tuple[AgentSetup, ...]:
+        """Returns the setups whose runs the table needs."""
         chosen = semantics or self.semantics
         return tuple(
-            Player(agent, TRUTH if agent in SEMANTICS_DO_NOT_MATTER else chosen) for agent in agents or self.agents
+            AgentSetup(agent, chosen if uses_segmentation(agent) else GROUND_TRUTH) for agent in agents or self.agents
         )
 
 
-def failures(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
-    """Table I: why the failed episodes failed; `failure` of the lines is one of `sim.task.failures.CAUSES`."""
+def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table I: causes of the failed episodes; `failure` of a line is one of `sim.task.failures.CAUSES`."""
     rows: list[tuple[str, list[Cell | str]]] = []
     for cause in CAUSES:
-        shares = ([float(line["failure"] == cause) for line in lines[p] if not line["success"]] for p in players)
-        rows.append((cause, [Cell(estimate(share), percent=True) for share in shares]))
-    failed = [sum(not line["success"] for line in lines[p]) for p in players]
-    rows.append(("failed episodes", [f"{count} of {len(lines[p])}" for count, p in zip(failed, players, strict=True)]))
-    rows.append(("success %", [SUCCESS.cell(lines[p]) for p in players]))
-    header = ("cause", *(player.label for player in players))
+        rows.append((cause, [_share_of_failures(cause, lines[setup]) for setup in setups]))
+    rows.append(("failed episodes", [_count_of_failures(lines[setup]) for setup in setups]))
+    rows.append(("success %", [SUCCESS.cell(lines[setup]) for setup in setups]))
+    header = ("cause", *(setup.label for setup in setups))
     causes = ResultTable("failures", "Causes of failure, % of the failed episodes", header, rows)
-    pairs = _against_first(players)
+    pairs = _against_first(setups)
     return [
         causes,
         ResultTable(
@@ -81,53 +98,53 @@ def failures(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
     ]
 
 
-def ablation(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
-    """Table III: what each means against collisions does; a row against the one before, the last against the first."""
+def ablation(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table III: the effect of each measure against collisions, by adding one measure per row."""
     names = {agent: row for row, agent in ABLATION.items()}
     metrics = (TRAPPED, EXPLORED, COLLISIONS, SPL, SUCCESS)
-    pairs = [(b, a) for a, b in itertools.pairwise(players)]
-    if len(players) > 2:
-        pairs.append((players[-1], players[0]))
-    title = f"Avoiding collisions, {players[0].semantics} segmentation"
-    return _means_and_differences("ablation", title, lines, players, pairs, metrics, names)
+    pairs = [(b, a) for a, b in itertools.pairwise(setups)]
+    if len(setups) > 2:
+        pairs.append((setups[-1], setups[0]))
+    title = f"Avoiding collisions, {setups[0].semantics} segmentation"
+    return _means_and_differences("ablation", title, lines, setups, pairs, metrics, names)
 
 
-def exploration(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
-    """Table IV: how often the goal was seen, by category."""
+def exploration(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table IV: how often the goal was seen, by category."""
     rows: list[tuple[str, list[Cell | str]]] = [
-        (f"{goal} ({len(some[players[0]])})", [EXPLORED.cell(some[p]) for p in players])
+        (f"{goal} ({len(some[setups[0]])})", [EXPLORED.cell(some[setup]) for setup in setups])
         for goal, some in _by_goal(lines)
     ]
-    rows.append((f"all ({len(lines[players[0]])})", [EXPLORED.cell(lines[p]) for p in players]))
-    header = ("goal (episodes)", *(player.agent for player in players))
+    rows.append((f"all ({len(lines[setups[0]])})", [EXPLORED.cell(lines[setup]) for setup in setups]))
+    header = ("goal (episodes)", *(setup.agent for setup in setups))
     seen = ResultTable("exploration", "GT exploration, %: the goal covered 0.8 % of a frame", header, rows)
-    pairs = [(a, b) for i, b in enumerate(players) for a in players[:i]]
+    pairs = [(a, b) for i, b in enumerate(setups) for a in setups[:i]]
     return [seen, _differences("exploration", lines, pairs, (EXPLORED, TRAPPED, COLLISIONS), {})]
 
 
-def categories(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
-    """Table V: success by category, and each other player against the first."""
-    pairs = _against_first(players)
+def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table V: success by category, and the difference of the first setup to each other one."""
+    pairs = _against_first(setups)
 
     def row(of: Lines) -> list[Cell | str]:
-        return [*(SUCCESS.cell(of[p]) for p in players), *(SUCCESS.difference(of[b], of[a]) for a, b in pairs)]
+        return [*(SUCCESS.cell(of[setup]) for setup in setups), *(SUCCESS.difference(of[b], of[a]) for a, b in pairs)]
 
-    rows = [(f"{goal} ({len(some[players[0]])})", row(some)) for goal, some in _by_goal(lines)]
-    rows.append((f"all ({len(lines[players[0]])})", row(lines)))
-    header = ("goal (episodes)", *(player.agent for player in players), *(_named(pair) for pair in pairs))
-    return [ResultTable("categories", f"Success, %, {players[0].semantics} segmentation", header, rows)]
+    rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
+    rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
+    header = ("goal (episodes)", *(setup.agent for setup in setups), *(_named(pair) for pair in pairs))
+    return [ResultTable("categories", f"Success, %, {setups[0].semantics} segmentation", header, rows)]
 
 
-def overall(lines: Lines, players: Sequence[Player]) -> list[ResultTable]:
-    """Table VI: success and SPL of everybody, each against the first."""
+def overall(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns Table VI: success and SPL of all setups, and the difference of the first to each other one."""
     metrics = (SUCCESS, SPL, EXPLORED, COLLISIONS, STEPS)
-    return _means_and_differences("overall", "All agents", lines, players, _against_first(players), metrics, {})
+    return _means_and_differences("overall", "All agents", lines, setups, _against_first(setups), metrics, {})
 
 
 TABLES: Mapping[str, PaperTable] = {
     "failures": PaperTable(("stubborn", "single-frame", "frontier-avoid"), "noisy", failures),
-    "ablation": PaperTable(tuple(ABLATION.values()), TRUTH, ablation),
-    "exploration": PaperTable(("stubborn", "stubborn-i", "frontier-avoid", "frontier"), TRUTH, exploration),
+    "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
+    "exploration": PaperTable(("stubborn", "stubborn-i", "frontier-avoid", "frontier"), GROUND_TRUTH, exploration),
     "categories": PaperTable(("stubborn", "single-frame"), "noisy", categories),
     "overall": PaperTable(
         ("stubborn", "stubborn-plus", "single-frame", "frontier-avoid", "frontier", "random", "oracle"),
@@ -135,14 +152,14 @@ TABLES: Mapping[str, PaperTable] = {
         overall,
     ),
 }
-"""By name."""
+"""The tables by name."""
 
 
 def table_named(name: str) -> PaperTable:
-    """The table of that name.
+    """Returns the table with this name.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such table.
     """
     if name not in TABLES:
         raise ConfigError(f"There is no table '{name}'. There is: {', '.join(TABLES)}.")
@@ -153,15 +170,14 @@ def _means_and_differences(
     name: str,
     title: str,
     lines: Lines,
-    players: Sequence[Player],
-    pairs: Sequence[tuple[Player, Player]],
+    setups: Sequence[AgentSetup],
+    pairs: Sequence[tuple[AgentSetup, AgentSetup]],
     metrics: Sequence[Metric],
     names: Mapping[str, str],
 ) -> list[ResultTable]:
-    rows = [
-        (f"{names[p.agent]} {p.agent}" if p.agent in names else p.label, [metric.cell(lines[p]) for metric in metrics])
-        for p in players
-    ]
+    labels = [f"{names[setup.agent]} {setup.agent}" if setup.agent in names else setup.label for setup in setups]
+    cells = [[metric.cell(lines[setup]) for metric in metrics] for setup in setups]
+    rows = list(zip(labels, cells, strict=True))
     means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)
     return [means, _differences(name, lines, pairs, metrics, names)]
 
@@ -169,11 +185,11 @@ def _means_and_differences(
 def _differences(
     name: str,
     lines: Lines,
-    pairs: Iterable[tuple[Player, Player]],
+    pairs: Iterable[tuple[AgentSetup, AgentSetup]],
     metrics: Sequence[Metric],
     names: Mapping[str, str],
 ) -> ResultTable:
-    """A row a pair: the first minus the second, in each metric."""
+    """Returns a table with one row per pair: the first minus the second, in each metric."""
     rows = [
         (
             f"{names.get(a.agent, a.label)} - {names.get(b.agent, b.label)}",
@@ -185,23 +201,34 @@ def _differences(
     return ResultTable(f"{name}_differences", "Differences, paired by episode", header, rows)
 
 
-def _against_first(players: Sequence[Player]) -> list[tuple[Player, Player]]:
-    return [(players[0], other) for other in players[1:]]
+def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, AgentSetup]]:
+    return [(setups[0], other) for other in setups[1:]]
 
 
-def _named(pair: tuple[Player, Player]) -> str:
+def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:
     return f"{pair[0].agent} - {pair[1].agent}"
 
 
+def _count_of_failures(lines: Sequence[Line]) -> str:
+    return f"{sum(not line['success'] for line in lines)} of {len(lines)}"
+
+
+def _share_of_failures(cause: str, lines: Sequence[Line]) -> Cell:
+    """Returns the share of the failed episodes that failed by this cause."""
+    failed = [line for line in lines if not line["success"]]
+    return Cell(estimate([line["failure"] == cause for line in failed], houses_of(failed)), percent=True)
+
+
 def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cell:
+    """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
     values = ([float(line["failure"] == cause) for line in lines] for lines in (first, second))
-    return Cell(paired_difference(*values), percent=True, difference=True)
+    return Cell(paired_difference(*values, houses_of(first)), percent=True, difference=True)
 
 
 def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:
-    """The goals that were asked for, in the contract's order, with their lines."""
+    """Returns the goals that occur, in the order of the contract, with their lines."""
     parts = [
-        (goal, {player: [line for line in of if line["goal"] == goal] for player, of in lines.items()})
+        (goal, {setup: [line for line in of if line["goal"] == goal] for setup, of in lines.items()})
         for goal in GOAL_CATEGORIES
     ]
     return [(goal, part) for goal, part in parts if all(part.values())]

@@ -1,119 +1,109 @@
-"""The paper's display, each from one command: play what is missing, then write the table.
+"""Reproduces the tables of the paper: runs the missing episodes, then writes the table.
 
     python tools/reproduce.py ablation --episodes 200 --workers 2
     python tools/reproduce.py all --episodes 200 --workers 2 --minutes 110
-    python tools/reproduce.py failures --minutes 0            # only the table, of what is there
+    python tools/reproduce.py failures --minutes 0            # only the table, from the existing runs
 
-Tables: failures, ablation, exploration, categories, overall, or all. Runs lie in `<out>/<agent>_<semantics>_...`, a
-folder each as `sim.run --record` leaves it, and serve every table that needs them. The agents take turns, a chunk of
-episodes each, so that whenever it is stopped they have the same first episodes; the same command goes on where it was.
-Tables go to the terminal and to `<out>/tables/<table>.md` and `.csv`; --semantics, --agents, --noise, --split and
---seed have their place in the name where they are given. What was played by older code stays: take
-another --out when an agent has changed. See docs/reproduce.md.
+Tables: failures, ablation, exploration, categories, overall, or all. Each run has a folder
+`<out>/<agent>_<semantics>_...`, as `sim.run --record` writes it; the tables share the runs. The agents take turns, a
+chunk of episodes each, so that they have the same first episodes whenever the tool is stopped; the same command
+resumes. Tables are printed and written to `<out>/tables/<table>.md` and `.csv`; the options --semantics, --agents,
+--noise, --split and --seed become part of the name if they are given. With `--minutes 0` no episode is run, and runs of
+older code are accepted if they have the same agent, segmentation, split, seed and noise. See docs/reproduce.md.
 """
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import tyro
 from rich.console import Console
 
 from sim import cli, run
 from sim.analysis import display
-from sim.analysis.comparison import MIN_PAIRS, Line, Run, code_of, read_run
+from sim.analysis.comparison import Line, Run, code_of, read_run
 from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
-from sim.episodes.splits import Episode
-from sim.interface import ConfigError
+from sim.composition.options import RunOptions, check_options
+from sim.episodes.splits import Episode, Split, load_split
+from sim.errors import ConfigError
+from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
+from sim.evaluation.config_fields import differing_fields, field_text
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
-from tools.paper_tables import TABLES, PaperTable, Player, table_named
+from tools.paper_tables import TABLES, AgentSetup, PaperTable, table_named
 
-SAME_IN_ALL = ("agent", "semantics", "semantics_config", "split_identity", "seed", "noise", "noise_config")
-"""Entries of a run's config that must be what the table is of."""
+SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
+"""Entries of config.json in which the runs of a table must be equal, if both have them."""
+SAME_IN_TREE = ("robot", "camera", "profile", "noise", "task")
+"""Parts of the configuration tree in which the runs of a table must be equal, if both have them."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Play what a table needs and is not there yet, and write the table."""
+    """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
     """failures, ablation, exploration, categories, overall, or all."""
     episodes: int = 200
     """The first N episodes of the split."""
     workers: int = 1
-    """Processes."""
+    """Number of processes."""
     executor: str = "local"
-    """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    """Where episodes run: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
     address: str | None = None
-    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
+    """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     out: Path = Path("runs/paper")
-    """Folder for the runs and display."""
+    """Folder for the runs and tables."""
     semantics: str | None = None
-    """Where segmentation comes from, in place of what the table says."""
+    """Source of segmentation, in place of the default of the table."""
     agents: tuple[str, ...] = ()
-    """Who plays, in place of what the table says; the others are compared with the first."""
+    """Agents, in place of the default of the table; the others are compared with the first."""
     noise: str = "none"
     """Noise of sensors and drive."""
     seed: int = 0
-    """Of the runs."""
+    """Seed of the runs."""
     chunk: int = 20
-    """Episodes that an agent plays before it is the next one's turn."""
+    """Number of episodes that an agent runs in its turn."""
     minutes: float | None = None
-    """Start no chunk that would not be done by then; 0 plays nothing."""
+    """Start no chunk that would end later than this; 0 runs nothing and makes the tables from the existing runs."""
 
 
 def main(args: Args) -> int:
-    """Play and tell; returns the exit status."""
+    """Runs episodes and writes tables; returns the exit status."""
     _check(args)
     console = display.make_console()
     names = list(TABLES) if args.table == "all" else [args.table]
-    wanted = {name: table_named(name).players(args.agents, args.semantics) for name in names}
-    players = list(dict.fromkeys(player for needed in wanted.values() for player in needed))
-    episodes, split = run.plan_episodes(_run_args(args, players[0]))
-    play(args, players, episodes, split, console)
-    runs = {player: _read(args, player, split) for player in players if _has_run(args, player)}
+    needed = {name: table_named(name).setups(args.agents, args.semantics) for name in names}
+    setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
+    split = load_split(args.split)
+    episodes = _first_episodes(args, split)
+    if args.minutes != 0.0:
+        run_episodes(args, setups, episodes, split, console)
+    runs = {setup: _read(args, setup, split) for setup in setups if _has_run(args, setup)}
     status = 0
-    for name, needed in wanted.items():
-        common = common_episodes(runs, needed, episodes)
+    for name, of_table in needed.items():
+        common = common_episodes(runs, of_table, episodes)
         if not common:
-            console.print(f"{name}: no episode that {', '.join(p.label for p in needed)} have all played.")
+            console.print(f"{name}: no episode that {', '.join(setup.label for setup in of_table)} have all run.")
             status = 1
             continue
-        tell(args, name, table_named(name), {player: runs[player] for player in needed}, common, console)
+        chosen = {setup: runs[setup] for setup in of_table}
+        require_same_conditions(list(chosen.values()))
+        write_table(args, name, table_named(name), chosen, common, console)
     return status
 
 
-def _read(args: Args, player: Player, split: dict[str, Any]) -> Run:
-    """A player's run.
-
-    Raises:
-        ConfigError: the folder holds something else than the table is of.
-    """
-    read = read_run(_folder(args, player))
-    wanted = json.loads(json.dumps(run.config_of(_run_args(args, player), split)))
-    for key in SAME_IN_ALL:
-        if read.config.get(key) != wanted.get(key):
-            raise ConfigError(
-                f"'{read.path}' holds a run with {key} = {json.dumps(read.config.get(key))}, the table is of "
-                f"{json.dumps(wanted.get(key))}; take another --out, or the options of that run."
-            )
-    return read
-
-
-def play(
-    args: Args, players: Sequence[Player], episodes: Sequence[Episode], split: dict[str, Any], console: Console
+def run_episodes(
+    args: Args, setups: Sequence[AgentSetup], episodes: Sequence[Episode], split: Split, console: Console
 ) -> None:
-    """Let the players take turns, a chunk of episodes each, until all is played or the minutes are used up.
+    """Lets the agents take turns, a chunk of episodes each, until all episodes are run or the minutes are used up.
 
     Raises:
         ConfigError: a folder holds a run with other options.
@@ -125,39 +115,63 @@ def play(
         if args.minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * args.minutes:
             console.print(f"The {args.minutes:g} minutes are used up before episode {first + 1}.")
             return
-        for player in players:
-            done = read_run(_folder(args, player)).lines if _has_run(args, player) else {}
+        for setup in setups:
+            done = read_run(_folder(args, setup)).lines if _has_run(args, setup) else {}
             if first and all(episode.episode_id in done for episode in chunk):
                 continue
-            run.play_missing(_run_args(args, player), chunk, split, console)
+            run.run_missing(_run_args(args, setup), chunk, _identity(split), console)
         longest_s = max(longest_s, time.monotonic() - chunk_began_s)
 
 
-def common_episodes(runs: dict[Player, Run], players: Sequence[Player], episodes: Sequence[Episode]) -> list[str]:
-    """Ids of the episodes that all of them have played, in the split's order."""
-    if any(player not in runs for player in players):
+def common_episodes(
+    runs: Mapping[AgentSetup, Run], setups: Sequence[AgentSetup], episodes: Sequence[Episode]
+) -> list[str]:
+    """Returns the ids of the episodes that all setups have run, in the order of the split."""
+    if any(setup not in runs for setup in setups):
         return []
     ids = [episode.episode_id for episode in episodes]
-    return [i for i in ids if all(i in runs[player].lines for player in players)]
+    return [i for i in ids if all(i in runs[setup].lines for setup in setups)]
 
 
-def tell(
-    args: Args, name: str, table: PaperTable, runs: dict[Player, Run], common: Sequence[str], console: Console
+def require_same_conditions(runs: Sequence[Run]) -> None:
+    """Raises ConfigError where two runs of a table differ in robot, camera, rendering, noise or task."""
+    for other in runs[1:]:
+        for path, first, second in differing_fields(_conditions(runs[0], other), _conditions(other, runs[0])):
+            raise ConfigError(
+                f"'{other.path}' holds a run with {path} = {field_text(second)}, '{runs[0].path}' one with "
+                f"{field_text(first)}; one table needs the same conditions."
+            )
+
+
+def _conditions(of: Run, other: Run) -> dict[str, object]:
+    """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
+    flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
+    tree, others = of.config.get("config", {}), other.config.get("config", {})
+    return flat | {"config": {key: tree[key] for key in SAME_IN_TREE if key in tree and key in others}}
+
+
+def write_table(
+    args: Args,
+    name: str,
+    table: PaperTable,
+    runs: Mapping[AgentSetup, Run],
+    common: Sequence[str],
+    console: Console,
 ) -> None:
-    """Build one table, show it, and write it as Markdown and CSV."""
-    lines = {player: [with_cause(of, of.lines[i]) for i in common] for player, of in runs.items()}
+    """Builds one table, prints it, and writes it as Markdown and CSV."""
+    lines = {setup: [with_cause(of, of.lines[i]) for i in common] for setup, of in runs.items()}
     parts = table.build(lines, list(runs))
     notes = notes_of(args, name, runs, common)
     folder, stem = args.out / "tables", stem_of(args, name)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{stem}.md").write_text(to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n", encoding="utf-8")
     write_csv(folder / f"{stem}.csv", parts)
-    _show(console, parts, notes)
+    _print(console, parts, notes)
     console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
 
 
 def stem_of(args: Args, name: str) -> str:
-    """Name of a table's files: the table's own, and each option that makes another table of it."""
+    """Returns the name of a table's files: the name of the table, and each option that changes the table."""
     agents = "+".join(_file_name(agent) for agent in args.agents)
     noise = "" if args.noise == Args.noise else args.noise
     split = "" if args.split == Args.split else _split_name(args)
@@ -165,53 +179,55 @@ def stem_of(args: Args, name: str) -> str:
 
 
 def with_cause(of: Run, line: Line) -> Line:
-    """The line with the cause of failure that today's rules find in the trajectory, where there is one."""
+    """Returns the line with the cause of failure by the current rules, if the episode has a trajectory."""
     file = trajectory_file(of.path, line["episode_id"])
     return {**line, "failure": cause_of_failure(read_trajectory(file))} if file.is_file() else line
 
 
-def notes_of(args: Args, name: str, runs: dict[Player, Run], common: Sequence[str]) -> list[str]:
-    """What must be known beside the numbers: episodes, split, errors, code, the command."""
+def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequence[str]) -> list[str]:
+    """Returns the notes of a table: episodes, split, how intervals are made, the command, errors and code."""
     some = next(iter(runs.values()))
     config, split, versions = some.config, some.config["split_identity"], some.config["versions"]
+    houses = len({some.lines[i]["house"] for i in common})
     errors = sum(of.lines[i]["end_reason"] == "error" for of in runs.values() for i in common)
     codes = Counter(code_of(of, i) for of in runs.values() for i in common)
     notes = [
-        f"{len(common)} episodes of {split['name']} {split['version']} ({split['sha256'][:8]}), sensor noise "
-        f"{config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}; mean [95 % bootstrap interval over "
-        f"episodes]. A difference is paired by episode; unresolved: its interval holds 0, or it has fewer than "
-        f"{MIN_PAIRS} pairs.",
+        f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
+        f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
+        f"Mean [95 % bootstrap interval]: {RESAMPLES:,} resamples of houses, then of the episodes of each house. "
+        f"Differences are paired by episode; unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} "
+        "pairs.",
         "`" + " ".join(["python tools/reproduce.py", name, *_named_options(args)]) + "`",
     ]
     if errors:
-        notes.append(f"{errors} episodes broke and count as failures.")
+        notes.append(f"{errors} episodes ended with an error and count as failures.")
     if len(codes) > 1:
-        told = ", ".join(f"{code} ({count})" for code, count in codes.most_common())
-        notes.append(f"Not all episodes were played by the same code: {told}.")
+        named = ", ".join(f"{code} ({count})" for code, count in codes.most_common())
+        notes.append(f"Not all episodes were run by the same code: {named}.")
     return notes
 
 
 def _named_options(args: Args) -> list[str]:
-    """What has to be said to get the same table; agents and segmentation only where they were asked for."""
-    said = [f"--episodes {args.episodes}", f"--split {args.split}"]
-    said += [f"--semantics {args.semantics}"] if args.semantics else []
-    said += [f"--agents {' '.join(args.agents)}"] if args.agents else []
-    said += [f"--noise {args.noise}"] if args.noise != "none" else []
-    return said + ([f"--seed {args.seed}"] if args.seed else [])
+    """Returns the options that make the same table; agents and segmentation only if they were given."""
+    named = [f"--episodes {args.episodes}", f"--split {args.split}"]
+    named += [f"--semantics {args.semantics}"] if args.semantics else []
+    named += [f"--agents {' '.join(args.agents)}"] if args.agents else []
+    named += [f"--noise {args.noise}"] if args.noise != "none" else []
+    return named + ([f"--seed {args.seed}"] if args.seed else [])
 
 
-def _show(console: Console, parts: Sequence[ResultTable], notes: Sequence[str]) -> None:
+def _print(console: Console, parts: Sequence[ResultTable], notes: Sequence[str]) -> None:
     for part in parts:
         console.print(to_rich(part))
     for note in notes:
         console.print(note, markup=False, highlight=False, soft_wrap=True)
 
 
-def _run_args(args: Args, player: Player) -> run.Args:
-    """The options of `sim.run` for one player."""
-    return run.Args(
-        agent=player.agent,
-        semantics=player.semantics,
+def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
+    """Returns the options of `sim.run` for one setup."""
+    return RunOptions(
+        agent=setup.agent,
+        semantics=setup.semantics,
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
@@ -219,13 +235,13 @@ def _run_args(args: Args, player: Player) -> run.Args:
         executor=args.executor,
         address=args.address,
         noise=args.noise,
-        out=_folder(args, player),
+        out=_folder(args, setup),
         record=True,
     )
 
 
-def _folder(args: Args, player: Player) -> Path:
-    parts = (_file_name(player.agent), player.semantics, args.noise, _split_name(args), _seed_name(args))
+def _folder(args: Args, setup: AgentSetup) -> Path:
+    parts = (_file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args))
     return args.out / "_".join(filter(None, parts))
 
 
@@ -241,11 +257,39 @@ def _seed_name(args: Args) -> str:
     return f"seed{args.seed}" if args.seed else ""
 
 
-def _has_run(args: Args, player: Player) -> bool:
-    return (_folder(args, player) / "results.jsonl").is_file()
+def _has_run(args: Args, setup: AgentSetup) -> bool:
+    return (_folder(args, setup) / "results.jsonl").is_file()
+
+
+def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
+    """Returns the run of a setup.
+
+    Raises:
+        ConfigError: the folder holds a run with another agent, segmentation, split, seed or noise.
+    """
+    found = read_run(_folder(args, setup))
+    expected = {"agent": setup.agent, "semantics": setup.semantics, "noise": args.noise, "seed": args.seed}
+    expected |= {"split_identity": _identity(split)}
+    for path, actual, wanted in differing_fields({key: found.config.get(key) for key in expected}, expected):
+        raise ConfigError(
+            f"'{found.path}' holds a run with {path} = {field_text(actual)}, the table needs {field_text(wanted)}; "
+            "choose another --out, or the options of that run."
+        )
+    return found
+
+
+def _identity(split: Split) -> dict[str, str]:
+    return {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def _first_episodes(args: Args, split: Split) -> Sequence[Episode]:
+    if args.episodes > len(split.episodes):
+        raise ConfigError(f"--episodes {args.episodes}: split '{split.name}' has {len(split.episodes)} episodes.")
+    return split.episodes[: args.episodes]
 
 
 def _check(args: Args) -> None:
+    """Raises ConfigError where an option is not allowed."""
     if args.table != "all":
         table_named(args.table)
     for name, value, least in (("episodes", args.episodes, 1), ("workers", args.workers, 1), ("chunk", args.chunk, 1)):
@@ -253,9 +297,11 @@ def _check(args: Args) -> None:
             raise ConfigError(f"--{name} must be at least {least}, got {value}.")
     if args.minutes is not None and not args.minutes >= 0.0:
         raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
+    if args.minutes == 0.0:
+        return
     names = [args.table] if args.table != "all" else list(TABLES)
-    for player in {player for name in names for player in table_named(name).players(args.agents, args.semantics)}:
-        run.check(_run_args(args, player))
+    for setup in {setup for name in names for setup in table_named(name).setups(args.agents, args.semantics)}:
+        check_options(_run_args(args, setup))
 
 
 def entry(argv: Sequence[str] | None = None) -> int:
@@ -263,7 +309,7 @@ def entry(argv: Sequence[str] | None = None) -> int:
     try:
         return cli.run(Args, main, argv)
     except KeyboardInterrupt:
-        print("\nStopped. The same command goes on where it was; with --minutes 0 it only writes the table.")
+        print("\nStopped. The same command resumes; with --minutes 0 it only writes the table.")
         return 130
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from sim import run
+from sim.composition.options import RunOptions, check_options
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError
@@ -56,10 +57,10 @@ def test_merged_shards_are_the_run_of_one_process(tmp_path: Path) -> None:
     ]
     summaries = [json.loads((folder / "summary.json").read_text()) for folder in (parts, whole)]
     assert summaries[0] == summaries[1]
-    assert run.entry([*command, "--out", str(parts)]) == 0  # a run like any other: it goes on
+    assert run.entry([*command, "--out", str(parts)]) == 0  # the merged folder is a run that can be resumed
 
 
-def test_what_is_missing_is_told_and_added_later(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_episodes_are_reported_and_added_later(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(tmp_path / "shard_0_of_2", [line_of(0), line_of(2)])
     write(tmp_path / "shard_1_of_2", [line_of(1)])
     assert main(Args(runs=(tmp_path,))) == 1
@@ -75,15 +76,15 @@ def test_an_episode_in_two_runs_counts_once_if_they_agree_but_for_the_times(tmp_
     assert main(Args(runs=(first, second), out=tmp_path / "both")) == 0
     assert len(lines_of(tmp_path / "both")) == 2
     third = write(tmp_path / "c", [line_of(1, num_steps=10)], episodes=2)
-    with pytest.raises(ConfigError, match="has played 'e1' differently"):
+    with pytest.raises(ConfigError, match="has another result of 'e1'"):
         main(Args(runs=(first, third), out=tmp_path / "other"))
-    with pytest.raises(ConfigError, match="has played 'e1' differently"):
+    with pytest.raises(ConfigError, match="has another result of 'e1'"):
         main(Args(runs=(third,), out=tmp_path / "both"))
 
 
 def test_runs_with_other_options_are_never_merged(tmp_path: Path) -> None:
     first, second = write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], seed=1)
-    with pytest.raises(ConfigError, match=r"has seed = 0, .* has 1: these are two runs"):
+    with pytest.raises(ConfigError, match=r"has seed = 0, .* has 1: runs with different options"):
         main(Args(runs=(first, second), out=tmp_path / "both"))
     assert not (tmp_path / "both").exists()
 
@@ -98,4 +99,4 @@ def test_nothing_to_merge_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="Give one folder that holds shard_"):
         main(Args(runs=(tmp_path,)))
     with pytest.raises(ConfigError, match="--shard 0/2 needs --out"):
-        run.check(run.Args(shard="0/2"))
+        check_options(RunOptions(shard="0/2"))
