@@ -24,13 +24,14 @@ from torch import Tensor
 from torch.utils.data import DataLoader
 
 from sim import cli
+from sim.composition.segmenters import weights_file
 from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
-from sim.segmenters import weights_file
 from stubborn.segmentation.checkpoints import load_rednet, save_rednet
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, stored_block_px
+from stubborn.segmentation.evaluation import Iou, Reliability, evaluate, fit_temperature
 from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.rednet import CLASSES, RedNet
-from stubborn.segmentation.training import NONE, Iou, Reliability, Sampler, Samples, evaluate, fit_temperature
+from stubborn.segmentation.samples import NONE, Sampler, Samples
 
 TIMED_FRAMES = 30
 ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) that sees {width} x {height} pixels and knows mpcat40.

@@ -36,16 +36,10 @@ from stubborn.segmentation.dataset import (
     spread_views,
     stored_block_px,
 )
+from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.rednet import SIZES, RedNet
-from stubborn.segmentation.training import (
-    Augmentation,
-    Iou,
-    Sampler,
-    Samples,
-    evaluate,
-    learning_rate,
-    pyramid_loss,
-)
+from stubborn.segmentation.samples import Augmentation, Sampler, Samples
+from stubborn.segmentation.training import learning_rate, pyramid_loss
 
 LOG_EVERY_STEPS = 20
 SAVE_EVERY_S = 60.0

@@ -1,7 +1,7 @@
-"""Weights of a RedNet in files: our own as safetensors, others' as the PyTorch checkpoints that are in circulation.
+"""Reads and writes the weights of a RedNet: our safetensors files, and published PyTorch checkpoints.
 
-A checkpoint may wrap its tensors as `{"model_state": {...}}` and prefix each name with `module.`. No pickle is run:
-PyTorch files are read with `torch.load(weights_only=True)`.
+A checkpoint may wrap its tensors as `{"model_state": {...}}` and prefix each name with `module.`. No pickled code is
+run: PyTorch files are read with `torch.load(weights_only=True)`.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _CONFIG_KEY = "rednet_config"
 
 
 def save_rednet(file: Path, model: RedNet, metadata: Mapping[str, Any] | None = None, *, half: bool = True) -> None:
-    """Write weights and the network's size as safetensors, whole or not at all.
+    """Writes weights and the size of the network as safetensors. The file is replaced in one step.
 
     Args:
-        file: where to; replaced if it is there.
-        model: what to write.
-        metadata: anything JSON can hold, kept in the file's header.
+        file: the file to write.
+        model: the network.
+        metadata: values that JSON can hold, for the file's header.
         half: store numbers with 16 bits.
     """
     tensors = {
@@ -48,12 +48,12 @@ def save_rednet(file: Path, model: RedNet, metadata: Mapping[str, Any] | None = 
 
 
 def load_rednet(file: Path) -> tuple[RedNet, dict[str, Any]]:
-    """A network in evaluation mode with the weights of a file, and the file's metadata.
+    """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
 
-    A `.safetensors` file of ours says how large its network is; any other file must hold the published network.
+    A `.safetensors` file of ours holds the size of its network; any other file must hold the published network.
 
     Raises:
-        ConfigError: the file is not there, broken, or holds another network; the first name that differs is named.
+        ConfigError: the file does not exist, is broken, or holds another network (the first different name is given).
     """
     if not file.exists():
         raise ConfigError(f"No weights at '{file}'.")
@@ -70,10 +70,10 @@ def load_rednet(file: Path) -> tuple[RedNet, dict[str, Any]]:
 
 
 def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:
-    """The tensors of a checkpoint without its wrappings.
+    """Returns the tensors of a checkpoint by name, without wrapper and prefix.
 
     Raises:
-        ConfigError: something in it is no tensor.
+        ConfigError: a value is not a tensor.
     """
     for wrapper in _WRAPPERS:
         if isinstance(content.get(wrapper), Mapping):
@@ -96,7 +96,7 @@ def _read_safetensors(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
 
 
 def _decoded(header: Mapping[str, str]) -> dict[str, Any]:
-    """Header values from JSON; what is not JSON (others' files) stays a string."""
+    """Returns the header's values decoded from JSON; values that are not JSON (in foreign files) stay strings."""
     decoded: dict[str, Any] = {}
     for key, text in header.items():
         try:
@@ -118,6 +118,7 @@ def _read_checkpoint(file: Path) -> Mapping[str, Any]:
 
 
 def _config(file: Path, stored: Any) -> RedNetConfig:
+    """Returns the size of the network: the stored one, else the published one."""
     if stored is None:
         return PUBLISHED
     try:
@@ -128,7 +129,7 @@ def _config(file: Path, stored: Any) -> RedNetConfig:
 
 
 def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
-    """Refuse other names and shapes, naming the first, in the network's order."""
+    """Raises ConfigError for the first different name or shape, in the network's order."""
     for name, tensor in wanted.items():
         if name not in given:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")

@@ -1,8 +1,8 @@
-"""Labelled views out of WebDataset shards, as arrays and as a PyTorch data set.
+"""Reads labelled views from WebDataset shards, as arrays and as a PyTorch data set.
 
-A shard is a tar file whose members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
-millimetres), `key.semantic.png` (uint8 mpcat40 id) and `key.json`. The `webdataset` package reads them too; this reader
-needs no more than the standard library and OpenCV, and names a file that is broken.
+A shard is a tar file in which the members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
+millimetres), `key.semantic.png` (uint8 mpcat40 id) and `key.json`. The `webdataset` package reads them as well; this
+reader needs only the standard library and OpenCV, and its errors name the broken file and view.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 import cv2
 import numpy as np
 import torch
-from numpy.typing import NDArray
+from jaxtyping import Float32, Float64, Shaped, UInt8
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import MPCAT40, ConfigError
@@ -31,20 +31,20 @@ class LabelledView:
     """One view as it was stored."""
 
     key: str
-    rgb: NDArray[np.uint8]
-    """(h, w, 3)"""
-    depth_m: NDArray[np.float32]
-    """(h, w) metres; 0: no return or nearer than the camera's range."""
-    semantic: NDArray[np.uint8]
-    """(h, w) mpcat40 id"""
+    rgb: UInt8[np.ndarray, "h w 3"]
+    depth_m: Float32[np.ndarray, "h w"]
+    """Metres; 0: no return or nearer than the camera's range."""
+    semantic: UInt8[np.ndarray, "h w"]
+    """mpcat40 ids."""
     record: dict[str, Any] = field(default_factory=dict)
+    """Content of `key.json`."""
 
 
 def list_shards(folder: Path) -> list[Path]:
-    """The shards of a folder, in order.
+    """Returns the shards of a folder, sorted by name.
 
     Raises:
-        ConfigError: there are none.
+        ConfigError: the folder holds none.
     """
     shards = sorted(folder.glob("*.tar"))
     if not shards:
@@ -53,10 +53,10 @@ def list_shards(folder: Path) -> list[Path]:
 
 
 def read_shard(file: Path) -> Iterator[LabelledView]:
-    """The views of one shard, in its order.
+    """Yields the views of one shard in their order.
 
     Raises:
-        ConfigError: the file is no tar file, is cut off, or a view in it is not whole.
+        ConfigError: the file is not a tar file or truncated, or a view in it is incomplete.
     """
     parts: dict[str, bytes] = {}
     key = ""
@@ -76,13 +76,15 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
 
 
 class ViewDataset(IterableDataset):
-    """Views of many shards in random order, each epoch another one, shared between the loader's workers.
+    """A data set of the views of many shards, in a random order that changes with `epoch`.
+
+    The workers of a `DataLoader` share the shards.
 
     Args:
         shards: files.
-        transform: makes a sample of a view; the generator is the worker's own.
-        buffer: views among which the next one is drawn.
-        seed: drives order and transform, with the epoch.
+        transform: converts a view to a sample; each worker has a random generator of its own.
+        buffer: number of views among which the next one is drawn.
+        seed: seeds the order and the transform, together with the epoch.
         shuffle: False reads in order, for evaluation.
     """
 
@@ -104,7 +106,7 @@ class ViewDataset(IterableDataset):
         self.epoch = 0
 
     def __iter__(self) -> Iterator[Any]:
-        """The samples of this worker's shards."""
+        """Yields the samples of this worker's shards."""
         info = get_worker_info()
         worker, workers = (0, 1) if info is None else (info.id, info.num_workers)
         order = np.random.default_rng([self.seed, self.epoch])
@@ -116,7 +118,7 @@ class ViewDataset(IterableDataset):
 
 
 def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: int) -> Iterator[LabelledView]:
-    """The same views, each drawn from the next `buffer` ones."""
+    """Yields the same views, each drawn from the next `buffer` ones."""
     held: list[LabelledView] = []
     for view in views:
         if len(held) < buffer:
@@ -129,8 +131,11 @@ def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: i
         yield held[i]
 
 
-def pixel_counts(shards: Sequence[Path]) -> NDArray[np.float64]:
-    """(41,) pixels of each mpcat40 category, from the notes beside the shards; a shard without one is read."""
+def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
+    """Returns the number of pixels of each mpcat40 category.
+
+    It is read from the JSON note beside each shard, or counted where there is no note.
+    """
     counts = np.zeros(len(MPCAT40))
     for shard in shards:
         note = shard.with_suffix(".json")
@@ -144,10 +149,10 @@ def pixel_counts(shards: Sequence[Path]) -> NDArray[np.float64]:
 
 
 def stored_block_px(shards: Sequence[Path]) -> int:
-    """How much smaller than the camera's image the views were stored, from the notes beside the shards; 1 without.
+    """Returns the factor by which the views were shrunk before they were stored; 1 without a note beside the shards.
 
     Raises:
-        ConfigError: the shards differ in it.
+        ConfigError: the shards have different factors.
     """
     shrinks = set()
     for shard in shards:
@@ -160,7 +165,7 @@ def stored_block_px(shards: Sequence[Path]) -> int:
 
 
 def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
-    """`count` views, as many of each shard as of the others and evenly over it; all of them when count is 0."""
+    """Returns `count` views, the same number of each shard, evenly over the shard; all views when `count` is 0."""
     picked: list[LabelledView] = []
     for number, shard in enumerate(shards):
         views = list(read_shard(shard))
@@ -170,21 +175,23 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
     return picked
 
 
-def class_weights(pixels: NDArray[np.float64], *, smallest: float = 1.10) -> torch.Tensor:
-    """Weights (classes,) that let rare categories count: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
+def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10) -> Float32[torch.Tensor, " classes"]:
+    """Returns class weights that are larger for rare categories: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
 
     Args:
-        pixels: (41,) pixels of each mpcat40 category, void included.
-        smallest: bounds the largest weight; ENet's 1.02 lets the rarest count 30 times the walls, 1.10 five times.
+        pixels: pixels of each mpcat40 category, with void.
+        smallest: bounds the largest weight: with ENet's 1.02 the rarest category weighs 30 times as much as walls, with
+            1.10 five times.
     """
     counts = np.asarray(pixels, np.float64)[1:]
     share = counts / max(counts.sum(), 1.0)
     weights = 1.0 / np.log(smallest + share)
-    weights[counts == 0] = 0.0  # never seen: nothing to learn
+    weights[counts == 0] = 0.0  # a category without a pixel
     return torch.tensor(weights / weights[counts > 0].mean() if (counts > 0).any() else weights, dtype=torch.float32)
 
 
 def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
+    """Returns the view with these members; raises ConfigError where one is missing or broken."""
     missing = [part for part in _PARTS if part not in parts]
     if missing:
         raise ConfigError(f"Shard '{file}': view '{key}' has no '{missing[0]}'.")
@@ -198,12 +205,12 @@ def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
     try:
         record = json.loads(parts["json"])
     except ValueError:
-        raise ConfigError(f"Shard '{file}': the record of view '{key}' is no JSON.") from None
+        raise ConfigError(f"Shard '{file}': the record of view '{key}' is not JSON.") from None
     colour = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), np.uint8)
     return LabelledView(key, colour, depth.astype(np.float32) / 1000.0, semantic, record)
 
 
-def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> NDArray:
+def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> Shaped[np.ndarray, "h w *channels"]:
     buffer = np.frombuffer(parts[part], np.uint8)
     image = cv2.imdecode(buffer, flag) if buffer.size else None
     if image is None:
@@ -211,8 +218,8 @@ def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) 
     return image
 
 
-def tile(pictures: Sequence[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
-    """Pictures (h, w, 3) of one size as one sheet, row by row."""
+def tile(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], columns: int) -> UInt8[np.ndarray, "rows cols 3"]:
+    """Returns one picture with pictures of the same size side by side, row by row."""
     height, width = pictures[0].shape[:2]
     sheet = np.full((math.ceil(len(pictures) / columns) * height, columns * width, 3), 255, np.uint8)
     for i, picture in enumerate(pictures):

@@ -1,4 +1,4 @@
-"""A RedNet as the agent's segmenter: one frame in, scores of the goal and of the best other category out."""
+"""A segmenter that scores each frame with a RedNet."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
+from jaxtyping import Float, Float32, UInt8
 from torch import Tensor
 
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores, SegmenterSpec
@@ -16,15 +16,18 @@ from stubborn.segmentation.rednet import RedNet, folded
 
 
 class RedNetSegmenter:
-    """Softmax scores of a RedNet.
+    """A segmenter whose scores are the softmax of a RedNet's logits.
 
     Args:
         model: the network, in evaluation mode.
-        camera: gives the range that depth is scaled over.
-        block_px: the network sees the image shrunk by this factor.
+        camera: gives the range by which depth is scaled.
+        block_px: the network's input is the image shrunk by this factor.
         score_block_px: edge of the image block that one score stands for; a multiple of `block_px`.
-        temperature: logits are divided by it before the softmax.
-        threads: of PyTorch in this process; None leaves its choice.
+        temperature: divides the logits before the softmax.
+        threads: number of PyTorch's threads in this process; None does not change it.
+
+    Raises:
+        ConfigError: `score_block_px` is not a multiple of `block_px`, or the temperature is not positive.
     """
 
     spec = SegmenterSpec(sensors=("rgb",))
@@ -50,14 +53,19 @@ class RedNetSegmenter:
         self.camera = camera or CameraModel()
         self.block_px = block_px
         self.temperature = temperature
-        self._every = score_block_px // block_px
+        every = score_block_px // block_px
+        self._middle = slice(every // 2, None, every)
 
     @classmethod
     def from_file(cls, file: Path, **options: object) -> RedNetSegmenter:
-        """A segmenter with the weights of a file and the resolution and temperature that it names.
+        """Returns a segmenter with the weights of a file, and with the resolution and temperature stored in it.
+
+        Args:
+            file: weights; see `load_rednet`.
+            options: arguments of the class that replace the stored values.
 
         Raises:
-            ConfigError: see `load_rednet`.
+            ConfigError: see `load_rednet` and the class.
         """
         model, metadata = load_rednet(file)
         stored = {key: metadata[key] for key in ("block_px", "temperature") if key in metadata}
@@ -66,29 +74,30 @@ class RedNetSegmenter:
         return cls(model, **{**stored, **options})  # pyright: ignore[reportArgumentType]
 
     def scores(self, observation: Observation, goal: str) -> Scores:
-        """Scores of one frame, float32 (h / score_block_px, w / score_block_px); see `sim.interface.Segmenter`."""
+        """Returns the scores of one frame, float32 (h / score_block_px, w / score_block_px).
+
+        Raises:
+            ConfigError: the goal is not a category of the network.
+        """
         if goal not in MPCAT40_ID or goal == "void":
             raise ConfigError(f"No category {goal!r} that a network knows. There is: {', '.join(MPCAT40_ID)}.")
         logits = self.logits(observation["rgb"], observation["depth"])[:, self._middle, self._middle]
         return _scores(logits / self.temperature, MPCAT40_ID[goal] - 1)
 
-    def logits(self, rgb: NDArray[np.uint8], depth: NDArray[np.float32]) -> Tensor:
-        """Logits (classes, h / block_px, w / block_px) of one frame."""
-        small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth, self.block_px)
+    def logits(
+        self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
+    ) -> Float[Tensor, "classes rows cols"]:
+        """Returns the logits of one frame; rows and columns are those of the image divided by `block_px`."""
+        small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
         with torch.inference_mode():
             colour = torch.from_numpy(normalise_rgb(small_rgb))[None].to(memory_format=torch.channels_last)
             metres = torch.from_numpy(normalise_depth(small_depth, self.camera))[None]
             out = self.model(colour, metres)[0]
-        pad = padding(*small_depth.shape)
-        height, width = out.shape[-2:]
-        return out[:, pad.top : height - pad.bottom, pad.left : width - pad.right]
-
-    @property
-    def _middle(self) -> slice:
-        return slice(self._every // 2, None, self._every)
+        return out[:, *padding(*small_depth.shape).inner]
 
 
-def _scores(logits: Tensor, goal_channel: int) -> Scores:
+def _scores(logits: Float[Tensor, "classes h w"], goal_channel: int) -> Scores:
+    """Returns the softmax of the goal's channel and the highest of the other channels."""
     probability = torch.softmax(logits, dim=0)
     target = probability[goal_channel].clone()
     probability[goal_channel] = 0.0

@@ -1,18 +1,21 @@
 """RedNet, an encoder-decoder for RGB-D segmentation (Jiang et al. 2018, arXiv:1806.01054).
 
-Two residual encoders, one for colour and one for depth; depth features are added to those of colour after the stem and
-after each of the four stages. 1x1 convolutions bring the sums to the width of the decoder, whose residual blocks double
-the resolution stage by stage and take them in as skips. Side heads on four decoder stages are trained as well (pyramid
-supervision). Module names are those of the checkpoints in circulation, so that they load without conversion.
+The network has two residual encoders, one for colour and one for depth; depth features are added to colour features
+after the stem and after each of the four stages. 1x1 convolutions convert the sums to the width of the decoder, whose
+residual blocks double the resolution stage by stage and add the sums as skips. Side heads on four decoder stages are
+trained as well (pyramid supervision). Module names are those of the published checkpoints, which load without
+conversion.
 """
 
 from __future__ import annotations
 
 import copy
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
+from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
@@ -20,21 +23,21 @@ from sim.interface import MPCAT40, ConfigError
 from stubborn.segmentation.preprocess import STRIDE_PX
 
 CLASSES = len(MPCAT40) - 1
-"""mpcat40 without void: channel c of the output is category id c + 1."""
+"""Number of mpcat40 categories without void: channel c of the output is category id c + 1."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RedNetConfig:
-    """Size of a RedNet; the default is the published one (81,972,552 parameters)."""
+    """The size of a RedNet; the default is the published network (81,972,552 parameters)."""
 
     width: int = 64
     """Channels after the stem."""
     encoder_blocks: tuple[int, int, int, int] = (3, 4, 6, 3)
     """Residual blocks of each encoder stage."""
     bottleneck: bool = True
-    """Blocks of 1x1, 3x3 and 1x1 convolutions with four times the channels (ResNet-50), else two 3x3 (ResNet-18)."""
+    """True: blocks of 1x1, 3x3, 1x1 convolutions, 4 x the channels (ResNet-50); False: two 3x3 (ResNet-18)."""
     decoder_blocks: tuple[int, int, int, int] = (6, 4, 3, 3)
-    """Residual blocks of each decoder stage, the upsampling one included."""
+    """Residual blocks of each decoder stage, with the upsampling block."""
     final_blocks: int = 3
     """Residual blocks at half the input's resolution, before the last upsampling."""
     classes: int = CLASSES
@@ -50,12 +53,12 @@ PUBLISHED = RedNetConfig()
 COMPACT = RedNetConfig(
     width=32, encoder_blocks=(2, 2, 2, 2), bottleneck=False, decoder_blocks=(2, 2, 2, 2), final_blocks=1
 )
-"""A narrow, shallow one that a CPU can run beside a simulator."""
-SIZES: dict[str, RedNetConfig] = {"compact": COMPACT, "published": PUBLISHED}
+"""A narrow and shallow network that a CPU can run beside a simulator."""
+SIZES: Mapping[str, RedNetConfig] = MappingProxyType({"compact": COMPACT, "published": PUBLISHED})
 
 
 class BasicBlock(nn.Module):
-    """Two 3x3 convolutions and a shortcut (He et al. 2015)."""
+    """A residual block of two 3x3 convolutions (He et al. 2015)."""
 
     expansion = 1
 
@@ -68,15 +71,15 @@ class BasicBlock(nn.Module):
         self.relu = nn.ReLU(inplace=True)
         self.downsample = _shortcut(channels_in, channels, stride)
 
-    def forward(self, x: Tensor) -> Tensor:
-        """(n, c, h, w) to (n, channels, h / stride, w / stride)."""
+    def forward(self, x: Float[Tensor, "n c h w"]) -> Float[Tensor, "n channels rows cols"]:
+        """Returns features with `channels` channels; rows and columns are those of `x` divided by the stride."""
         y = self.relu(self.bn1(self.conv1(x)))
         y = self.bn2(self.conv2(y))
         return self.relu(y + (x if self.downsample is None else self.downsample(x)))
 
 
 class Bottleneck(nn.Module):
-    """1x1, 3x3 and 1x1 convolutions and a shortcut; the stride is on the 3x3 (He et al. 2015)."""
+    """A residual block of 1x1, 3x3 and 1x1 convolutions with the stride on the 3x3 (He et al. 2015)."""
 
     expansion = 4
 
@@ -92,8 +95,8 @@ class Bottleneck(nn.Module):
         self.relu = nn.ReLU(inplace=True)
         self.downsample = _shortcut(channels_in, channels_out, stride)
 
-    def forward(self, x: Tensor) -> Tensor:
-        """(n, c, h, w) to (n, 4 channels, h / stride, w / stride)."""
+    def forward(self, x: Float[Tensor, "n c h w"]) -> Float[Tensor, "n channels rows cols"]:
+        """Returns features with 4 x `channels` channels; rows and columns are those of `x` divided by the stride."""
         y = self.relu(self.bn1(self.conv1(x)))
         y = self.relu(self.bn2(self.conv2(y)))
         y = self.bn3(self.conv3(y))
@@ -101,7 +104,7 @@ class Bottleneck(nn.Module):
 
 
 class DecoderBlock(nn.Module):
-    """Two 3x3 convolutions and a shortcut; with `upsample` both ways double the resolution."""
+    """A residual block of two 3x3 convolutions; with `upsample` it doubles the resolution."""
 
     def __init__(self, channels_in: int, channels_out: int, *, upsample: bool) -> None:
         super().__init__()
@@ -120,15 +123,15 @@ class DecoderBlock(nn.Module):
                 nn.ConvTranspose2d(channels_in, channels_out, 2, stride=2, bias=False), nn.BatchNorm2d(channels_out)
             )
 
-    def forward(self, x: Tensor) -> Tensor:
-        """(n, channels_in, h, w) to (n, channels_out, h, w), or twice as high and wide."""
+    def forward(self, x: Float[Tensor, "n channels_in h w"]) -> Float[Tensor, "n channels_out rows cols"]:
+        """Returns features of the same height and width as `x`, or twice as high and wide."""
         y = self.relu(self.bn1(self.conv1(x)))
         y = self.bn2(self.conv2(y))
         return self.relu(y + (x if self.upsample is None else self.upsample(x)))
 
 
 class RedNet(nn.Module):
-    """Class logits from normalised colour and depth; see the module and `stubborn.segmentation.preprocess`."""
+    """A network that computes class logits from colour and depth, normalised by `stubborn.segmentation.preprocess`."""
 
     def __init__(self, config: RedNetConfig = PUBLISHED) -> None:
         super().__init__()
@@ -162,15 +165,17 @@ class RedNet(nn.Module):
         self.out2_conv_custom = nn.Conv2d(ends[3], config.classes, 1)
         self._initialise()
 
-    def forward(self, rgb: Tensor, depth: Tensor) -> Tensor:
-        """Logits (n, classes, h, w) of normalised `rgb` (n, 3, h, w) and `depth` (n, 1, h, w)."""
+    def forward(self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n 1 h w"]) -> Float[Tensor, "n classes h w"]:
+        """Returns the logits at full size."""
         return self.pyramid(rgb, depth, sides=False)[0]
 
-    def pyramid(self, rgb: Tensor, depth: Tensor, *, sides: bool = True) -> tuple[Tensor, ...]:
-        """Logits at full size and, with `sides`, at 1/2, 1/4, 1/8 and 1/16 of it.
+    def pyramid(
+        self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n 1 h w"], *, sides: bool = True
+    ) -> tuple[Float[Tensor, "n classes _ _"], ...]:
+        """Returns the logits at full size and, with `sides`, at 1/2, 1/4, 1/8 and 1/16 of it.
 
         Raises:
-            ConfigError: height or width is no multiple of 32.
+            ConfigError: height or width is not a multiple of 32.
         """
         height, width = rgb.shape[-2:]
         if height % STRIDE_PX or width % STRIDE_PX:
@@ -189,7 +194,7 @@ class RedNet(nn.Module):
         return (logits, *reversed(outputs))
 
     def _encode(self, rgb: Tensor, depth: Tensor) -> list[Tensor]:
-        """Skips from the finest (half the input) to the coarsest (a 32nd), each as wide as the decoder wants it."""
+        """Returns the skips from the finest (half the input) to the coarsest (a 32nd), with the decoder's channels."""
         y = self.relu(self.bn1_d(self.conv1_d(depth)))
         x = self.relu(self.bn1(self.conv1(rgb))) + y
         skips = [self.agant0(x)]
@@ -214,9 +219,9 @@ class RedNet(nn.Module):
 
 
 def folded(model: RedNet) -> RedNet:
-    """A copy for inference whose batch normalisations are part of the convolutions before them.
+    """Returns a copy for inference whose batch normalisations are part of the convolutions before them.
 
-    Its outputs differ from the model's by rounding alone and take less time; it cannot be trained.
+    The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only.
     """
     copied = copy.deepcopy(model).eval()
     for module in list(copied.modules()):

@@ -1,8 +1,8 @@
-"""Where the shipped network lies. Free of PyTorch, so that asking for the place costs nothing."""
+"""The path of the shipped network, in a module without PyTorch."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 SHIPPED_REDNET = Path(__file__).parent / "weights" / "rednet.safetensors"
-"""The compact RedNet trained on this repository's views; the model card lies beside it."""
+"""The compact RedNet that was trained on views of generated houses; its model card is beside it."""

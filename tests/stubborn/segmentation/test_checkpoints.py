@@ -1,4 +1,4 @@
-"""Weights in files: what loads, and what is refused with the first name that differs."""
+"""Files of weights: which load, and how others are refused."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture(scope="module")
 def published_state() -> dict[str, torch.Tensor]:
-    """A made-up checkpoint of the published network: every tensor is filled with its place in the order."""
+    """An invented checkpoint of the published network: every tensor is filled with a number by its index."""
     with torch.device("meta"):
         shapes = {name: (tensor.shape, tensor.dtype) for name, tensor in RedNet().state_dict().items()}
     values = ((name, shape, dtype, i) for i, (name, (shape, dtype)) in enumerate(shapes.items()))
     return {name: torch.tensor(i % 7, dtype=dtype).expand(shape) for name, shape, dtype, i in values}
 
 
-def test_a_checkpoint_in_the_circulating_wrapper_loads_into_the_published_network(
+def test_a_checkpoint_in_the_published_wrapper_loads_into_the_published_network(
     published_state: dict[str, torch.Tensor], tmp_path: Path
 ) -> None:
     file = tmp_path / "rednet_semmap_mp3d_40.pth"
@@ -35,7 +35,7 @@ def test_a_checkpoint_in_the_circulating_wrapper_loads_into_the_published_networ
     assert not model.training
 
 
-def test_another_shape_is_refused_by_name(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
+def test_a_different_shape_is_refused_with_its_name(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
     wrong = dict(published_state)
     wrong["layer2.0.conv1.weight"] = torch.zeros(128, 255, 1, 1)
     wrong["out2_conv_custom.bias"] = torch.zeros(21)
@@ -44,7 +44,7 @@ def test_another_shape_is_refused_by_name(published_state: dict[str, torch.Tenso
         load_rednet(tmp_path / "wrong.pth")
 
 
-def test_a_missing_and_a_foreign_name_are_refused(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
+def test_a_missing_and_an_unknown_name_are_refused(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
     missing = {name: value for name, value in published_state.items() if name != "agant3.1.bias"}
     torch.save(missing, tmp_path / "missing.pth")
     with pytest.raises(ConfigError, match=r"'agant3\.1\.bias' is missing"):
@@ -54,26 +54,26 @@ def test_a_missing_and_a_foreign_name_are_refused(published_state: dict[str, tor
         load_rednet(tmp_path / "foreign.pth")
 
 
-class _Runs:
+class _Malicious:
     def __reduce__(self) -> tuple:
         return (Path.touch, (Path("/tmp/a-pickle-was-run"),))
 
 
-def test_no_pickle_is_run(tmp_path: Path) -> None:
-    torch.save({"model_state": _Runs()}, tmp_path / "evil.pth")
+def test_pickled_code_is_not_run(tmp_path: Path) -> None:
+    torch.save({"model_state": _Malicious()}, tmp_path / "evil.pth")
     with pytest.raises(ConfigError, match="cannot be read as a PyTorch checkpoint"):
         load_rednet(tmp_path / "evil.pth")
     assert not Path("/tmp/a-pickle-was-run").exists()
 
 
 @pytest.mark.parametrize("name", ["broken.pth", "broken.safetensors"])
-def test_a_broken_file_is_one_clear_sentence(tmp_path: Path, name: str) -> None:
+def test_a_broken_file_is_refused(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_bytes(b"not weights at all")
     with pytest.raises(ConfigError, match=f"{name}' cannot be read"):
         load_rednet(tmp_path / name)
 
 
-def test_a_truncated_file_is_one_clear_sentence(tmp_path: Path) -> None:
+def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "net.safetensors"
     save_rednet(file, RedNet(TINY))
     file.write_bytes(file.read_bytes()[:-100])
@@ -81,12 +81,12 @@ def test_a_truncated_file_is_one_clear_sentence(tmp_path: Path) -> None:
         load_rednet(file)
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"No weights at '.*nowhere\.pth'"):
         load_rednet(tmp_path / "nowhere.pth")
 
 
-def test_saved_and_loaded_is_the_same_network_of_the_same_size(tmp_path: Path) -> None:
+def test_a_saved_network_loads_with_the_same_size_and_weights(tmp_path: Path) -> None:
     torch.manual_seed(1)
     model = RedNet(TINY).eval()
     save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.25, "command": "none"}, half=False)

@@ -52,7 +52,7 @@ def two_shards(folder: Path) -> list[Path]:
     return list_shards(folder)
 
 
-def test_views_come_back_as_they_were_written(tmp_path: Path) -> None:
+def test_views_are_read_as_they_were_written(tmp_path: Path) -> None:
     write_tar(tmp_path / "v.tar", ["a", "b", "c"])
     views = list(read_shard(tmp_path / "v.tar"))
     assert [view.key for view in views] == ["a", "b", "c"]
@@ -62,14 +62,14 @@ def test_views_come_back_as_they_were_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("workers", [0, 2])
-def test_an_epoch_shows_each_view_once_whatever_the_workers(tmp_path: Path, workers: int) -> None:
+def test_an_epoch_holds_each_view_once_for_any_number_of_workers(tmp_path: Path, workers: int) -> None:
     shards = two_shards(tmp_path)
     dataset = ViewDataset(shards, key_of, buffer=3)
     keys = [key for batch in DataLoader(dataset, batch_size=2, num_workers=workers) for key in batch]
     assert sorted(keys) == sorted(f"s{s}_{i}" for s in range(2) for i in range(5))
 
 
-def test_the_order_changes_with_the_epoch_and_not_by_itself(tmp_path: Path) -> None:
+def test_the_order_changes_with_the_epoch_only(tmp_path: Path) -> None:
     dataset = ViewDataset(two_shards(tmp_path), key_of, seed=4)
     first, again = list(dataset), list(dataset)
     dataset.epoch = 1
@@ -79,13 +79,13 @@ def test_the_order_changes_with_the_epoch_and_not_by_itself(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("part", ["rgb.png", "depth.png", "semantic.png", "json"])
-def test_a_view_that_is_not_whole_is_named(tmp_path: Path, part: str) -> None:
+def test_an_incomplete_view_is_named(tmp_path: Path, part: str) -> None:
     write_tar(tmp_path / "v.tar", ["a"], leave_out=part)
     with pytest.raises(ConfigError, match=rf"v\.tar': view 'a' has no '{part.split('.')[0]}'"):
         list(read_shard(tmp_path / "v.tar"))
 
 
-def test_a_truncated_shard_and_a_strange_category_are_named(tmp_path: Path) -> None:
+def test_a_truncated_shard_and_an_unknown_category_are_named(tmp_path: Path) -> None:
     write_tar(tmp_path / "v.tar", ["a", "b"])
     content = (tmp_path / "v.tar").read_bytes()
     (tmp_path / "cut.tar").write_bytes(content[: content.index(b"b.depth.png") + 600])
@@ -101,7 +101,7 @@ def test_a_truncated_shard_and_a_strange_category_are_named(tmp_path: Path) -> N
         list_shards(tmp_path / "nowhere")
 
 
-def test_rare_categories_weigh_more_and_missing_ones_nothing() -> None:
+def test_rare_categories_weigh_more_and_absent_ones_nothing() -> None:
     pixels = np.zeros(41)
     pixels[[1, 2, 3]] = 1e6, 1e4, 1e2
     weights = class_weights(pixels)
@@ -111,14 +111,14 @@ def test_rare_categories_weigh_more_and_missing_ones_nothing() -> None:
     assert float(weights[weights > 0].mean()) == pytest.approx(1.0)
 
 
-def test_a_sheet_has_every_picture_in_its_place() -> None:
+def test_tiled_pictures_are_in_row_order() -> None:
     sheet = tile([np.full((2, 3, 3), i, np.uint8) for i in range(5)], columns=2)
     assert sheet.shape == (6, 6, 3)
     assert sheet[2, 3, 0] == 3
     assert sheet[5, 5, 0] == 255
 
 
-def test_how_small_views_were_stored_is_read_from_their_notes(tmp_path: Path) -> None:
+def test_the_factor_of_stored_views_is_read_from_their_notes(tmp_path: Path) -> None:
     shards = two_shards(tmp_path)
     assert stored_block_px(shards) == 1
     for shard in shards:

@@ -1,4 +1,4 @@
-"""A network as the agent's segmenter."""
+"""The RedNet segmenter and the conversion of its images."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def frame() -> dict[str, np.ndarray]:
     }
 
 
-def test_scores_are_the_softmax_of_the_blocks_middle_pixels(model: RedNet, frame: dict[str, np.ndarray]) -> None:
+def test_scores_are_the_softmax_at_the_middle_pixels_of_blocks(model: RedNet, frame: dict[str, np.ndarray]) -> None:
     segmenter = RedNetSegmenter(model, temperature=2.0)
     scores = segmenter.scores(frame, "sofa")
     logits = segmenter.logits(frame["rgb"], frame["depth"]).numpy()[:, 1::2, 1::2] / 2.0
@@ -63,30 +63,30 @@ def test_the_frame_is_not_changed_and_the_same_frame_gives_the_same_scores(
 
 
 def test_padding_keeps_every_pixel_in_its_place(model: RedNet) -> None:
-    """240 rows are padded to 256: what the crop leaves is where it was."""
+    """240 rows are padded to 256 and cut out again."""
     rgb = np.random.default_rng(1).integers(0, 256, (240, 320, 3), dtype=np.uint8)
     pad = padding(240, 320)
     assert pad == (8, 8, 0, 0)
-    back = pad.crop(normalise_rgb(rgb))
+    back = normalise_rgb(rgb)[:, *pad.inner]
     assert back.shape == (3, 240, 320)
     np.testing.assert_allclose(back[0] * 0.544 + 0.493, rgb[..., 0] / 255.0, atol=1e-5)
 
 
-def test_no_return_and_too_near_read_as_nearest_and_far_as_farthest() -> None:
+def test_depth_is_scaled_from_the_nearest_to_the_farthest_distance() -> None:
     depth = np.full((32, 32), 5.0, np.float32)
     depth[0, :3] = 0.0, 0.3, 0.5
     scaled = normalise_depth(depth, CameraModel())[0] * 0.285 + 0.213
     np.testing.assert_allclose(scaled[0, :4], [0.0, 0.0, 0.0, 1.0], atol=1e-6)
 
 
-def test_shrinking_takes_labels_and_never_mixes_them() -> None:
+def test_shrinking_takes_the_middle_label_of_a_block() -> None:
     labels = np.array([[1, 1, 9, 9], [1, 1, 9, 9]], np.uint8)
     assert shrink(labels, 2).tolist() == [[1, 9]]
     with pytest.raises(ConfigError, match="no whole number of 3 pixel blocks"):
         shrink(labels, 3)
 
 
-def test_unknown_goals_and_impossible_blocks_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
+def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
     with pytest.raises(ConfigError, match="No category 'unicorn'"):
         RedNetSegmenter(model).scores(frame, "unicorn")
     with pytest.raises(ConfigError, match="multiple of block_px"):
@@ -95,7 +95,7 @@ def test_unknown_goals_and_impossible_blocks_are_refused(model: RedNet, frame: d
         RedNetSegmenter(model, temperature=0.0)
 
 
-def test_resolution_and_temperature_come_with_the_weights(model: RedNet, tmp_path: Path) -> None:
+def test_resolution_and_temperature_are_stored_with_the_weights(model: RedNet, tmp_path: Path) -> None:
     save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.5, "block_px": 4})
     segmenter = RedNetSegmenter.from_file(tmp_path / "net.safetensors")
     assert (segmenter.temperature, segmenter.block_px) == (1.5, 4)

@@ -1,4 +1,4 @@
-"""The network: the published one to the name, and the laws of its shapes."""
+"""The network: names and shapes of the published one, sizes of its outputs, folding, gradients."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def test_the_published_network_has_81972552_parameters(published: RedNet) -> Non
     assert sum(parameter.numel() for parameter in published.parameters()) == 81_972_552
 
 
-def test_names_and_shapes_are_those_of_the_checkpoints_in_circulation(published: RedNet) -> None:
+def test_names_and_shapes_are_those_of_the_published_checkpoints(published: RedNet) -> None:
     lines = NAMES_AND_SHAPES.read_text(encoding="utf-8").splitlines()
     wanted = [tuple(line.split()) for line in lines if line and not line.startswith("#")]
     assert [(name, shape_text(tensor)) for name, tensor in published.state_dict().items()] == wanted
 
 
 @pytest.mark.parametrize("config", [PUBLISHED, COMPACT], ids=["published", "compact"])
-def test_five_scales_halve(config: RedNetConfig) -> None:
+def test_outputs_have_five_scales(config: RedNetConfig) -> None:
     with torch.device("meta"):
         outputs = RedNet(config).eval().pyramid(torch.zeros(2, 3, 480, 640), torch.zeros(2, 1, 480, 640))
     assert [tuple(out.shape) for out in outputs] == [
@@ -46,12 +46,12 @@ def test_five_scales_halve(config: RedNetConfig) -> None:
     ]
 
 
-def test_sizes_that_five_halvings_do_not_divide_are_refused() -> None:
+def test_sizes_that_are_not_multiples_of_32_are_refused() -> None:
     with pytest.raises(ConfigError, match="multiples of 32"):
         RedNet(COMPACT)(torch.zeros(1, 3, 240, 320), torch.zeros(1, 1, 240, 320))
 
 
-def test_both_colour_and_depth_reach_the_output() -> None:
+def test_the_output_depends_on_colour_and_on_depth() -> None:
     torch.manual_seed(0)
     model = RedNet(RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1)))
     model.eval()
@@ -64,7 +64,7 @@ def test_both_colour_and_depth_reach_the_output() -> None:
 
 
 @pytest.mark.parametrize("bottleneck", [False, True])
-def test_folded_normalisations_leave_the_outputs_and_the_model_as_they_were(bottleneck: bool) -> None:
+def test_folding_changes_neither_the_outputs_nor_the_model(bottleneck: bool) -> None:
     torch.manual_seed(1)
     blocks = (2, 1, 1, 1)
     model = RedNet(RedNetConfig(width=8, encoder_blocks=blocks, bottleneck=bottleneck, decoder_blocks=blocks)).eval()
@@ -82,10 +82,10 @@ def test_folded_normalisations_leave_the_outputs_and_the_model_as_they_were(bott
     assert not any(isinstance(module, torch.nn.BatchNorm2d) for module in folded(model).modules())
 
 
-def test_every_parameter_learns_from_the_five_outputs() -> None:
+def test_every_parameter_has_a_gradient_from_the_five_outputs() -> None:
     torch.manual_seed(0)
     model = RedNet(RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1)))
     outputs = model.pyramid(torch.randn(2, 3, 64, 64), torch.randn(2, 1, 64, 64))
     sum(out.square().mean() for out in outputs).backward()  # type: ignore[union-attr]
-    silent = [name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0]
-    assert silent == []
+    without = [name for name, p in model.named_parameters() if p.grad is None or not p.grad.abs().sum() > 0]
+    assert without == []

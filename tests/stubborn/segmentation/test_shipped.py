@@ -1,4 +1,4 @@
-"""The network that ships: small, whole, described, and of use in houses that it has never seen."""
+"""The shipped network: its size, its model card, and its accuracy in a house of val."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from stubborn.segmentation.rednet import COMPACT
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 
-def test_it_is_small_and_its_card_tells_what_it_is() -> None:
+def test_it_is_small_and_its_card_agrees_with_it() -> None:
     assert SHIPPED_REDNET.stat().st_size <= 20_000_000
     model, metadata = load_rednet(SHIPPED_REDNET)
     assert model.config == COMPACT
@@ -31,7 +31,7 @@ def test_it_is_small_and_its_card_tells_what_it_is() -> None:
         assert heading in card
 
 
-def test_it_knows_most_of_what_it_sees_in_a_house_of_val() -> None:
+def test_it_is_right_at_most_pixels_in_a_house_of_val() -> None:
     scene = Scene(load_split("val").load_house("val_00"), robot=RobotConfig(), camera=CameraModel(), profile="fast")
     try:
         views = list(sample_views(scene, np.random.default_rng(0), 6, stem="v", record={}))

@@ -1,0 +1,191 @@
+"""Training samples of a RedNet: labels, random windows and augmentation of labelled views."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+import torch
+from jaxtyping import Float32, Int64, Shaped, UInt8
+from torch import Tensor
+from torch.utils.data import Dataset
+
+from sim.interface import CameraModel, ConfigError
+from stubborn.segmentation.dataset import LabelledView
+from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
+
+IGNORED = -100
+"""Label of pixels that do not count: void and padding."""
+
+Sample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "1 h w"], Int64[Tensor, "h w"]]
+"""Normalised colour, normalised depth, and class channels or `IGNORED`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Augmentation:
+    """The largest random differences of a training sample from its view; `NONE` changes nothing."""
+
+    mirror: bool = True
+    """Half of the samples are mirrored left to right."""
+    brightness: float = 0.3
+    """Colour is scaled by 1 +- this, and each channel by half of it more: other walls and lamps."""
+    contrast: float = 0.3
+    saturation: float = 0.6
+    hue_rad: float = 0.6
+    """Colours are rotated about grey by up to this: furniture has other colours in other houses."""
+    noise_rgb: float = 4.0
+    """Largest standard deviation of Gaussian noise, of 255."""
+    depth_noise: float = 0.0012
+    """The standard deviation of depth is this times depth squared, as with structured light (Nguyen et al. 2012)."""
+    holes: int = 6
+    """Largest number of rectangles without depth."""
+
+
+NONE = Augmentation(
+    mirror=False,
+    brightness=0.0,
+    contrast=0.0,
+    saturation=0.0,
+    hue_rad=0.0,
+    noise_rgb=0.0,
+    depth_noise=0.0,
+    holes=0,
+)
+
+
+@dataclass(frozen=True)
+class Sampler:
+    """A function from a view to a training sample. It is a class so that it can be pickled for a loader's workers."""
+
+    camera: CameraModel
+    block_px: int = 1
+    """Views are first shrunk by this factor; 1 where they are stored small."""
+    augmentation: Augmentation = NONE
+    window_px: int | None = None
+    """Samples are windows of this width, see `random_window`; None: whole views."""
+    whole_share: float = 0.0
+    """Share of the windows that show the whole view, shrunk, as in the input of a network that works on such images."""
+
+    def __call__(self, view: LabelledView, rng: np.random.Generator) -> Sample:
+        """Returns a sample of a view."""
+        rgb = shrink(view.rgb, self.block_px)
+        depth_m = shrink(view.depth_m, self.block_px)
+        semantic = shrink(view.semantic, self.block_px)
+        if self.window_px is not None:
+            rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, self.whole_share, rng)
+        augmentation = self.augmentation
+        if augmentation.mirror and rng.random() < 0.5:
+            rgb, depth_m, semantic = _mirrored(rgb), _mirrored(depth_m), _mirrored(semantic)
+        rgb, depth_m = jitter_colour(rgb, augmentation, rng), jitter_depth(depth_m, augmentation, rng)
+        return (
+            torch.from_numpy(normalise_rgb(rgb)),
+            torch.from_numpy(normalise_depth(depth_m, self.camera)),
+            torch.from_numpy(labels(semantic)),
+        )
+
+
+class Samples(Dataset):
+    """A data set of the samples of views in memory, without randomness."""
+
+    def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
+        """The sampler must not augment."""
+        self._views, self._sampler = views, sampler
+
+    def __len__(self) -> int:
+        return len(self._views)
+
+    def __getitem__(self, i: int) -> Sample:
+        return self._sampler(self._views[i], np.random.default_rng(0))
+
+
+def _mirrored(image: Shaped[np.ndarray, "h w *channels"]) -> Shaped[np.ndarray, "h w *channels"]:
+    return np.ascontiguousarray(image[:, ::-1])
+
+
+def labels(semantic: UInt8[np.ndarray, "h w"]) -> Int64[np.ndarray, "padded_h padded_w"]:
+    """Returns the class channels of mpcat40 ids, padded like the images; void and padding are `IGNORED`."""
+    channel = semantic.astype(np.int64) - 1
+    channel[semantic == 0] = IGNORED
+    pad = padding(*semantic.shape)
+    return np.pad(channel, (pad[:2], pad[2:]), constant_values=IGNORED)
+
+
+def random_window(
+    rgb: UInt8[np.ndarray, "h w 3"],
+    depth_m: Float32[np.ndarray, "h w"],
+    semantic: UInt8[np.ndarray, "h w"],
+    window_px: int,
+    whole_share: float,
+    rng: np.random.Generator,
+) -> tuple[UInt8[np.ndarray, "rows cols 3"], Float32[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
+    """Returns a window of the view at a random position and scale: fewer pixels per step, objects in several sizes.
+
+    The window has the proportions of the view and is `window_px` wide. Its scale is between that of the whole view,
+    shrunk, and that of the view's own pixels. With a probability of `whole_share` it is the whole view.
+
+    Raises:
+        ConfigError: the view is narrower than the window.
+    """
+    height, width = semantic.shape
+    if window_px > width:
+        raise ConfigError(f"A view of {width} columns has no window of {window_px}.")
+    smallest = 0.0 if rng.random() < whole_share else np.log(window_px / width)
+    cols = round(width * float(np.exp(rng.uniform(smallest, 0.0))))
+    rows, window_rows = round(height * cols / width), round(height * window_px / width)
+    top, left = rng.integers(0, height - rows + 1), rng.integers(0, width - cols + 1)
+    cut = (slice(top, top + rows), slice(left, left + cols))
+    shape = (window_px, window_rows)
+    return (
+        cv2.resize(rgb[cut], shape, interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False),
+        cv2.resize(depth_m[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.float32, copy=False),
+        cv2.resize(semantic[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.uint8, copy=False),
+    )
+
+
+def turn_hue(image: Float32[np.ndarray, "h w 3"], angle_rad: float) -> Float32[np.ndarray, "h w 3"]:
+    """Returns colours rotated about the axis of greys."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    even, ahead, behind = (1 + 2 * c) / 3, (1 - c) / 3 - s / math.sqrt(3), (1 - c) / 3 + s / math.sqrt(3)
+    turn = np.array([[even, ahead, behind], [behind, even, ahead], [ahead, behind, even]], np.float32)
+    return image @ turn.T
+
+
+def jitter_colour(
+    rgb: UInt8[np.ndarray, "h w 3"], augmentation: Augmentation, rng: np.random.Generator
+) -> UInt8[np.ndarray, "h w 3"]:
+    """Returns an image with random brightness, white balance, contrast, saturation, hue and noise."""
+    a = augmentation
+    if max(a.brightness, a.contrast, a.saturation, a.hue_rad, a.noise_rgb) == 0.0:
+        return rgb
+    image = rgb.astype(np.float32)
+    gain = (1.0 + rng.uniform(-a.brightness, a.brightness)) * (1.0 + 0.5 * rng.uniform(-1, 1, 3) * a.brightness)
+    image *= gain.astype(np.float32)
+    mean = image.mean()
+    image = mean + (image - mean) * np.float32(1.0 + rng.uniform(-a.contrast, a.contrast))
+    grey = image.mean(axis=2, keepdims=True)
+    image = grey + (image - grey) * np.float32(1.0 + rng.uniform(-a.saturation, a.saturation))
+    if a.hue_rad > 0.0:
+        image = turn_hue(image, rng.uniform(-a.hue_rad, a.hue_rad))
+    sigma = rng.uniform(0.0, a.noise_rgb)
+    if sigma > 0.0:
+        image += rng.standard_normal(image.shape, np.float32) * np.float32(sigma)
+    return np.clip(image, 0.0, 255.0).astype(np.uint8)
+
+
+def jitter_depth(
+    depth_m: Float32[np.ndarray, "h w"], augmentation: Augmentation, rng: np.random.Generator
+) -> Float32[np.ndarray, "h w"]:
+    """Returns depth with noise that grows with the square of the distance, and with rectangles without return."""
+    if augmentation.depth_noise == 0.0 and augmentation.holes == 0:
+        return depth_m
+    scale = np.float32(rng.uniform(0.0, 2.0) * augmentation.depth_noise)
+    noisy = depth_m + rng.standard_normal(depth_m.shape, np.float32) * (scale * depth_m * depth_m)
+    height, width = depth_m.shape
+    for _ in range(int(rng.integers(0, augmentation.holes + 1))):
+        h, w = rng.integers(2, height // 5), rng.integers(2, width // 5)
+        top, left = rng.integers(0, height - h), rng.integers(0, width - w)
+        noisy[top : top + h, left : left + w] = 0.0
+    return noisy.astype(np.float32, copy=False)

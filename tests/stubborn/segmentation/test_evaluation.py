@@ -1,0 +1,47 @@
+"""Intersection over union, calibration, and the softmax temperature."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from sim.interface import MPCAT40_ID
+from stubborn.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, confusion, fit_temperature
+from stubborn.segmentation.rednet import CLASSES
+from stubborn.segmentation.samples import IGNORED
+
+
+def test_iou_agrees_with_a_computation_by_hand() -> None:
+    wall, chair, sofa = (MPCAT40_ID[name] - 1 for name in ("wall", "chair", "sofa"))
+    truth = np.array([wall, wall, wall, chair, chair, sofa, IGNORED])
+    predicted = np.array([wall, wall, chair, chair, sofa, sofa, wall])
+    iou = Iou.of(confusion(predicted, truth))
+    assert iou.by_category == pytest.approx({"wall": 2 / 3, "chair": 1 / 3, "sofa": 1 / 2})
+    assert iou.goals == pytest.approx((1 / 3 + 1 / 2) / 2)
+    assert iou.everything == pytest.approx((2 / 3 + 1 / 3 + 1 / 2) / 3)
+    assert iou.accuracy == pytest.approx(4 / 6)
+
+
+def test_only_an_overconfident_score_has_a_calibration_error() -> None:
+    rng = np.random.default_rng(0)
+    channel, p = int(GOAL_CHANNELS[0]), 0.7
+    truth = np.where(rng.random(20_000) < p, channel, 0)
+    probability = np.zeros((CLASSES, truth.size), np.float32)
+    probability[channel] = p
+    honest, overconfident = Reliability.empty(), Reliability.empty()
+    honest.add(probability, truth)
+    probability[channel] = 0.95
+    overconfident.add(probability, truth)
+    assert honest.error < 0.01
+    assert overconfident.error == pytest.approx(0.25, abs=0.01)
+    ((count, score, right),) = honest.rows()
+    assert (count, score) == (20_000, pytest.approx(0.7))
+    assert right == pytest.approx(0.7, abs=0.01)
+
+
+def test_the_temperature_of_overconfident_logits_is_found() -> None:
+    torch.manual_seed(0)
+    honest = torch.randn(5000, 5)
+    truth = torch.distributions.Categorical(logits=honest).sample()
+    assert fit_temperature(3.0 * honest, truth) == pytest.approx(3.0, rel=0.08)

@@ -1,0 +1,112 @@
+"""Training samples: labels, windows, augmentation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from sim.interface import CameraModel, ConfigError
+from stubborn.segmentation.samples import (
+    IGNORED,
+    NONE,
+    Augmentation,
+    Sampler,
+    jitter_colour,
+    jitter_depth,
+    labels,
+    random_window,
+    turn_hue,
+)
+from tests.helpers.labelled_views import a_view
+
+
+def test_labels_are_channels_and_void_and_padding_are_ignored() -> None:
+    semantic = np.array([[0, 1], [3, 40]], np.uint8)
+    channel = labels(np.repeat(np.repeat(semantic, 16, axis=0), 16, axis=1))
+    assert channel.shape == (32, 32)
+    assert channel[0, 0] == IGNORED
+    assert (channel[0, 31], channel[31, 0], channel[31, 31]) == (0, 2, 39)
+    padded = labels(np.full((30, 32), 5, np.uint8))
+    assert (padded[0] == IGNORED).all()
+    assert (padded[1:31] == 4).all()
+
+
+def test_a_mirrored_sample_is_mirrored_in_all_its_images() -> None:
+    sampler = Sampler(CameraModel(), 1, replace(NONE, mirror=True))
+    plain = Sampler(CameraModel(), 1, NONE)(a_view(), np.random.default_rng(0))
+    seen = set()
+    for seed in range(12):
+        sample = sampler(a_view(), np.random.default_rng(seed))
+        same = [torch.equal(a, b) for a, b in zip(sample, plain, strict=True)]
+        turned = [torch.equal(a, b.flip(-1)) for a, b in zip(sample, plain, strict=True)]
+        assert all(same) or all(turned)
+        seen.add(all(turned))
+    assert seen == {True, False}
+
+
+def test_jitter_changes_images_within_bounds_and_NONE_changes_nothing() -> None:
+    rng = np.random.default_rng(0)
+    view = a_view()
+    assert jitter_colour(view.rgb, NONE, rng) is view.rgb
+    assert jitter_depth(view.depth_m, NONE, rng) is view.depth_m
+    a = Augmentation(noise_rgb=0.0)
+    means = [jitter_colour(view.rgb, a, np.random.default_rng(i)).mean() / view.rgb.mean() for i in range(200)]
+    assert 0.6 < min(means) < 0.8
+    assert 1.2 < max(means) < 1.45
+    sigma = np.std(jitter_depth(view.depth_m, Augmentation(holes=0), np.random.default_rng(3))[view.depth_m == 3.0])
+    assert 0 < sigma <= 2 * 0.0012 * 9.0 * 1.1
+    holes = [(jitter_depth(view.depth_m, a, np.random.default_rng(i)) == 0).mean() for i in range(50)]
+    assert min(holes) == 0.0
+    assert 0.01 < max(holes) < 0.25
+
+
+def test_windows_have_one_size_and_all_positions_and_scales() -> None:
+    row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
+    depth = (1000 * row.astype(np.float32)) + col
+    spans, corners = [], []
+    for seed in range(300):
+        rgb, depth_m, semantic = random_window(
+            np.stack([row, row, row], axis=2), depth, col, 40, 0.0, np.random.default_rng(seed)
+        )
+        assert rgb.shape == (30, 40, 3)
+        assert (rgb.dtype, depth_m.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
+        assert (depth_m % 1000 == semantic).all()  # depth and labels are of the same pixels
+        assert np.abs(rgb[..., 0] - depth_m // 1000).max() <= 1  # colour is an average around them
+        spans.append(float(semantic[0, -1]) - semantic[0, 0])
+        corners.append((depth_m[0, 0] // 1000, semantic[0, 0]))
+    assert 38 <= min(spans) <= 41  # a cut-out
+    assert 74 <= max(spans) <= 79  # the whole view
+    assert np.median(spans) == pytest.approx(80 / np.sqrt(2), abs=4)  # a zoom in is as likely as one out
+    assert np.min(corners, axis=0).tolist() == [0, 0]
+    assert np.max(corners, axis=0).tolist() >= [25, 35]
+    with pytest.raises(ConfigError, match="80 columns has no window of 81"):
+        random_window(np.stack([row, row, row], axis=2), depth, col, 81, 0.0, np.random.default_rng(0))
+
+
+def test_a_share_of_the_windows_is_the_whole_view() -> None:
+    row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
+    rgb, depth = np.stack([row, row, row], axis=2), row.astype(np.float32)
+    windows = [random_window(rgb, depth, col, 40, 0.6, np.random.default_rng(seed))[2] for seed in range(300)]
+    whole = np.mean([window[0, 0] == 0 and window[0, -1] >= 78 for window in windows])
+    assert whole == pytest.approx(0.6, abs=0.09)
+
+
+def test_a_sampler_of_windows_pads_them_for_the_network() -> None:
+    rgb, depth, target = Sampler(CameraModel(), 1, Augmentation(), 48)(a_view(), np.random.default_rng(0))
+    assert rgb.shape == (3, 32, 64)
+    assert depth.shape == (1, 32, 64)
+    assert (target[:, :8] == IGNORED).all()  # 48 x 32 pixels in the middle of 64 x 32
+    assert (target[:, 8:56] != IGNORED).any()
+
+
+def test_rotating_the_hue_keeps_greys_and_brightness_and_permutes_primaries_after_a_third() -> None:
+    image = np.array([[[10.0, 10.0, 10.0], [200.0, 0.0, 0.0]]], np.float32)
+    turned = turn_hue(image, 2 * np.pi / 3)
+    assert turned[0, 0] == pytest.approx([10, 10, 10], abs=1e-3)
+    assert sorted(turned[0, 1].round(3).tolist()) == [0, 0, 200]
+    assert turned[0, 1, 0] == pytest.approx(0.0, abs=1e-3)
+    assert turn_hue(image, 0.4).sum(axis=2) == pytest.approx(image.sum(axis=2), rel=1e-5)
+    assert turn_hue(turn_hue(image, 0.4), -0.4) == pytest.approx(image, abs=1e-3)
