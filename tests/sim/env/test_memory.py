@@ -1,4 +1,4 @@
-"""What a process holds on to: one house, no buffer that nothing is drawn into, no page of a map that nobody saw."""
+"""Memory of a process: one house, no unused render buffers, no memory for unseen parts of maps, no unused libraries."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def split(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_last_house_is_let_go_when_the_next_one_comes(split: Path) -> None:
+def test_the_last_house_is_freed_when_the_next_one_is_loaded(split: Path) -> None:
     env = ObjectNavEnv(split=split, sensors=())
     try:
         env.reset(seed=0, options={"episode_id": "first"})
@@ -49,9 +49,9 @@ def test_the_last_house_is_let_go_when_the_next_one_comes(split: Path) -> None:
         env.close()
 
 
-def test_a_camera_asked_for_no_colour_has_no_buffer_for_colour_or_shadows() -> None:
+def test_a_camera_without_colour_images_has_no_buffer_for_colour_or_shadows() -> None:
     if "llvmpipe" not in describe_gl():
-        pytest.skip("the drawing memory of a card is its driver's")
+        pytest.skip("the render buffers of a GPU are not in the memory of the process")
     world = World(room(5, 4))
     cameras, grown_mb = [], 0.0
     for _ in range(4):  # the first ones start the driver
@@ -83,15 +83,16 @@ print(resident_mb() - before_mb)
 """
 
 
-def test_maps_take_no_memory_where_nothing_was_seen() -> None:
-    """In a process of its own: what others have freed before would hide or add pages."""
+def test_maps_take_no_memory_for_unseen_parts() -> None:
+    """Runs in a process of its own: memory that other tests have freed would hide or add pages."""
     ended = subprocess.run([sys.executable, "-c", MAPS], capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(ended.stdout) < 24, ended.stdout  # all layers have 68
 
 
 @pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
 def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
-    player = f"from sim.run import Args, EpisodePlayer; player = EpisodePlayer(Args({options})); player.close()"
+    imports = "from sim.composition.options import RunOptions; from sim.composition.runner import EpisodeRunner"
+    player = f"{imports}; player = EpisodeRunner(RunOptions({options})); player.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
     told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
     ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
