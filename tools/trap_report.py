@@ -86,7 +86,7 @@ def main(args: Args) -> int:
                 outcome = "out" if trial.escaped else "held"
                 console.print(f"{name} {episode.episode_id}: {outcome} after {len(trial.motions)} steps")
                 if args.pictures and (episode.episode_id.endswith("_0") or not trial.escaped):
-                    belief = draw.draw_belief(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+                    belief = draw.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
                     picture = draw_trial(env, trial, belief)
                     (args.out / "pictures").mkdir(exist_ok=True)
                     cv2.imwrite(str(args.out / "pictures" / f"{episode.episode_id}_{name}.png"), picture[..., ::-1])

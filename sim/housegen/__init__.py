@@ -1,4 +1,8 @@
-"""Procedural apartments: from a seed to a furnished house in MJCF. `generate(seed)` gives a new one.
+"""Generates furnished apartments in MJCF from seeds. `generate(seed)` returns a new one.
+
+The order of the work: floor_plan and openings, structure (walls, doors, windows), furnishing (by means of furniture and
+placement), then mjcf writes the specification. `split_recipes` lists how each shipped house is generated; `house_list`
+reads and writes `houses.json`, the list of a split whose houses are not shipped as files.
 
 Imports world (which checks the houses), houses, geometry and the base modules of `sim`.
 """
@@ -14,7 +18,7 @@ __all__ = ["generate"]
 
 
 def __getattr__(name: str) -> Any:
-    """Returns `generate`, imported on first use: the recipes of shipped houses need no furniture."""
+    """Returns `generate`, imported on first use: recipes and house lists need no furniture."""
     if name == "generate":
         from sim.housegen.generator import generate
 

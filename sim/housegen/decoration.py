@@ -1,4 +1,4 @@
-"""The looks of a home's structure and its light: drawn once for a home, so that its rooms belong together."""
+"""Draws the looks of a home's structure and its lights."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from sim.housegen import materials
 from sim.housegen.floor_plan import FloorPlan
 from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.mjcf import Lamp
-from sim.housegen.structure import StructureLooks
+from sim.housegen.structure_parts import StructureLooks
 
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
 SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
-PAPERED = frozenset(("living_room", "bedroom", "dining_room", "studio"))
-"""Rooms that may have patterned wallpaper, one of them in a home."""
+WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
+"""Rooms that may have patterned wallpaper; one room of a home at most."""
 
 
 def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) -> StructureLooks:
-    """Paint and floors by room; rooms that flow into each other share theirs."""
+    """Returns paint and floors by room; rooms without a wall between them share theirs."""
     walls, floors = {}, {}
     paint = "heldout" if pool == "heldout" else "train"
     main_floor = materials.floor_look("living_room", rng, pool)
-    main_wall = _wall(rng, pool, "hallway")
-    shared = _flowing(plan)
-    papered = False
+    main_wall = _wall_look(rng, pool, "hallway")
+    shared = _open_rooms(plan)
+    has_wallpaper = False
     for i, room in enumerate(plan.rooms):
-        own = _wall(rng, pool, room.kind, paper=not papered and room.kind in PAPERED)
-        papered = papered or _is_paper(own)
+        own = _wall_look(rng, pool, room.kind, paper=not has_wallpaper and room.kind in WALLPAPER_ROOMS)
+        has_wallpaper = has_wallpaper or _is_wallpaper(own)
         floor = materials.floor_look(room.kind, rng, pool)
         same_floor = room.kind in ("hallway", "living_room", "dining_room") and rng.random() < 0.75
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
@@ -43,31 +43,31 @@ def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) 
     )  # fmt: skip
 
 
-def _wall(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
-    """Tiles where it is wet, else paint: smooth more often than rough, patterned paper only where it is asked for."""
+def _wall_look(rng: np.random.Generator, pool: Pool, room_kind: str, *, paper: bool = False) -> Look:
+    """Returns tiles for wet rooms, else paint, more often smooth than rough; wallpaper only with `paper`."""
     look = materials.wall_look(rng, pool, room_kind)
     smooth = bool(rng.random() < 0.6)
     if look.texture is None or look.texture.startswith("tiles"):
         return look
-    plain = not paper if _is_paper(look) else smooth
+    plain = not paper if _is_wallpaper(look) else smooth
     return replace(look, texture=None) if plain else look
 
 
-def _is_paper(look: Look) -> bool:
+def _is_wallpaper(look: Look) -> bool:
     return look.texture is not None and look.texture.startswith("paper")
 
 
-def _flowing(plan: FloorPlan) -> set[int]:
-    """Rooms that are open to another one without any wall between."""
+def _open_rooms(plan: FloorPlan) -> set[int]:
+    """Returns the indices of rooms that are connected to another one without any wall."""
     return {room for join in plan.joins if join.kind == "open" for room in (join.a, join.b)}
 
 
 def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
-    """Daylight from three sides, a reflection from the floors, and a lamp in each room, the largest room's first.
+    """Returns daylight from three sides, a reflection from the floors, and a lamp in each room, the largest room first.
 
-    Fixed-function OpenGL has eight lights; four shine everywhere, and `sim.sensors.camera` lights the lamp that is in
-    sight. Another viewer takes the first ones. The light that is the same everywhere casts no shadow: a ceiling would
-    swallow it. Strengths were set by looking.
+    Fixed-function OpenGL has eight lights. Four are directional; `sim.sensors.camera` chooses the lamps in view for the
+    others, and other viewers take the first ones. Directional lights cast no shadow, because the ceiling would block
+    them. The strengths were chosen by eye.
     """
     warm = float(rng.uniform(0.0, 1.0))
     tint = np.array([1.0, 0.99 - 0.03 * warm, 0.97 - 0.10 * warm])

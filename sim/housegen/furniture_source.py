@@ -1,4 +1,4 @@
-"""What a home's rooms ask furniture from: one pool, one random stream, and the home's own style."""
+"""Selects and makes the furniture of one home: from one pool, with one random generator, in few designs."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ DESIGNS: Mapping[str, int] = MappingProxyType(
         "shelving": 2, "towel": 2, "lighting": 2, "stool": 2, "sink": 2, "tv_monitor": 2, "gym_equipment": 99,
     }
 )  # fmt: skip
-"""How many designs of a category, for each use, one home has at most (else one): people buy by the set."""
+"""Largest number of designs of a category for each use in one home; 1 for the other categories."""
 SETS = frozenset(("counter",))
-"""Categories whose things are of one style in a home, whatever their sizes."""
+"""Categories of which a home has one style only, in any size."""
 ONE_DESIGN = frozenset(("ceiling", "office", "bar", "nightstand", "desk", "media"))
-"""Uses whose things are all alike in a home."""
+"""Uses of which a home has one design only."""
 
 
 class FurnitureSource:
-    """Makes items for one home. What should look alike all over it (dining chairs, door handles) is made once."""
+    """A source of furniture for one home, which makes items that should look alike (dining chairs) only once."""
 
     def __init__(
         self,
@@ -41,20 +41,20 @@ class FurnitureSource:
         self.rng = rng
         self.pool: Pool = pool
         self.clutter = clutter
-        """0 bare, 1 full of things."""
+        """0 without small objects, 1 with many."""
         self.home_rooms = home_rooms
         """Kinds of rooms that the home has."""
         self._catalogue = catalogue
         self._designs: dict[str, list[Item]] = {}
-        self._shown: dict[tuple[str, str | None], list[str]] = {}
-        self._bags: dict[str, list[Item]] = {}
+        self._used_styles: dict[tuple[str, str | None], list[str]] = {}
+        self._next_items: dict[str, list[Item]] = {}
         self._window_looks: list[dict[str, Look]] = []
 
     def make(self, category: str, *uses: str, fresh: bool = False, **hints: Any) -> Item | None:
-        """An item for the first of these uses that the pool has a style for, for any use when none is given.
+        """Returns an item for the first of the uses for which the pool has a style, or for any use when none is given.
 
-        The same hints give one of the home's few designs again; with `fresh` there may be one more of them. Returns
-        None where the pool has nothing that fits.
+        The same hints return one of the home's few designs again; `fresh` allows one more design. Returns None where
+        the pool has no style that fits.
         """
         if category not in self._catalogue.categories:
             return None
@@ -64,13 +64,15 @@ class FurnitureSource:
         return None
 
     def _design(self, category: str, use: str | None, fresh: bool, hints: Mapping[str, Any]) -> Item:
+        """Returns a new design, or one of those made before, all of them in turn, when there are enough."""
         key = repr((category, use, sorted(hints.items())))
         known = self._designs.setdefault(key, [])
-        if len(known) >= self._variety(category, use) + fresh:
-            bag = self._bags.setdefault(key, [])
-            if not bag:
-                bag.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
-            return bag.pop()
+        most = 1 if use in ONE_DESIGN else DESIGNS.get(category, 1)
+        if len(known) >= most + fresh:
+            items = self._next_items.setdefault(key, [])
+            if not items:
+                items.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
+            return items.pop()
         style = self._style(category, use)
         asked = hints if use is None else {"use": use, **hints}
         item = self._catalogue.make_item(category, self.rng, pool=self.pool, style=style, **asked)
@@ -78,43 +80,40 @@ class FurnitureSource:
         return item
 
     def _style(self, category: str, use: str | None) -> str:
-        """A style that the home has not yet, while there is one; sets keep theirs."""
-        shown = self._shown.setdefault((category, use), [])
-        if category in SETS and shown:
-            return shown[0]
+        """Returns a style that the home does not have yet if there is one; categories of `SETS` keep their style."""
+        used = self._used_styles.setdefault((category, use), [])
+        if category in SETS and used:
+            return used[0]
         every = [style.name for style in self._catalogue.styles(category, self.pool, use)]
-        chosen = self.pick([style for style in every if style not in shown] or every)
-        if len(shown) == len(every):
-            shown.clear()
-        shown.append(chosen)
+        chosen = self.pick([style for style in every if style not in used] or every)
+        if len(used) == len(every):
+            used.clear()
+        used.append(chosen)
         return chosen
 
-    def _variety(self, category: str, use: str | None) -> int:
-        return 1 if use in ONE_DESIGN else DESIGNS.get(category, 1)
-
     def looks(self, *names: str) -> dict[str, Look]:
-        """Fixed looks of some materials, for hint `looks`: things that should match."""
+        """Returns looks of some materials, for the hint `looks` of items that should match."""
         return {name: materials.look(name, self.rng, self.pool) for name in names}
 
     def window_looks(self) -> dict[str, Look]:
-        """Looks of curtains and blinds: the home's, with one of its two curtain fabrics."""
+        """Returns the looks of the home's curtains and blinds, with one of its two curtain fabrics."""
         if not self._window_looks:
             base = self.looks("iron", "wood", "lacquer", "linen", "metal")
             self._window_looks = [base | self.looks("curtain") for _ in range(2)]
         return self.pick(self._window_looks)
 
     def chance(self, probability: float) -> bool:
-        """True with this probability."""
+        """Returns True with this probability."""
         return bool(self.rng.random() < probability)
 
-    def clutter_chance(self, usual: float) -> bool:
-        """True with the usual probability at clutter 0.5; never at 0, about twice as often at 1."""
-        return self.chance(min(1.0, 2.0 * usual * self.clutter))
+    def clutter_chance(self, probability: float) -> bool:
+        """Returns True with this probability at clutter 0.5, never at clutter 0, twice as often at clutter 1."""
+        return self.chance(min(1.0, 2.0 * probability * self.clutter))
 
     def pick(self, options: Sequence[T]) -> T:
-        """One of the options."""
+        """Returns a random one of the options."""
         return options[int(self.rng.integers(len(options)))]
 
     def uniform(self, low: float, high: float) -> float:
-        """A number between both."""
+        """Returns a random number between two others."""
         return float(self.rng.uniform(low, high))

@@ -1,8 +1,8 @@
-"""A furnished home from a seed: floor plan, openings, structure, furniture, lights, and their check.
+"""Generates a furnished home from a seed: floor plan, openings, structure, furniture, lights, and their check.
 
-Everything is drawn from one stream that the seed, the pool and the number of the try begin, so that the same seed
-and version give the same bytes of XML. A try whose rooms do not fit, or whose check finds a fault, is thrown away and
-the next one begins; the number of tries is bounded and reported.
+Everything is drawn from one random generator, seeded by the seed, the pool and the number of the try, so that the same
+seed and version give the same bytes of XML. A try whose rooms do not fit, or whose check finds a fault, is rejected;
+the number of tries is limited and reported.
 """
 
 from __future__ import annotations
@@ -30,29 +30,29 @@ from sim.houses.writing import house_text
 from sim.world.check import check_house
 
 GENERATOR_VERSION = 2
-"""Raised whenever the same seed would give another house."""
+"""Increased whenever the same seed gives another house."""
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 400.0)
 MAX_BYTES = 395_000
-"""Of a house as a file."""
+"""Largest size of a house file."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
-"""What one geom less to draw may cost in the file: less where the house would get too large otherwise."""
+"""Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
 _POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
 
 
 @dataclass(frozen=True, kw_only=True)
 class HouseConfig:
-    """What may be asked of a house; whatever is None is drawn from the seed."""
+    """Requirements for a generated house; a field that is None is drawn from the seed."""
 
     pool: Pool = "train"
     kind: PlanKind | None = None
     area_m2: float | None = None
-    """Floor area aimed at, to the middle of the walls."""
+    """Approximate floor area, to the middle of the walls."""
     clutter: float | None = None
-    """0 bare, 1 full of small things."""
+    """0 without small objects, 1 with many."""
     rooms: tuple[str, ...] = ()
-    """Kinds of private rooms (gym, office, laundry ...) that it should have if the area allows."""
+    """Kinds of private rooms (gym, office, laundry ...) that it has if the area allows."""
     name: str = "house"
     """The model's name in the file."""
     movable: bool = False
@@ -76,14 +76,14 @@ class HouseConfig:
 
 @dataclass(frozen=True)
 class GeneratedHouse:
-    """A house that passed its check, and how it came about."""
+    """A house that passed its check."""
 
     spec: mujoco.MjSpec
     plan: FloorPlan
     geoms: int
     tries: int
     rejects: tuple[str, ...]
-    """Why each earlier try was thrown away."""
+    """The reason why each earlier try was rejected."""
 
 
 def generate(
@@ -96,20 +96,20 @@ def generate(
     movable: bool = False,
     catalogue: Catalogue = CATALOGUE,
 ) -> mujoco.MjSpec:
-    """The specification of a new home; the same seed and version, the same bytes of `to_xml()`.
+    """Returns the specification of a new home; the same seed and version give the same bytes of `to_xml()`.
 
     Args:
         seed: any whole number from 0 on.
-        pool: which styles, sizes, colours and textures may appear; "train" and "heldout" share none, "wide" shows
-            train's and styles of its own.
-        kind: shape of the floor plan; drawn when None.
+        pool: styles, sizes, colours and textures that may appear; "train" and "heldout" share none, "wide" has those of
+            train and more styles.
+        kind: kind of floor plan; drawn when None.
         area_m2: floor area, 50-400; drawn when None.
-        clutter: 0 bare to 1 full of small things; drawn when None.
-        movable: light furniture can be pushed.
+        clutter: 0 without small objects to 1 with many; drawn when None.
+        movable: whether light furniture can be pushed.
         catalogue: the styles of furniture that may be drawn.
 
     Raises:
-        ConfigError: a value is outside what is allowed.
+        ConfigError: a value is not allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
     config = HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter, movable=movable)
@@ -117,11 +117,11 @@ def generate(
 
 
 def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Catalogue = CATALOGUE) -> GeneratedHouse:
-    """A new home with its plan and the story of its tries.
+    """Returns a new home with its plan and the reasons of rejected tries.
 
     Args:
         seed: any whole number from 0 on.
-        config: what is asked of it.
+        config: requirements for it.
         catalogue: the styles of furniture that may be drawn.
 
     Raises:
@@ -139,7 +139,7 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         except PlanError as error:
             rejects.append(str(error))
             continue
-        spec = _build_small(draft, config)
+        spec = _build_within_limit(draft, config)
         faults = check_house(spec) if spec is not None else [f"its file is larger than {MAX_BYTES / 1000:.0f} KB"]
         if spec is not None and not faults:
             return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
@@ -149,7 +149,7 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
 
 @dataclass(frozen=True)
 class _Draft:
-    """A home as it was drawn, before it becomes a specification."""
+    """A home before it becomes a specification."""
 
     plan: FloorPlan
     ceiling_m: float
@@ -159,7 +159,7 @@ class _Draft:
 
 
 def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
-    """One draw of everything.
+    """Draws one home.
 
     Raises:
         PlanError: no floor plan fits.
@@ -168,8 +168,8 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
     ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
     plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
-    finish = draw_structure_looks(rng, plan, config.pool)
-    structure = build_structure(plan, openings, ceiling_m, finish)
+    looks = draw_structure_looks(rng, plan, config.pool)
+    structure = build_structure(plan, openings, ceiling_m, looks)
     source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
@@ -180,7 +180,7 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
 def _draw_plan(
     rng: np.random.Generator, kind: PlanKind, area_m2: float, rooms: tuple[str, ...]
 ) -> tuple[FloorPlan, tuple[Opening, ...]]:
-    """A plan and the holes in its walls; many plans are drawn before one fits.
+    """Returns a plan and the openings in its walls; many plans are drawn before one fits.
 
     Raises:
         PlanError: none fits.
@@ -195,26 +195,27 @@ def _draw_plan(
     return plan, cut_openings(rng, plan)
 
 
-def _build_small(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
-    """The specification of a drawn home, its parts joined as far as the file's size allows; None: it is too large.
+def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
+    """Returns the specification of a drawn home, its parts joined as much as the size of the file allows.
 
-    Homes of the pool `wide` are in no split and need not fit a file: they may be of any size.
+    Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
     """
     if config.pool == "wide":
         return _build(draft, config, BYTES_PER_GEOM[0])
-    at = 0
-    while at < len(BYTES_PER_GEOM):
-        spec = _build(draft, config, BYTES_PER_GEOM[at])
+    level = 0
+    while level < len(BYTES_PER_GEOM):
+        spec = _build(draft, config, BYTES_PER_GEOM[level])
         size = len(house_text(spec))
         if size <= MAX_BYTES:
             return spec
-        steps = 1 + (size > 1.12 * MAX_BYTES) + (size > 1.3 * MAX_BYTES)  # each level saves some 7 percent
-        at = min(at + steps, len(BYTES_PER_GEOM) - 1) if at + 1 < len(BYTES_PER_GEOM) else len(BYTES_PER_GEOM)
+        steps = 1 + (size > 1.12 * MAX_BYTES) + (size > 1.3 * MAX_BYTES)  # each level saves about 7 percent
+        last = len(BYTES_PER_GEOM) - 1
+        level = min(level + steps, last) if level < last else last + 1
     return None
 
 
 def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.MjSpec:
-    """The specification of a drawn home."""
+    """Returns the specification of a drawn home."""
     builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom)
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
@@ -236,7 +237,7 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.Mj
 
 
 def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:
-    """Area and shape, each drawn to suit the other where it is not given."""
+    """Returns area and kind of plan; what is not given is drawn to suit the other."""
     kind = config.kind
     if config.area_m2 is not None:
         return config.area_m2, kind or draw_plan_kind(rng, config.area_m2)

@@ -1,7 +1,7 @@
-"""Houses shipped as a list of recipes and checksums: each is made into a cache when it is first needed.
+"""Reads and writes `houses.json`, the list of a split without house files, and generates its houses into a cache.
 
-A split's folder with a `houses.json` holds no house files. A house is generated from its recipe, compared with the
-checksum of the list, and kept as `<cache>/<version>/<split>/<house>.xml`, the textures beside its split in
+The list has the recipe (`sim.housegen.split_recipes.Recipe`) and the checksum of each house. A house is generated on
+first use, compared with its checksum and kept as `<cache>/<version>/<split>/<house>.xml`, with the textures in
 `<cache>/<version>/textures`: the same bytes in the same layout as a house that is shipped as a file. The cache is
 `$STUBBORN_CACHE_DIR`, else `stubborn-objectnav` in `$XDG_CACHE_HOME`, else in `~/.cache` (XDG Base Directory
 Specification 0.8). It may be deleted at any time.
@@ -29,31 +29,32 @@ CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
 
 @dataclass(frozen=True)
 class HouseList:
-    """The houses of one split that lie in no file, or not yet."""
+    """The content of a `houses.json`: recipes and checksums of the houses of one split."""
 
     split: str
+    """Name of the split."""
     version: str
-    """Of the split."""
+    """Version of the split."""
     recipes: Mapping[str, Recipe]
-    """By name of the house, in their order."""
+    """Recipes by name of the house, in their order."""
     sha256: Mapping[str, str]
-    """Of each house's file."""
+    """Checksum of each house's file."""
     made_with: Mapping[str, str]
-    """Versions of what the checksums hang on."""
+    """Versions of the generator and of the packages on which the checksums depend."""
 
     @property
     def paths(self) -> dict[str, Path]:
-        """Where each house lies once it is made."""
+        """Path of each house in the cache; the file exists once the house was generated."""
         folder = cache_dir() / self.version / self.split
         return {name: folder / f"{name}.xml" for name in self.recipes}
 
     def fetch(self, name: str) -> Path:
-        """The file of a house, made now if it is not there or not what the list says.
+        """Returns the file of a house; it is generated now if it does not exist or differs from the list.
 
         Several processes may fetch the same house at once.
 
         Raises:
-            HouseError: the house comes out different here, or there is no place to keep it.
+            HouseError: the generated house differs from the list, or the cache cannot be written.
         """
         path = self.paths[name]
         if _sha256_of(path) == self.sha256[name]:
@@ -73,21 +74,22 @@ class HouseList:
         return path
 
     def _mismatch(self, name: str, found: str) -> str:
+        """Returns the message for a house whose checksum differs, with the likely reason."""
         here = versions_here()
         other = [
-            f"{part} {there} there and {here.get(part, 'unknown')} here"
+            f"{part} {there} in the list and {here.get(part, 'unknown')} here"
             for part, there in self.made_with.items()
             if here.get(part) != there
         ]
         reason = "; ".join(other) or "the versions agree, so the generator's code or the processor's arithmetic differs"
         return (
-            f"House '{name}' of split '{self.split}' {self.version} comes out different from the one in the list: "
-            f"sha256 {found} here, {self.sha256[name]} listed. Likely reason: {reason}."
+            f"The generated house '{name}' of split '{self.split}' {self.version} differs from the list: "
+            f"sha256 {found} here, {self.sha256[name]} in the list. Likely reason: {reason}."
         )
 
 
 def cache_dir() -> Path:
-    """Where houses are kept that were made on this machine."""
+    """Returns the folder that keeps the houses generated on this machine."""
     chosen = os.environ.get(CACHE_VARIABLE)
     if chosen:
         return Path(chosen).expanduser()
@@ -96,7 +98,7 @@ def cache_dir() -> Path:
 
 
 def house_bytes(recipe: Recipe) -> bytes:
-    """The file of a house, its textures in the folder `../textures`.
+    """Returns the content of the file of a house, which refers to textures in `../textures`.
 
     Raises:
         HouseError: the seed gives no house.
@@ -107,7 +109,7 @@ def house_bytes(recipe: Recipe) -> bytes:
 
 
 def versions_here() -> dict[str, str]:
-    """Versions of what a generated house hangs on."""
+    """Returns the versions of the generator and of the packages on which a generated house depends."""
     from sim.housegen.generator import GENERATOR_VERSION
 
     return {
@@ -117,15 +119,15 @@ def versions_here() -> dict[str, str]:
 
 
 def has_house_list(folder: Path) -> bool:
-    """Whether a split's folder lists its houses in place of holding them."""
+    """Returns whether the folder of a split contains a `houses.json` instead of house files."""
     return (folder / LIST_FILE).is_file()
 
 
 def read_house_list(folder: Path) -> HouseList:
-    """The list in a split's folder.
+    """Returns the house list in the folder of a split.
 
     Raises:
-        ConfigError: it is not what `write_house_list` writes.
+        ConfigError: the file does not have the form that `write_house_list` writes.
     """
     file = folder / LIST_FILE
     try:
@@ -141,12 +143,12 @@ def read_house_list(folder: Path) -> HouseList:
         )
     except (AttributeError, KeyError, TypeError, ValueError, OSError) as error:
         raise ConfigError(
-            f"House list '{file}' cannot be read: {error!r}. tools/generate_houses.py makes it."
+            f"House list '{file}' cannot be read: {error!r}. tools/generate_houses.py writes it."
         ) from None
 
 
 def write_house_list(folder: Path, houses: Sequence[tuple[Recipe, str]], *, version: str) -> None:
-    """Write the recipes and checksums of a split's houses; the same content gives the same bytes."""
+    """Writes the recipes and checksums of a split's houses; the same content gives the same bytes."""
     lines = [json.dumps(recipe.to_json() | {"sha256": sha256}) for recipe, sha256 in houses]
     head = json.dumps({"version": version, "made_with": versions_here()})
     text = head[:-1] + ', "houses": [\n' + ",\n".join(lines) + "\n]}\n"
@@ -154,10 +156,10 @@ def write_house_list(folder: Path, houses: Sequence[tuple[Recipe, str]], *, vers
 
 
 def copy_textures(folder: Path) -> None:
-    """Make a folder of textures like the shipped one; what is there and equal is left alone.
+    """Copies the shipped textures into a folder; files that are equal already are not written.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: the folder cannot be written.
     """
     for source in sorted((assets_dir() / "textures").iterdir()):
         content, there = source.read_bytes(), folder / source.name
@@ -166,7 +168,7 @@ def copy_textures(folder: Path) -> None:
 
 
 def _sha256_of(path: Path) -> str | None:
-    """Checksum of a file; None where there is none to read."""
+    """Returns the checksum of a file; None where it cannot be read."""
     try:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:

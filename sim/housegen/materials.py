@@ -1,13 +1,13 @@
-"""How surfaces look: palettes of real materials, split into a train and a held-out pool that share nothing.
+"""Palettes of real materials, split into a train pool and a held-out pool that share nothing.
 
-The rule of the pools: a look (texture and colour together) that a train house may show is never shown by a held-out
-house, and the other way round; textures are disjoint too. Colours are drawn from fixed lists, not jittered, so that
-the split can be tested exactly; light, shadow and distance vary them in the picture.
+A look (texture and colour together) of a train house never appears in a held-out house, and vice versa; the textures
+are disjoint too. Colours are drawn from fixed lists, not jittered, so that this can be tested exactly; light, shadow
+and distance vary them in the picture.
 
-How to write a `Look` into MJCF: a texture of type 2d from `texture_file(look.texture)`, a material with `texuniform`
+A `Look` is written to MJCF as a texture of type 2d from `texture_file(look.texture)` and a material with `texuniform`
 and `texrepeat` from `texture_mapping(look)` and rgba `look.rgba`. MuJoCo 4 then repeats the picture at its true size
-over planes and over a box's z faces (its other faces are stretched by the ratio of the box's sides, so the workbench
-lays every textured box's thinnest side along its local z; do the same with walls).
+on planes and on the z faces of a box. The other faces are stretched by the ratio of the box's sides; therefore the
+thinnest side of every textured box is along its local z, for furniture as well as for walls.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ class Swatches:
     """The colours and textures of one material in one pool."""
 
     colours: tuple[str, ...]
-    """Hex RGB or RGBA."""
+    """Hexadecimal RGB or RGBA."""
     textures: tuple[str | None, ...] = (None,)
 
 
 @dataclass(frozen=True)
 class Material:
-    """A material's two palettes and how it shines; the pool `wide` paints with train's."""
+    """A material: two palettes and its reflectance; the pool `wide` uses the palette of train."""
 
     train: Swatches
     heldout: Swatches
@@ -41,7 +41,7 @@ class Material:
     emission: float = 0.0
 
     def swatches(self, pool: Pool) -> Swatches:
-        """The swatches of a pool."""
+        """Returns the swatches of a pool."""
         return self.heldout if pool == "heldout" else self.train
 
 
@@ -54,7 +54,7 @@ def _material(
     train: str, heldout: str, textures: tuple[tuple[str, ...], tuple[str, ...]] = _PLAIN, *, specular: float = 0.1,
     shininess: float = 0.1, emission: float = 0.0,
 ) -> Material:  # fmt: skip
-    """A material from hex colours, and textures, of the train and the held-out pool."""
+    """Returns a material from the hexadecimal colours, and the textures, of the train and the held-out pool."""
     return Material(
         Swatches(tuple(train.split()), textures[0] or (None,)),
         Swatches(tuple(heldout.split()), textures[1] or (None,)),
@@ -154,7 +154,7 @@ MATERIALS: dict[str, Material] = {
     "fire": _material("f08a2a e8641f", "f2a33c d94f2a", emission=0.6),
     "char": _material("17151a 1d1a19", "121416 221d1a"),
 }
-"""Every material that furniture is made of. Colours were picked by eye from retail photographs' usual range."""
+"""The materials of furniture. The colours were chosen by eye from the usual range of retail photographs."""
 
 _WALLS = _material(
     "efe9dc e6e3db dfe4e2 e9dccb d3dbd9 cdd6c8 e4d2c6 bccad2",
@@ -227,10 +227,10 @@ _ANY_ROOM = ("boards", "tiles", "carpet")
 
 
 def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
-    """A look of this material out of the pool.
+    """Returns a random look of a material from the pool.
 
     Raises:
-        ConfigError: no such material.
+        ConfigError: there is no such material.
     """
     if material not in MATERIALS:
         raise ConfigError(f"No material '{material}'. There is: {', '.join(sorted(MATERIALS))}.")
@@ -238,27 +238,27 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
 
 
 def wall_look(rng: np.random.Generator, pool: Pool, room_kind: str = "") -> Look:
-    """A wall's paint or paper, in wet rooms mostly tiles."""
+    """Returns the look of a wall: paint or wallpaper, mostly tiles in wet rooms."""
     tiled = room_kind in ("bathroom", "laundry") and rng.random() < 0.7
     return _draw(_WALL_TILES if tiled else _WALLS, rng, pool)
 
 
 def floor_look(room_kind: str, rng: np.random.Generator, pool: Pool) -> Look:
-    """A floor that suits the room: boards, carpet, tiles, stone, rubber."""
+    """Returns the look of a floor that suits the kind of room: boards, carpet, tiles, stone, rubber."""
     kinds = _FLOORS_OF_ROOM.get(room_kind, _ANY_ROOM)
     return _draw(_FLOORS[kinds[int(rng.integers(len(kinds)))]], rng, pool)
 
 
 def ceiling_look(rng: np.random.Generator, pool: Pool) -> Look:
-    """A light plaster."""
+    """Returns the look of a ceiling: light plaster."""
     return _draw(_CEILINGS, rng, pool)
 
 
 def texture_file(name: str) -> str:
-    """File name of a texture inside assets/mjcf_houses/textures/.
+    """Returns the file name of a texture inside assets/mjcf_houses/textures/.
 
     Raises:
-        ConfigError: no such texture.
+        ConfigError: there is no such texture.
     """
     if name not in TEXTURES:
         raise ConfigError(f"No texture '{name}'. There is: {', '.join(sorted(TEXTURES))}.")
@@ -266,9 +266,9 @@ def texture_file(name: str) -> str:
 
 
 def texture_mapping(look: Look) -> tuple[bool, float]:
-    """MuJoCo's `texuniform` and `texrepeat` (the same in both directions) of a textured look.
+    """Returns MuJoCo's `texuniform` and `texrepeat` (the same in both directions) of a textured look.
 
-    Measured on 4.0.0: with `texuniform` a `texrepeat` of 2 shows the picture once a metre.
+    Measured with 4.0.0: with `texuniform`, a `texrepeat` of 2 shows the picture once per metre.
     """
     return (False, 1.0) if look.repeat_m == 0 else (True, round(2.0 / look.repeat_m, 4))
 

@@ -1,4 +1,4 @@
-"""Where walls are cut: doors, wide openings and windows, chosen for a floor plan."""
+"""Chooses the openings of a floor plan: doors, wide openings and windows."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from sim.housegen.rectangles import OPPOSITE, SIDES, Interval, Rect, Side, share
 from sim.housegen.rooms import ROOM_RULES
 
 HALF_WALL_M = 0.06
-"""What one room's half of a wall takes from its rectangle."""
+"""Thickness of one room's half of a wall, inside the room's rectangle."""
 OUTER_WALL_M = 0.12
-"""How far outer walls reach outside of it."""
+"""Thickness of outer walls outside of the rectangle."""
 JAMB_M = 0.03
-"""Thickness of a door frame inside its hole."""
+"""Thickness of a door frame inside its opening."""
 HEAD_M = 2.1
-"""Where doors, openings and windows end: one line all through a home."""
+"""Height of the upper edge of doors, openings and windows."""
 
 OpeningKind = Literal["door", "opening", "open", "window", "entry"]
 
 
 @dataclass(frozen=True)
 class Leaf:
-    """A door leaf that stands ajar."""
+    """A door leaf that is ajar."""
 
     room: int
     """Index of the room it swings into."""
@@ -38,12 +38,12 @@ class Leaf:
 
 @dataclass(frozen=True)
 class Opening:
-    """A hole in a wall: along `span` of `side` of room `a`, from `bottom_m` to `top_m`."""
+    """An opening in a wall: along `span` of `side` of room `a`, from `bottom_m` to `top_m`."""
 
     kind: OpeningKind
     a: int
     b: int | None
-    """Index of the room behind it; None: outside."""
+    """Index of the room behind it; None for outside."""
     side: Side
     line_m: float
     """World coordinate of the middle of the wall."""
@@ -54,24 +54,24 @@ class Opening:
 
     @property
     def centre_m(self) -> float:
-        """Middle of the span."""
+        """The middle of the span."""
         return 0.5 * (self.span[0] + self.span[1])
 
     def side_of(self, room: int) -> Side:
-        """The side of one of its two rooms that it is on."""
+        """Returns the side of one of its two rooms on which it lies."""
         return self.side if room == self.a else OPPOSITE[self.side]
 
     def clear_span(self) -> Interval:
-        """What is left to walk through between the frame's jambs."""
+        """Returns the span between the jambs of the frame."""
         jamb = JAMB_M if self.kind in ("door", "entry") else 0.0
         return self.span[0] + jamb, self.span[1] - jamb
 
 
 def cut_openings(rng: np.random.Generator, plan: FloorPlan) -> tuple[Opening, ...]:
-    """Doors for the plan's joins, a front door, and windows for rooms that have an outer wall.
+    """Returns openings for the connections of a plan, a front door, and windows for rooms that have an outer wall.
 
     Raises:
-        PlanError: two rooms that should be joined share too little wall.
+        PlanError: two rooms that should be connected share too little wall.
     """
     rects = [room.rect for room in plan.rooms]
     widths = (round(float(rng.uniform(0.80, 0.88)), 2), round(float(rng.uniform(0.86, 1.0)), 2))
@@ -86,7 +86,7 @@ def cut_openings(rng: np.random.Generator, plan: FloorPlan) -> tuple[Opening, ..
 
 
 def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
-    """Stretches of a room's side behind which there is no other room."""
+    """Returns the stretches of a room's side that have no other room behind them."""
     holes = []
     for i, rect in enumerate(rects):
         shared = shared_side(rects[room], rect) if i != room else None
@@ -96,11 +96,11 @@ def outer_spans(rects: Sequence[Rect], room: int, side: Side) -> list[Interval]:
 
 
 def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tuple[float, float]) -> Opening:
-    """The hole for a join; `clear_m` are the home's two widths of door, for small rooms and for the others."""
+    """Returns the opening of a connection; `clear_m` are the home's two door widths, for small and other rooms."""
     a, b = plan.rooms[join.a], plan.rooms[join.b]
     shared = shared_side(a.rect, b.rect)
     if shared is None:
-        raise PlanError(f"{a.name} and {b.name} are joined but do not touch")
+        raise PlanError(f"{a.name} and {b.name} are connected but do not touch")
     side, (lo, hi) = shared
     line_m, inner = a.rect.line(side), (lo + HALF_WALL_M, hi - HALF_WALL_M)
     if join.kind == "open":
@@ -115,16 +115,16 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     if length_m < width_m + 0.16:
         raise PlanError(f"{a.name} and {b.name} share only {length_m:.2f} m of wall")
     spare = max(0.0, length_m - width_m - 0.16)
-    # Near a corner of the smaller room: that leaves it a long wall for furniture.
+    # Near a corner, which leaves a long wall for furniture.
     offset = float(rng.uniform(0.0, min(0.3, spare))) if rng.random() < 0.75 else float(rng.uniform(0.0, spare))
     at = inner[0] + 0.08 + offset if rng.random() < 0.5 else inner[1] - 0.08 - offset - width_m
     return Opening("door", join.a, join.b, side, line_m, (round(at, 3), round(at + width_m, 3)), 0.0, HEAD_M)
 
 
 def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, others: Sequence[Opening]) -> Opening:
-    """A leaf ajar for some doors, swung into the room that is no hallway, its hinge at the nearer corner.
+    """Returns some doors with an ajar leaf in the room that is not a hallway, its hinge at the nearer corner.
 
-    None where it would swing before another doorway of that room.
+    Returns a door unchanged where the leaf would swing in front of another doorway of that room.
     """
     if opening.kind != "door" or rng.random() > 0.55:
         return opening
@@ -140,7 +140,7 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
         return opening
     at_start = opening.span[0] - lo < hi - opening.span[1]
     gap_m = opening.span[0] - lo if at_start else hi - opening.span[1]
-    # A leaf opens at most to the wall beside it; one in the open may fold back a little further.
+    # A leaf opens at most as far as the wall beside it; without such a wall it may open a little further.
     widest = 92.0 if gap_m < 0.6 else 110.0
     angle = np.deg2rad(round(float(rng.uniform(78.0, widest))))
     ajar = replace(opening, leaf=Leaf(room, at_start, float(angle)))
@@ -156,7 +156,7 @@ def _with_leaf(rng: np.random.Generator, plan: FloorPlan, opening: Opening, othe
 
 
 def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
-    """The rectangle that an ajar leaf needs inside the room it swings into, `rect`."""
+    """Returns the zone that an ajar leaf needs inside the room that it swings into, `rect`."""
     assert opening.leaf is not None
     lo, hi = opening.clear_span()
     width_m = hi - lo
@@ -168,7 +168,7 @@ def leaf_keep_out(opening: Opening, rect: Rect) -> Rect:
 
 
 def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect]) -> Opening | None:
-    """The front door, in a short outer wall of the hallway where there is one."""
+    """Returns the front door, in a short outer wall of the hallway if possible; None without any outer wall for it."""
     width_m = 0.98
     order = sorted(range(len(rects)), key=lambda i: (i != plan.entry, plan.rooms[i].kind != "hallway"))
     for room in order:
@@ -188,9 +188,9 @@ def _cut_entry(rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect])
 def _cut_windows(
     rng: np.random.Generator, plan: FloorPlan, rects: Sequence[Rect], others: Sequence[Opening]
 ) -> list[Opening]:
-    """Windows in most stretches of outer wall of rooms that want daylight, one at least, and at corridor ends.
+    """Returns windows in most outer walls of rooms with daylight, at least one for each, and at the ends of hallways.
 
-    A home has few sizes of window, as real ones do: one for living rooms, one for the others, one for bathrooms.
+    A home has three sizes of windows: one for living rooms, one for bathrooms, one for the others.
     """
     large = (round(float(rng.uniform(1.6, 2.2)), 1), round(float(rng.uniform(0.35, 0.75)), 2))
     usual = (round(float(rng.uniform(1.0, 1.5)), 1), round(float(rng.uniform(0.85, 1.0)), 2))
@@ -217,7 +217,7 @@ def _cut_windows(
 
 
 def _window_spans(wall: Interval, width_m: float, taken: Sequence[Interval], most: int) -> list[Interval]:
-    """Evenly spread windows in one stretch of wall, narrower where it is short, none in front of a door."""
+    """Returns the spans of evenly distributed windows in one stretch of wall, narrower where it is short."""
     length_m = wall[1] - wall[0] - 2 * HALF_WALL_M
     width_m = min(width_m, round(length_m - 0.3, 1))
     if width_m < 0.45:

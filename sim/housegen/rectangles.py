@@ -1,7 +1,7 @@
-"""Axis-aligned rectangles in plan: the only shape that rooms, furniture footprints and keep-out zones have.
+"""Axis-aligned rectangles in plan, the shape of rooms, furniture footprints and keep-out zones.
 
-World axes, metres. A side of a rectangle is named by where its outward normal looks: "east" +x, "north" +y, "west"
--x, "south" -y. Along a side, positions are measured on the world axis the side runs along.
+World axes, metres. A side of a rectangle is named after the direction of its outward normal: "east" +x, "north" +y,
+"west" -x, "south" -y. Positions along a side are coordinates of the world axis parallel to it.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ SIDES: tuple[Side, ...] = ("east", "north", "west", "south")
 
 OPPOSITE: dict[Side, Side] = {"east": "west", "west": "east", "north": "south", "south": "north"}
 INWARD_YAW_RAD: dict[Side, float] = {"east": math.pi, "north": -math.pi / 2, "west": 0.0, "south": math.pi / 2}
-"""Heading of whatever stands with its back to a side and looks into the rectangle."""
+"""Heading of an item whose back is at a side and whose front points into the rectangle."""
 
 Interval = tuple[float, float]
 EPS_M = 1e-6
@@ -43,7 +43,7 @@ class Rect:
 
     @property
     def area_m2(self) -> float:
-        """Area; negative sides count as none."""
+        """The area; 0 for a rectangle with a negative side."""
         return max(self.width_m, 0.0) * max(self.depth_m, 0.0)
 
     @property
@@ -58,22 +58,22 @@ class Rect:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """The middle (x, y)."""
+        """The centre (x, y)."""
         return 0.5 * (self.x0 + self.x1), 0.5 * (self.y0 + self.y1)
 
     def grown(self, margin_m: float) -> Rect:
-        """The rectangle with every side moved out by `margin_m` (in, when negative)."""
+        """Returns the rectangle with every side moved outwards by `margin_m` (inwards when negative)."""
         return Rect(self.x0 - margin_m, self.y0 - margin_m, self.x1 + margin_m, self.y1 + margin_m)
 
     def overlaps(self, other: Rect, slack_m: float = EPS_M) -> bool:
-        """True where both share more than `slack_m` in x and in y."""
+        """Returns whether both share more than `slack_m` in x and in y."""
         return (
             min(self.x1, other.x1) - max(self.x0, other.x0) > slack_m
             and min(self.y1, other.y1) - max(self.y0, other.y0) > slack_m
         )
 
     def contains(self, other: Rect, slack_m: float = EPS_M) -> bool:
-        """True where `other` lies inside, up to `slack_m`."""
+        """Returns whether `other` lies inside, up to `slack_m`."""
         return (
             other.x0 >= self.x0 - slack_m
             and other.y0 >= self.y0 - slack_m
@@ -82,26 +82,26 @@ class Rect:
         )
 
     def distance_to(self, x_m: float, y_m: float) -> float:
-        """Distance from a point to the rectangle, 0 inside."""
+        """Returns the distance from a point to the rectangle, 0 inside."""
         return math.hypot(max(self.x0 - x_m, 0.0, x_m - self.x1), max(self.y0 - y_m, 0.0, y_m - self.y1))
 
     def line(self, side: Side) -> float:
-        """World coordinate of a side: x for east and west, y for north and south."""
+        """Returns the world coordinate of a side: x for east and west, y for north and south."""
         return {"east": self.x1, "north": self.y1, "west": self.x0, "south": self.y0}[side]
 
     def span(self, side: Side) -> Interval:
-        """Where a side runs: its y interval for east and west, its x interval for north and south."""
+        """Returns the interval of a side: in y for east and west, in x for north and south."""
         return (self.y0, self.y1) if side in ("east", "west") else (self.x0, self.x1)
 
     def strip(self, side: Side, span: Interval, inward_m: float, outward_m: float = 0.0) -> Rect:
-        """The rectangle along `span` of a side, reaching `inward_m` into this one and `outward_m` out of it."""
+        """Returns the rectangle along `span` of a side, from `inward_m` inside to `outward_m` outside."""
         line, sign = self.line(side), 1.0 if side in ("east", "north") else -1.0
         a, b = sorted((line - sign * inward_m, line + sign * outward_m))
         return Rect(a, span[0], b, span[1]) if side in ("east", "west") else Rect(span[0], a, span[1], b)
 
 
 def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
-    """The side of `a` on which `b` lies and the interval both share, or None where they do not touch."""
+    """Returns the side of `a` on which `b` lies and the interval that both share; None where they do not touch."""
     for side in SIDES:
         if abs(a.line(side) - b.line(OPPOSITE[side])) < EPS_M:
             lo, hi = max(a.span(side)[0], b.span(side)[0]), min(a.span(side)[1], b.span(side)[1])
@@ -111,7 +111,7 @@ def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
 
 
 def subtract(span: Interval, holes: Sequence[Interval], shortest_m: float = EPS_M) -> list[Interval]:
-    """What is left of `span` without the `holes`, in order, pieces of at most `shortest_m` dropped."""
+    """Returns the parts of `span` outside the `holes`, in order, without parts of at most `shortest_m`."""
     pieces, at = [], span[0]
     for lo, hi in sorted(holes):
         if min(lo, span[1]) - at > shortest_m:
@@ -123,12 +123,12 @@ def subtract(span: Interval, holes: Sequence[Interval], shortest_m: float = EPS_
 
 
 def rotated_extent(size_x_m: float, size_y_m: float, yaw_rad: float) -> tuple[float, float]:
-    """Extent along x and y of a box of the given sides turned by `yaw_rad`."""
+    """Returns the extents along x and y of a box of these sides turned by `yaw_rad`."""
     c, s = abs(math.cos(yaw_rad)), abs(math.sin(yaw_rad))
     return size_x_m * c + size_y_m * s, size_x_m * s + size_y_m * c
 
 
 def footprint(x_m: float, y_m: float, size_x_m: float, size_y_m: float, yaw_rad: float) -> Rect:
-    """Bounding rectangle of a box of the given sides, centred at (x, y) and turned by `yaw_rad`."""
+    """Returns the bounding rectangle of a box of these sides, centred at (x, y) and turned by `yaw_rad`."""
     ex, ey = rotated_extent(size_x_m, size_y_m, yaw_rad)
     return Rect(x_m - ex / 2, y_m - ey / 2, x_m + ex / 2, y_m + ey / 2)

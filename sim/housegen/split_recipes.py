@@ -1,7 +1,8 @@
-"""The recipes of the shipped houses: which seed, pool, shape and size each one has; and the version of them all.
+"""Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
 
-Val and test houses draw from the held-out pool and are shipped as files; train houses draw from the train pool and are
-shipped as a list (`sim.housegen.house_list`). Seeds of the splits lie apart, so that no two houses share one.
+The tables here decide what is generated: `SPLITS` for val and test, whose houses use the held-out pool and are shipped
+as files, and `train_recipe` for train. Train houses are not shipped as files: `sim.housegen.house_list` reads and
+writes their recipes and checksums (`train/houses.json`) and generates them on first use. Seeds of splits differ.
 """
 
 from __future__ import annotations
@@ -13,27 +14,27 @@ from typing import TYPE_CHECKING, Any
 
 from sim.housegen.rooms import PLAN_AREA_M2, PlanKind
 
-if TYPE_CHECKING:  # whoever only loads a house needs no furniture
+if TYPE_CHECKING:  # loading a house needs no furniture
     from sim.housegen.furniture.item import Pool
     from sim.housegen.generator import GeneratedHouse, HouseConfig
 
 SPLIT_VERSION = "1.0.0"
-"""Of all shipped splits; results name it beside a hash over houses and episodes. What raises it:
+"""Version of all shipped splits; results contain it with a hash over houses and episodes. It is increased in
 
-- the last number: a house or an episode changed, and what an agent can do stays the same (a colour, a file's layout);
-- the middle one: houses or episodes changed so that results can no longer be compared;
-- the first: the format changed, so that older code cannot read the files.
+- the last number when a house or an episode changed without an effect on agents (a colour, the layout of a file);
+- the middle number when houses or episodes changed so that results can no longer be compared;
+- the first number when the format changed so that older code cannot read the files.
 
-Whoever changes the generator regenerates the splits and raises this number in one commit; the hash tells apart what
-was forgotten."""
+A change of the generator, new files of the splits and a new version belong in one commit; the hash shows the difference
+if that was forgotten."""
 TRAIN_HOUSES = 200
 MAX_TRAIN_SEEDS = 1_000
-"""Seeds below this are train's; a seed that gives no house is left out, the next one comes in."""
+"""Seeds below this belong to train; a seed that gives no house is skipped."""
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """How one shipped house is made."""
+    """The recipe of one shipped house: everything that the generator needs."""
 
     name: str
     seed: int
@@ -42,10 +43,10 @@ class Recipe:
     area_m2: float
     rooms: tuple[str, ...] = ()
     movable: bool = False
-    """Its light furniture can be pushed."""
+    """Whether its light furniture can be pushed."""
 
     def make(self) -> GeneratedHouse:
-        """The house; the same bytes of XML every time.
+        """Returns the generated house; the same bytes of XML every time.
 
         Raises:
             HouseError: no try within the bound gave a house without a fault.
@@ -55,7 +56,7 @@ class Recipe:
         return generate_house(self.seed, self.config())
 
     def config(self) -> HouseConfig:
-        """What is asked of the generator."""
+        """Returns the requirements for the generator."""
         from sim.housegen.generator import HouseConfig
 
         return HouseConfig(
@@ -63,15 +64,15 @@ class Recipe:
         )
 
     def to_json(self) -> dict[str, Any]:
-        """As JSON has it."""
+        """Returns the recipe as a JSON object."""
         return asdict(self) | {"rooms": list(self.rooms)}
 
     @classmethod
     def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
-        """The recipe that `to_json` wrote.
+        """Returns the recipe of a JSON object.
 
         Raises:
-            KeyError, TypeError, ValueError: it did not.
+            KeyError, TypeError, ValueError: the object does not have the form that `to_json` writes.
         """
         return cls(
             name=str(entry["name"]),
@@ -85,12 +86,12 @@ class Recipe:
 
 
 def _is_movable(number: int) -> bool:
-    """Every third house of a split has furniture that can be pushed."""
+    """Returns whether a house has furniture that can be pushed: every third house of a split does."""
     return number % 3 == 1
 
 
 _Shape = tuple[PlanKind, float, tuple[str, ...]]
-"""Plan kind, area in square metres, and the rooms it must have beside the usual ones."""
+"""Kind of plan, area in square metres, and required rooms beyond the usual ones."""
 
 _VAL: tuple[_Shape, ...] = (
     ("flat", 95.0, ("gym",)),
@@ -140,7 +141,7 @@ _TEST: tuple[_Shape, ...] = (
 
 
 def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
-    """The recipes of a split of held-out houses."""
+    """Returns the recipes of a split of held-out houses."""
     return tuple(
         Recipe(f"{split}_{n:02d}", first_seed + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
         for n, (kind, area_m2, rooms) in enumerate(shapes)
@@ -161,15 +162,15 @@ _TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
     ("gym",),
 )
 _SMALL_M2, _LARGE_M2 = (50.0, 230.0), (262.0, 400.0)
-"""Areas of small and of large train houses, as far as their shape allows."""
+"""Areas of small and of large train houses, limited to those of their kind of plan."""
 _ROOMY_M2 = 110.0
-"""In a smaller home a gym or an office would take the bedroom's place."""
+"""Smallest area with required rooms: in a smaller home a gym or an office would replace the bedroom."""
 _GOLDEN = 0.6180339887
-"""Multiples of it, without their whole part, fill an interval evenly however many there are (Kronecker)."""
+"""The fractional parts of its multiples fill [0, 1) evenly for any number of them (Kronecker sequence)."""
 
 
 def train_recipe(seed: int) -> Recipe:
-    """The train house of a seed; every fourth is above 250 m2."""
+    """Returns the recipe of the train house of a seed; every fourth house is larger than 250 m2."""
     large = seed % 4 == 2
     kinds, (smallest, largest) = (_TRAIN_LARGE, _LARGE_M2) if large else (_TRAIN_SMALL, _SMALL_M2)
     kind = kinds[(seed // 4 if large else seed) % len(kinds)]
@@ -182,5 +183,5 @@ def train_recipe(seed: int) -> Recipe:
 SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
     {"val": _heldout("val", 10_000, _VAL), "test": _heldout("test", 20_000, _TEST)}
 )
-"""Recipes of the houses shipped as files, by split, in the order in which episodes go round the houses; a quarter of
-each is above 250 m2."""
+"""Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of each split
+is larger than 250 m2."""

@@ -1,4 +1,4 @@
-"""Coarse triangles of every shape a geom can have, as fine as somebody half a metre away can tell."""
+"""Triangulates every shape that a geom can have, as finely as is visible from half a metre."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Facets = tuple[NDArray[np.float64], NDArray[np.int32]]
 
 
 def mesh_shape(kind: str, vertices_m: NDArray[np.float64], faces: NDArray[np.int32]) -> MeshShape:
-    """A mesh named after its content, of any size; vertices are rounded to 0.1 mm."""
+    """Returns a mesh named after a hash of its content; vertices are rounded to 0.1 mm."""
     vertices = np.round(np.asarray(vertices_m, dtype=np.float64), 4) + 0.0  # + 0.0 turns -0.0 into 0.0
     triangles = np.asarray(faces, dtype=np.int32)
     content = np.rint(vertices * 1e4).astype("<i4").tobytes() + triangles.astype("<i4").tobytes()
@@ -26,7 +26,7 @@ def mesh_shape(kind: str, vertices_m: NDArray[np.float64], faces: NDArray[np.int
 
 
 def facets(geom: Geom) -> Facets:
-    """The surface of a geom.
+    """Returns the surface of a geom.
 
     Raises:
         ValueError: its shape is none of `item.Shape`.
@@ -36,23 +36,25 @@ def facets(geom: Geom) -> Facets:
     if geom.shape == "box":
         return _SIGNS * geom.size_m, _BOX_FACES
     if geom.shape == "cylinder":
-        return _turned([(geom.size_m[0], -geom.size_m[1]), (geom.size_m[0], geom.size_m[1])])
+        return _revolve([(geom.size_m[0], -geom.size_m[1]), (geom.size_m[0], geom.size_m[1])])
     if geom.shape == "capsule":
-        return _turned(_capsule(*geom.size_m[:2]))
+        return _revolve(_capsule(*geom.size_m[:2]))
     if geom.shape in ("sphere", "ellipsoid"):
         size = np.asarray(geom.size_m if geom.shape == "ellipsoid" else (geom.size_m[0],) * 3)
-        corners, faces = _turned(_ball(float(size.max())), segments_for(float(size.max())))
+        corners, faces = _revolve(_ball(float(size.max())), _segments_for(float(size.max())))
         return corners * size, faces
-    raise ValueError(f"No triangles for '{geom.shape}'. There is: box, cylinder, capsule, sphere, ellipsoid, mesh.")
+    raise ValueError(
+        f"No triangles for shape '{geom.shape}'. There is: box, cylinder, capsule, sphere, ellipsoid, mesh."
+    )
 
 
-def segments_for(radius_m: float) -> int:
-    """Corners of a circle of this radius."""
+def _segments_for(radius_m: float) -> int:
+    """Returns the number of corners of a circle of this radius."""
     return 6 if radius_m < 0.03 else 8 if radius_m < 0.1 else 12
 
 
 def _capsule(radius_m: float, half_m: float) -> list[tuple[float, float]]:
-    """Radii and heights of its rings; a thin one ends bluntly."""
+    """Returns radii and heights of the rings of a capsule; a thin one has flat ends."""
     if radius_m < 0.03:
         return [(radius_m, -half_m - 0.6 * radius_m), (radius_m, half_m + 0.6 * radius_m)]
     upper = [(radius_m, half_m), (0.7 * radius_m, half_m + 0.7 * radius_m), (0.0, half_m + radius_m)]
@@ -60,24 +62,25 @@ def _capsule(radius_m: float, half_m: float) -> list[tuple[float, float]]:
 
 
 def _ball(radius_m: float) -> list[tuple[float, float]]:
-    """Rings of the unit sphere, more of them for a larger one."""
+    """Returns rings of the unit sphere, more of them for a larger sphere."""
     stacks = 3 if radius_m < 0.03 else 4 if radius_m < 0.07 else 6
     angles = [math.pi * (n / stacks - 0.5) for n in range(stacks + 1)]
     return [(0.0 if n in (0, stacks) else math.cos(a), math.sin(a)) for n, a in enumerate(angles)]
 
 
-def _turned(rings: list[tuple[float, float]], segments: int = 0) -> Facets:
-    """A body of revolution about z from (radius, height) of its rings, lowest first; radius 0 is a pole."""
-    return _turned_once(tuple(rings), segments)
+def _revolve(rings: list[tuple[float, float]], segments: int = 0) -> Facets:
+    """Returns a body of revolution about z from (radius, height) of its rings, lowest first; radius 0 is a pole."""
+    return _revolve_once(tuple(rings), segments)
 
 
 @functools.lru_cache(maxsize=512)
-def _turned_once(rings: tuple[tuple[float, float], ...], segments: int) -> Facets:
-    segments = segments or segments_for(max(radius for radius, _ in rings))
+def _revolve_once(rings: tuple[tuple[float, float], ...], segments: int) -> Facets:
+    """Computes `_revolve`, once for each argument."""
+    segments = segments or _segments_for(max(radius for radius, _ in rings))
     turns = np.arange(segments) * (math.tau / segments)
     circle = np.column_stack([np.cos(turns), np.sin(turns)])
     corners: list[NDArray[np.float64]] = []
-    starts: list[tuple[int, int]] = []  # first corner of each ring, and how many it has
+    starts: list[tuple[int, int]] = []  # first corner of each ring, and its number of corners
     for radius, z in rings:
         ring = np.column_stack([radius * circle, np.full(segments, z)]) if radius else np.array([[0.0, 0.0, z]])
         starts.append((sum(len(c) for c in corners), len(ring)))
@@ -97,12 +100,13 @@ def _turned_once(rings: tuple[tuple[float, float], ...], segments: int) -> Facet
 
 
 def _mesh(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> Facets:
-    """A mesh as it is, or its convex hull where it has no faces."""
+    """Returns a mesh unchanged, or its convex hull where it has no faces."""
     return (vertices, faces) if len(faces) else _hull(vertices.tobytes())
 
 
 @functools.lru_cache(maxsize=512)
 def _hull(points: bytes) -> Facets:
+    """Returns the convex hull of (n, 3) float64 points."""
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     hull = ConvexHull(vertices)
     new = np.full(len(vertices), -1)
@@ -123,4 +127,4 @@ _BOX_FACES = np.array(
     ],
     dtype=np.int32,
 )
-"""Triangles of a box whose corners come in the order of `_SIGNS`."""
+"""Triangles of a box whose corners are in the order of `_SIGNS`."""

@@ -144,5 +144,5 @@ def mark_gaps(trial: Trial, step: int, start: Pose, marks_m: NDArray[np.float64]
 
 def marked_places(navmap: NavMap) -> NDArray[np.float64]:
     """(n, 2) centres of the cells with a collision mark, in the agent's frame."""
-    x_m, y_m = navmap.frame.centres(*np.nonzero(navmap.bumped_wide)[:2])
+    x_m, y_m = navmap.frame.centres(*np.nonzero(navmap.pessimistic_marks)[:2])
     return np.stack([x_m, y_m], axis=1)

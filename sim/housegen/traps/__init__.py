@@ -1,1 +1,1 @@
-"""Scenes made to hold a robot: what depth cannot see, or sees too late, between the start and the goal."""
+"""Trap scenes: between start and goal is an obstacle that depth does not show, or shows too late."""

@@ -1,4 +1,4 @@
-"""Every trap scene by name, in the order in which episodes go round them."""
+"""All trap scenes by name, in the order of their episodes."""
 
 from __future__ import annotations
 
@@ -34,4 +34,4 @@ TRAPS: Mapping[str, TrapMaker] = MappingProxyType(
         )
     }
 )
-"""The first thirteen are the kinds of trap that the issue names; the others combine them."""
+"""The first thirteen are the basic kinds of traps; the others combine them."""

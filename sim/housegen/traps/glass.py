@@ -1,4 +1,4 @@
-"""Traps of what no camera sees: glass, and what a scan left where nothing is."""
+"""Traps with obstacles that no camera shows: glass, and artifacts of scans."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def glass_pane() -> Trap:
 
 
 def glass_pocket() -> Trap:
-    """A U of glass, open towards the start, wider than the agent's marks."""
+    """A U of glass, open towards the start, wider than the agent's collision marks."""
     site = TrapSite("glass_pocket", 9.0, 6.0)
     for begin, end in (((2.6, 2.0), (5.0, 2.0)), ((2.6, 4.0), (5.0, 4.0)), ((5.0, 2.0), (5.0, 4.0))):
         site.pane("window", begin, end)
@@ -62,7 +62,7 @@ def glass_door_ajar() -> Trap:
 
 
 def dead_end_corridor() -> Trap:
-    """A corridor that ends in glass, and one beside it that does not."""
+    """A corridor that ends in glass, and an open one beside it."""
     site = TrapSite("dead_end_corridor", 9.0, 5.0, kind="hallway")
     site.wall((2.2, 6.2), (1.0, 1.1))
     site.wall((2.2, 6.2), (1.85, 1.95))
@@ -77,10 +77,10 @@ def dead_end_corridor() -> Trap:
 
 
 def scan_artifact() -> Trap:
-    """An invisible lump in a doorway."""
+    """An invisible obstacle in a doorway."""
     site = TrapSite("scan_artifact", 8.0, 6.0)
     site.wall_across(3.8, (0.9, 2.1), (4.6, 5.5))
-    site.glass("misc", (3.55, 4.05), (1.22, 1.78), (0.0, 0.6), yaw_rad=0.3)
+    site.invisible_box("misc", (3.55, 4.05), (1.22, 1.78), (0.0, 0.6), yaw_rad=0.3)
     site.furniture("sofa", 7.3, 1.5, math.pi)
     return Trap(site, Sidecar(
         start=Pose(1.3, 1.5, 0.0), goal="sofa", zone_m=(3.1, 0.6, 4.5, 2.4),
@@ -89,7 +89,7 @@ def scan_artifact() -> Trap:
 
 
 def furniture_u() -> Trap:
-    """Glass tables on thin legs, set as a U that opens towards the start."""
+    """Glass tables on thin legs that form a U, open towards the start."""
     site = TrapSite("furniture_u", 9.0, 6.0)
     for x, y, yaw in ((3.4, 2.1, 0.0), (4.8, 2.1, 0.0), (3.4, 3.9, 0.0), (4.8, 3.9, 0.0), (5.3, 3.0, math.pi / 2)):
         _glass_table(site, x, y, yaw)
@@ -101,9 +101,9 @@ def furniture_u() -> Trap:
 
 
 def hanging_shelf() -> Trap:
-    """Glass shelves whose lower edges hang at 0.80 m, under the robot's top."""
+    """Glass shelves whose lower edges are at 0.80 m, below the robot's top."""
     site = TrapSite("hanging_shelf", 8.0, 5.0, kind="kitchen")
-    site.glass("shelving", (3.5, 3.8), (0.0, 3.9), (0.80, 0.82))
+    site.invisible_box("shelving", (3.5, 3.8), (0.0, 3.9), (0.80, 0.82))
     for y in (0.6, 1.7, 2.8, 3.85):
         site.box("shelving", (3.64, 3.66), (y - 0.01, y + 0.01), (0.9, 2.5), STEEL, solid=False)
     site.furniture("bed", 6.6, 1.4, math.pi)
@@ -128,12 +128,12 @@ def glass_cell() -> Trap:
 
 
 def scan_forest() -> Trap:
-    """Invisible posts all over the middle of a hall."""
+    """Invisible posts in the middle of a hall."""
     site = TrapSite("scan_forest", 9.0, 4.6)
     for row in range(5):
         for i in range(7):
             x, y = 2.6 + 0.62 * row, 0.3 + 0.62 * i + (0.31 if row % 2 else 0.0)
-            site.glass("misc", (x - 0.02, x + 0.02), (y - 0.02, y + 0.02), (0.0, 1.2))
+            site.invisible_box("misc", (x - 0.02, x + 0.02), (y - 0.02, y + 0.02), (0.0, 1.2))
     site.furniture("bed", 7.8, 2.3, math.pi)
     return Trap(site, Sidecar(
         start=Pose(1.2, 2.1, 0.0), goal="bed", zone_m=(2.2, 0.0, 5.5, 4.6),
@@ -155,7 +155,7 @@ def glass_comb() -> Trap:
 
 
 def _glass_table(site: TrapSite, x: float, y: float, yaw_rad: float) -> None:
-    """1.4 x 0.5 m, 0.45 m high: four visible legs of 2 cm, an invisible top."""
+    """Adds a table of 1.4 x 0.5 m, 0.45 m high: four visible legs of 2 cm, an invisible top."""
     places = [(sx * 0.66, sy * 0.22) for sx in (-1, 1) for sy in (-1, 1)]
-    site.thing("table", [Geom("cylinder", (0.01, 0.215), (a, b, 0.215), STEEL) for a, b in places], x, y, yaw_rad)
-    site.glass("table", (x - 0.7, x + 0.7), (y - 0.25, y + 0.25), (0.43, 0.45), yaw_rad=yaw_rad)
+    site.add("table", [Geom("cylinder", (0.01, 0.215), (a, b, 0.215), STEEL) for a, b in places], x, y, yaw_rad)
+    site.invisible_box("table", (x - 0.7, x + 0.7), (y - 0.25, y + 0.25), (0.43, 0.45), yaw_rad=yaw_rad)

@@ -1,4 +1,4 @@
-"""Traps of what can be seen but is too thin, too low, too narrow, too near or too slippery."""
+"""Traps with visible obstacles that are too thin, too low, too narrow, too near or too slippery."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sim.houses.sidecar import Sidecar
 
 MIRROR = Look((0.75, 0.80, 0.84, 1.0), specular=1.0, shininess=1.0)
 MIRROR_NOISE = {"depth": {"hole_share": 1.0}}
-"""Nothing comes back from a perfect mirror."""
+"""Depth has no return from a perfect mirror."""
 
 
 def chair_legs() -> Trap:
-    """Stools on star feet, side by side: the seats leave room between them, the feet do not."""
+    """A row of stools: the robot fits between the seats but not between the star feet."""
     site = TrapSite("chair_legs", 8.0, 4.4, kind="dining_room")
     for i in range(5):
         _star_seat(site, "stool", (3.4, 0.42 + 0.72 * i), seat_radius=0.14, reach=0.33, height=0.68)
@@ -44,7 +44,7 @@ def narrow_gap() -> Trap:
 
 
 def low_slab() -> Trap:
-    """Slabs under the obstacle band around the place where the robot looks from."""
+    """Slabs below the obstacle band around the start."""
     site = TrapSite("low_slab", 8.5, 5.0)
     height = (0.0, 0.05)
     site.box("objects", (3.4, 3.6), (0.6, 4.4), height, WOOD)
@@ -58,10 +58,10 @@ def low_slab() -> Trap:
 
 
 def slippery_floor() -> Trap:
-    """A doorway of glass behind a wet floor, and an open one."""
+    """A closed glass door behind a wet floor, and an open doorway."""
     site = TrapSite("slippery_floor", 8.0, 6.0, kind="bathroom")
     site.wall_across(4.0, (0.9, 2.1), (4.6, 5.5))
-    site.slick((2.5, 4.6), (0.6, 2.4), 0.012)
+    site.slippery_floor((2.5, 4.6), (0.6, 2.4), 0.012)
     site.pane("door", (4.0, 0.9), (4.0, 2.1))
     site.furniture("bathtub", 7.0, 1.5, math.pi)
     return Trap(site, Sidecar(
@@ -71,9 +71,9 @@ def slippery_floor() -> Trap:
 
 
 def wedged_spawn() -> Trap:
-    """A start between sofa and table, nearer to both than depth begins."""
+    """A start between sofa and table, nearer to both than the smallest depth."""
     site = TrapSite("wedged_spawn", 8.0, 4.0)
-    site.thing("sofa", [
+    site.add("sofa", [
         Geom("box", (0.40, 1.1, 0.21), (-0.40, 0.0, 0.21), FABRIC),
         Geom("box", (0.10, 1.1, 0.40), (-0.70, 0.0, 0.40), FABRIC),
     ], 2.73, 1.5)  # fmt: skip
@@ -89,7 +89,7 @@ def wedged_spawn() -> Trap:
 
 
 def chair_in_doorway() -> Trap:
-    """A chair pushed into a doorway leaves a gap just too narrow."""
+    """A chair in a doorway that leaves a gap a little too narrow."""
     site = TrapSite("chair_in_doorway", 8.0, 6.0, kind="dining_room")
     site.wall_across(3.8, (0.9, 1.85), (4.6, 5.5))
     _star_seat(site, "chair", (3.8, 1.2), seat_radius=0.18, reach=0.33, height=0.46, back=True)
@@ -101,7 +101,7 @@ def chair_in_doorway() -> Trap:
 
 
 def mirror_holes() -> Trap:
-    """Mirrors that depth has holes on."""
+    """Mirrors where depth has holes."""
     site = TrapSite("mirror_holes", 8.5, 5.0, kind="bedroom")
     site.box("mirror", (3.6, 3.65), (0.0, 3.9), (0.0, 2.2), MIRROR)
     site.box("mirror", (2.2, 3.6), (3.85, 3.9), (0.0, 2.2), MIRROR)
@@ -113,7 +113,7 @@ def mirror_holes() -> Trap:
 
 
 def string_curtain() -> Trap:
-    """Strings that depth hits now and then."""
+    """Strings that depth shows in some pixels only."""
     site = TrapSite("string_curtain", 8.5, 4.4)
     for x, (low, high) in ((2.8, (0.15, 3.3)), (4.4, (1.1, 4.3))):
         count = round((high - low) / 0.25)
@@ -130,7 +130,7 @@ def _star_seat(
     site: TrapSite, category: str, at: tuple[float, float], *, seat_radius: float, reach: float, height: float,
     back: bool = False,
 ) -> None:  # fmt: skip
-    """A round seat on a stem and four thin feet, 6 cm high, that reach farther than the seat, along x and y."""
+    """Adds a round seat on a stem with four thin feet, 6 cm high, along x and y, that extend beyond the seat."""
     geoms = [
         Geom("cylinder", (seat_radius, 0.02), (0.0, 0.0, height), FABRIC),
         Geom("cylinder", (0.015, 0.5 * height), (0.0, 0.0, 0.5 * height), STEEL),
@@ -139,4 +139,4 @@ def _star_seat(
     ]
     if back:
         geoms.append(Geom("box", (0.02, 0.9 * seat_radius, 0.2), (-0.9 * seat_radius, 0.0, height + 0.2), FABRIC))
-    site.thing(category, geoms, *at)
+    site.add(category, geoms, *at)

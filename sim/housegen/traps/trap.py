@@ -1,4 +1,4 @@
-"""A trap: a scene, where to start in it, what to look for, and why it holds."""
+"""A trap: a scene with its sidecar (start, goal, and the reason why agents get stuck)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from sim.housegen.traps.site import TrapSite
 from sim.houses.sidecar import Sidecar
 
 START_TURNS_RAD = (0.0, 1.8, -2.3)
-"""Start headings of the episodes of a trap, from the sidecar's: towards the goal, to its left, behind its right."""
+"""Start headings of the episodes of a trap relative to the sidecar's: towards the goal, to the left, back right."""
 
 
 @dataclass(frozen=True)
 class Trap:
-    """One scene and its sidecar."""
+    """A trap scene and its sidecar."""
 
     site: TrapSite
     sidecar: Sidecar

@@ -89,7 +89,7 @@ def test_a_house_that_comes_out_different_is_refused_with_both_checksums(maker: 
     assert hashlib.sha256(maker.text.encode()).hexdigest() in str(refused.value)
     assert not split.house_paths["tiny_00"].exists()
     old = replace(split.house_list, made_with=versions_here() | {"mujoco": "3.9.9"})
-    with pytest.raises(HouseError, match=r"mujoco 3\.9\.9 there and .* here"):
+    with pytest.raises(HouseError, match=r"mujoco 3\.9\.9 in the list and .* here"):
         old.fetch("tiny_00")
 
 
