@@ -1,47 +1,85 @@
-"""Names to agents: each a composition of the same parts."""
+"""The agents by name: compositions of the same parts."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from types import MappingProxyType
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
 
-from sim.interface import Agent, CameraModel, ConfigError, RobotModel, Segmenter
+from sim.interface import Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
-from stubborn.baselines.random import RandomAgent, RandomConfig
+from stubborn.baselines.random import RandomConfig, random_agent
 from stubborn.baselines.single_frame import single_frame_agent
-from stubborn.exploration.corners import ExplorationConfig
-from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer
-from stubborn.exploration.glance import GlanceConfig
-from stubborn.planning.planner import Planner
+from stubborn.draw import make_painter
+from stubborn.exploration.corners import CornerConfig
+from stubborn.exploration.explorer import ExplorerConfig
+from stubborn.exploration.frontier import FrontierConfig
+from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.target.verification import Verifier
 
-C = TypeVar("C", AgentConfig, RandomConfig)
+NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
+"""None of the paper's measures against collisions."""
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
     {
-        "stubborn-i": CollisionAvoidance(
-            untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False
-        ),
-        "stubborn-ii": CollisionAvoidance(collision_layers=False, averse_exploration=False, visited_is_free=False),
-        "stubborn-iii": CollisionAvoidance(averse_exploration=False, visited_is_free=False),
+        "stubborn-i": NO_AVOIDANCE,
+        "stubborn-ii": replace(NO_AVOIDANCE, untrap=True),
+        "stubborn-iii": replace(NO_AVOIDANCE, untrap=True, collision_layers=True),
         "stubborn-iv": CollisionAvoidance(visited_is_free=False),
         "stubborn-v": CollisionAvoidance(),
     }
 )
 """The rows of the paper's ablation table; v is the full agent."""
 
-ADDITIONS: Mapping[str, Any] = MappingProxyType(
+EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
+    {"corners": CornerConfig(), "thorough": ThoroughConfig(), "frontier": FrontierConfig()}
+)
+"""The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
+
+
+def _stubborn_spec(description: str, config: AgentConfig, make: Any = StubbornAgent) -> AgentSpec:
+    """Returns the specification of an agent that builds a map."""
+    return AgentSpec(make=make, description=description, config=config, sensors=("depth",), painter=make_painter)
+
+
+SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     {
-        "exploration": ExplorationConfig(
-            look_around_turns=11, unseen_area_m2=(0.25, 0.05), unvisited_m=(1.5, 1.0, 0.6)
+        "stubborn": _stubborn_spec("the paper's agent, with all four measures against collisions", AgentConfig()),
+        **{
+            name: _stubborn_spec(
+                f"row {name.removeprefix('stubborn-')} of the paper's ablation", AgentConfig(avoidance=row)
+            )
+            for name, row in ABLATION.items()
+        },
+        "stubborn-plus": _stubborn_spec(
+            "stubborn that also looks around and visits what it has not seen; not in the paper",
+            AgentConfig(explorer=ThoroughConfig()),
         ),
-        "glance": GlanceConfig(gain_per_turn_m2=0.75),
+        "single-frame": _stubborn_spec(
+            "stubborn that trusts single frames and verifies nothing", AgentConfig(), single_frame_agent
+        ),
+        "frontier": _stubborn_spec(
+            "goes to the nearest frontier (Yamauchi 1997), without measures against collisions",
+            AgentConfig(explorer=FrontierConfig(), avoidance=NO_AVOIDANCE),
+        ),
+        "frontier-avoid": _stubborn_spec(
+            "frontier with all measures against collisions", AgentConfig(explorer=FrontierConfig())
+        ),
+        "random": AgentSpec(
+            make=random_agent,
+            description="random moves and, rarely, a STOP",
+            config=RandomConfig(),
+            sensors=(),
+            uses_segmentation=False,
+        ),
     }
 )
-"""What `stubborn-plus` does that the paper's agent does not: it looks around and aside, and goes where it never was."""
+"""All agents that `make` knows."""
+
+NAMES: tuple[str, ...] = tuple(SPECS)
+"""Their names."""
 
 
 def make(
@@ -51,90 +89,46 @@ def make(
     robot: RobotModel,
     segmenter: Segmenter,
     verifier: Verifier | None = None,
+    success: SuccessRule = SuccessRule(),  # noqa: B008 - frozen
     **options: Any,
 ) -> Agent:
-    """Build an agent by name.
+    """Builds an agent by name.
 
     Args:
         name: one of `NAMES`.
-        camera: what the observations are taken with.
-        robot: the body that is driven.
-        segmenter: where scores come from.
-        verifier: judges candidates where the agent verifies at all (`stubborn.target.verification`); None accepts all.
-        options: fields of the agent's config (`stubborn.agent.AgentConfig`, `RandomConfig`), and `frontier`, a
-            `FrontierConfig`, for the frontier agents.
+        camera: camera of the observations.
+        robot: the robot that the agent drives.
+        segmenter: source of the scores.
+        verifier: judges candidates (`stubborn.target.verification`); None accepts all.
+        success: when a STOP counts.
+        options: fields of the agent's configuration (`stubborn.agent.AgentConfig`, `RandomConfig`). `explorer` also
+            takes a name of `EXPLORERS`.
 
     Raises:
-        ConfigError: a name or an option that there is not.
+        ConfigError: an unknown name, option or explorer.
     """
-    if name not in _FACTORIES:
-        near = difflib.get_close_matches(name, NAMES, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"No agent {name!r}.{hint} There is: {', '.join(NAMES)}.")
-    return _FACTORIES[name](name, _Given(camera, robot, segmenter, verifier), options)
-
-
-class _Given(NamedTuple):
-    """What every agent is built from."""
-
-    camera: CameraModel
-    robot: RobotModel
-    segmenter: Segmenter
-    verifier: Verifier | None
-
-
-def _stubborn(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
-    config = AgentConfig(avoidance=ABLATION.get(name, CollisionAvoidance()))
-    if name == "stubborn-plus":
-        config = replace(config, **ADDITIONS)
-    return StubbornAgent(**given._asdict(), config=_configured(config, name, options))
-
-
-def _single_frame(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
-    config = _configured(AgentConfig(), name, options)
-    return single_frame_agent(camera=given.camera, robot=given.robot, segmenter=given.segmenter, config=config)
-
-
-def _frontier(name: str, given: _Given, options: Mapping[str, Any]) -> StubbornAgent:
-    """The Stubborn agent with another explorer; collision avoidance is that of the ablation's last or first row."""
-    avoidance = ABLATION["stubborn-v" if name == "frontier-avoid" else "stubborn-i"]
-    options = dict(options)
-    frontier = options.pop("frontier", FrontierConfig())
-    config = _configured(AgentConfig(avoidance=avoidance), name, options)
-    avoidance = config.avoidance
-    explorer = FrontierExplorer(
-        frontier,
-        Planner(config.planning, trust_visited=avoidance.visited_is_free),
-        averse=avoidance.averse_exploration,
-        bumps=avoidance.collision_layers,
-    )
-    return StubbornAgent(**given._asdict(), explorer=explorer, config=config)
-
-
-def _random(name: str, given: _Given, options: Mapping[str, Any]) -> RandomAgent:
-    return RandomAgent(_configured(RandomConfig(), name, options))
-
-
-def _configured(config: C, name: str, options: Mapping[str, Any]) -> C:
-    """The config with options put in."""
-    known = [f.name for f in fields(config)]
+    spec = SPECS[_known(name, SPECS, "agent")]
+    config = spec.config
+    allowed = [field.name for field in fields(config)]
     for option in options:
-        if option not in known:
-            raise ConfigError(f"Agent {name!r} has no option {option!r}. It has: {', '.join(known)}.")
-    return replace(config, **options)
+        if option not in allowed:
+            raise ConfigError(f"Agent {name!r} has no option {option!r}. It has: {', '.join(allowed)}.")
+    if isinstance(options.get("explorer"), str):
+        options["explorer"] = EXPLORERS[_known(options["explorer"], EXPLORERS, "explorer")]
+    return spec.make(
+        camera=camera,
+        robot=robot,
+        success=success,
+        segmenter=segmenter,
+        verifier=verifier,
+        config=replace(config, **options),
+    )
 
 
-_FACTORIES: Mapping[str, Callable[[str, _Given, Mapping[str, Any]], Agent]] = MappingProxyType(
-    {
-        "stubborn": _stubborn,
-        **dict.fromkeys(ABLATION, _stubborn),
-        "stubborn-plus": _stubborn,
-        "single-frame": _single_frame,
-        "frontier": _frontier,
-        "frontier-avoid": _frontier,
-        "random": _random,
-    }
-)
-
-NAMES: tuple[str, ...] = tuple(_FACTORIES)
-"""All agents that `make` knows."""
+def _known(name: str, table: Mapping[str, Any], kind: str) -> str:
+    """Returns the name when it is in the table."""
+    if name not in table:
+        near = difflib.get_close_matches(name, table, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        raise ConfigError(f"No {kind} {name!r}.{hint} There is: {', '.join(table)}.")
+    return name

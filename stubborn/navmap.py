@@ -1,7 +1,8 @@
-"""What the agent believes: named layers over the ground, on one grid."""
+"""The map of the agent: named layers over the ground, on one grid."""
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from types import MappingProxyType
@@ -15,36 +16,46 @@ _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest first, so that each is aligned
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
         **{"frames_in_view": np.uint16, "found_step": np.int16, "obstacle_evidence": np.int8},
-        **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "bumped_wide", "bumped_narrow"), np.bool_),
+        **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_),
         **dict.fromkeys(("visited", "trail", "rejected", "set_aside"), np.bool_),
     }
 )
 
 
+class CollisionLayer(enum.Enum):
+    """The collision marks that count as obstacles."""
+
+    NONE = enum.auto()
+    OPTIMISTIC = enum.auto()
+    """The small marks, `NavMap.optimistic_marks`."""
+    PESSIMISTIC = enum.auto()
+    """The large marks, `NavMap.pessimistic_marks`."""
+
+
 @dataclass
 class NavMap:
-    """What the agent believes so far; every layer is (rows, cols) on `frame`. Paper channel in brackets.
+    """The agent's map; every layer is (rows, cols) on `frame`. The paper's channel is in brackets.
 
-    Unknown ground is free ground; what was ever in view is where `frames_in_view` is not 0.
+    Unknown ground counts as free. The ground that was ever in view is where `frames_in_view` is not 0.
     """
 
     frame: GridFrame
     seen_obstacle: NDArray[np.bool_]
     """True: depth saw a surface between step height and robot height [1]."""
     obstacle_evidence: NDArray[np.int8]
-    """For and against an obstacle, from depth; `seen_obstacle` is where it is enough."""
+    """Evidence for an obstacle, from depth; `seen_obstacle` is True where it suffices."""
     seen_at_eye_level: NDArray[np.bool_]
-    """True: depth saw a surface at the camera's height, so a wall or something as tall."""
-    bumped_wide: NDArray[np.bool_]
+    """True: depth saw a surface at the camera's height, so a wall or an object as tall."""
+    pessimistic_marks: NDArray[np.bool_]
     """True: inside a 25 x 25 cm mark in front of a failed move; the pessimistic map [2]."""
-    bumped_narrow: NDArray[np.bool_]
+    optimistic_marks: NDArray[np.bool_]
     """True: inside a 15 x 15 cm mark in front of a failed move; the optimistic map [3]."""
     visited: NDArray[np.bool_]
     """True: the robot's disc swept over this cell."""
     trail: NDArray[np.bool_]
     """True: the robot's centre passed here, to a cell."""
     frames_in_view: NDArray[np.uint16]
-    """How many frames saw something in this cell, floor included [4]."""
+    """Number of frames with a depth point in this cell, floor included [4]."""
     score_sum: NDArray[np.float32]
     """Sum over frames of the target's score, each frame giving its highest in the cell [5]."""
     score_max: NDArray[np.float32]
@@ -52,24 +63,24 @@ class NavMap:
     other_max: NDArray[np.float32]
     """Highest score of any other category in any frame [7]."""
     found_step: NDArray[np.int16]
-    """Step at which `score_max` first made this cell a candidate; meaningful only where it did."""
+    """Step at which `score_max` made this cell a candidate; meaningful only for candidates."""
     shown_x: NDArray[np.float32]
-    """Sum over frames of the unit vector from a target point to the camera, along x: the side that it shows."""
+    """Sum over frames of the unit vector from a target point to the camera, x component: the side that was seen."""
     shown_y: NDArray[np.float32]
-    """The same along y."""
+    """The y component of the same sum."""
     rejected: NDArray[np.bool_]
-    """True: verification refused a candidate here; it never counts again in this episode."""
+    """True: verification rejected a candidate here; it never counts again in this episode."""
     set_aside: NDArray[np.bool_]
-    """True: a candidate here could not be reached; it waits until the map has grown."""
+    """True: a candidate here could not be reached; it is tried again later."""
     known: tuple[slice, slice] | None = None
-    """Rows and columns of a rectangle that holds all that was in view or walked on; None: nothing yet."""
+    """Rows and columns of a rectangle that holds all ground seen or driven over; None: nothing yet."""
 
     @classmethod
     def empty(cls, frame: GridFrame) -> NavMap:
-        """A map on which nothing is known yet.
+        """Returns a map on which nothing is known yet.
 
-        The layers of a large map lie in one block: so large a one comes from the system and goes back to it, and pages
-        that are never touched (most of the paper's 72 m) are never there.
+        The layers share one block of memory. A block of this size comes from the operating system and returns to it,
+        and pages that are never written (most of the paper's 72 m) take no memory.
         """
         cells, layers, first = frame.shape[0] * frame.shape[1], {}, 0
         block = np.zeros(cells * sum(np.dtype(dtype).itemsize for dtype in _LAYERS.values()), np.uint8)
@@ -80,12 +91,18 @@ class NavMap:
         return cls(frame=frame, **layers)
 
     def view(self, window: Window) -> NavMap:
-        """The part of the map in a window; its layers share memory with this map's."""
+        """Returns the part of the map in a window; its layers share memory with this map's."""
         layers = {f.name: getattr(self, f.name)[window.index] for f in fields(self) if f.name not in ("frame", "known")}
         return NavMap(frame=window.frame, **layers)
 
+    def collision_marks(self, layer: CollisionLayer) -> NDArray[np.bool_]:
+        """Returns the marks of a collision layer, (rows, cols); without a layer there are none."""
+        if layer is CollisionLayer.NONE:
+            return np.zeros_like(self.seen_obstacle)
+        return self.pessimistic_marks if layer is CollisionLayer.PESSIMISTIC else self.optimistic_marks
+
     def grow_known(self, rows: slice, cols: slice) -> None:
-        """Note that something became known inside this rectangle of cells."""
+        """Extends the known rectangle by these rows and columns."""
         if self.known is not None:
             rows, cols = (
                 slice(min(old.start, new.start), max(old.stop, new.stop))
@@ -94,7 +111,7 @@ class NavMap:
         self.known = rows, cols
 
     def known_window(self, margin_cells: int) -> Window:
-        """What is known with a margin around it; the middle of the map when nothing is."""
+        """Returns the known rectangle with a margin; the middle of the map when nothing is known."""
         middle = tuple(slice(n // 2, n // 2 + 1) for n in self.frame.shape)
         rows, cols = (
             slice(max(known.start - margin_cells, 0), known.stop + margin_cells) for known in self.known or middle
@@ -102,6 +119,6 @@ class NavMap:
         return self.frame.part(rows, cols)
 
     def seen_area_m2(self) -> float:
-        """Ground that was ever in view."""
+        """Returns the area of the ground that was ever in view."""
         seen = self.frames_in_view if self.known is None else self.frames_in_view[self.known]
         return float(np.count_nonzero(seen)) * self.frame.cell_m**2

@@ -1,8 +1,9 @@
-"""Small questions about masks on a grid: how far, how connected, what hides what. Cells, not metres."""
+"""Functions on masks over a grid: distances, connected parts, lines of sight. Units are cells, not metres."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -13,12 +14,21 @@ Cells = tuple[NDArray[np.integer], NDArray[np.integer]]
 
 
 def distance_to(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
+    """Returns the exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
     return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
 
 
-def nearest(mask: NDArray[np.bool_]) -> tuple[NDArray[np.float32], NDArray[np.intp], NDArray[np.intp]]:
-    """Distance from every cell to the nearest True one (to 2 %), and that one's row and column.
+class NearestCells(NamedTuple):
+    """For every cell of a grid, the nearest cell of a mask; (rows, cols) each."""
+
+    gap_cells: NDArray[np.float32]
+    """Distance to it, good to 2 %."""
+    rows: NDArray[np.intp]
+    cols: NDArray[np.intp]
+
+
+def nearest(mask: NDArray[np.bool_]) -> NearestCells:
+    """Returns the nearest True cell of every cell.
 
     The mask must hold at least one True cell.
     """
@@ -30,11 +40,11 @@ def nearest(mask: NDArray[np.bool_]) -> tuple[NDArray[np.float32], NDArray[np.in
     row_of = np.zeros(int(labels.max()) + 1, np.intp)
     col_of = np.zeros_like(row_of)
     row_of[labels[rows, cols]], col_of[labels[rows, cols]] = rows, cols
-    return np.asarray(distance, np.float32), row_of[labels], col_of[labels]
+    return NearestCells(np.asarray(distance, np.float32), row_of[labels], col_of[labels])
 
 
 def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int) -> NDArray[np.bool_]:
-    """The part of a mask that holds a cell; nothing when that cell is not in the mask."""
+    """Returns the connected part of a mask that contains a cell; empty when that cell is not in the mask."""
     if not mask[row, col]:
         return np.zeros_like(mask)
     _, parts = cv2.connectedComponents(np.ascontiguousarray(mask).view(np.uint8), connectivity=connectivity)
@@ -42,7 +52,7 @@ def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int)
 
 
 def large_parts(mask: NDArray[np.bool_], least_cells: float) -> NDArray[np.bool_]:
-    """The mask without its 8-connected parts of fewer cells."""
+    """Returns the mask without its 8-connected parts of fewer cells."""
     _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
     large = np.asarray(stats)[:, cv2.CC_STAT_AREA] >= least_cells
     large[0] = False  # part 0 is the background
@@ -50,9 +60,9 @@ def large_parts(mask: NDArray[np.bool_], least_cells: float) -> NDArray[np.bool_
 
 
 def sight_is_clear(blocked: NDArray[np.bool_], starts: Cells, ends: Cells, edge_cells: float) -> NDArray[np.bool_]:
-    """For each pair of cells whether no blocked cell lies on the straight line between their centres.
+    """Returns, for each pair of cells, whether the straight line between their centres crosses no blocked cell.
 
-    The last `edge_cells` before the end do not count. Returns one value a pair.
+    The last `edge_cells` before the end do not count.
     """
     d_row, d_col = ends[0] - starts[0], ends[1] - starts[1]
     length = np.hypot(d_row, d_col)

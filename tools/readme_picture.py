@@ -1,4 +1,4 @@
-"""Make the picture of the README: robot's view, its segmentation, and the agent's map with path and goal.
+"""Makes the picture of the README: the robot's view, its segmentation, and the agent's map with path and goal.
 
 python tools/readme_picture.py --episode-id <id> --step 60 --out docs/images/episode.png
 """
@@ -25,22 +25,22 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Play an episode up to a step and draw what the robot sees and believes."""
+    """Run an episode up to a step and draw camera, segmentation and map."""
 
     split: str = "val"
-    """Split that the episode is taken from."""
+    """Split of the episode."""
     episode_id: str | None = None
-    """The episode; the split's first if not given."""
+    """Id of the episode; the first of the split if not given."""
     step: int = 40
-    """After so many actions (or at the episode's end, if that comes first)."""
+    """Number of actions before the picture; fewer if the episode ends earlier."""
     profile: str = "good"
     """Rendering quality of the picture."""
     out: Path = Path("docs/images/episode.png")
-    """Where the PNG goes."""
+    """The PNG file."""
 
 
 def main(args: Args) -> int:
-    """Write the picture."""
+    """Writes the picture; returns the exit status."""
     env = ObjectNavEnv(split=args.split, sensors=("rgb", "depth", "semantic"), profile=args.profile)
     try:
         picture = np.hstack(panels(env, args))
@@ -54,7 +54,7 @@ def main(args: Args) -> int:
 
 
 def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
-    """Camera, segmentation and map at the same height, uint8 (h, w, 3) each."""
+    """Returns camera image, segmentation and map at the same height, uint8 (h, w, 3) each."""
     episode = env.split.episode(args.episode_id) if args.episode_id else env.split.episodes[0]
     observation, _ = env.reset(options={"episode": episode})
     agent = StubbornAgent(camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
@@ -67,7 +67,7 @@ def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
             action = agent.act(observation)
     print(f"{episode.episode_id}: looking for {episode.goal}, {steps} steps")
     height = observation["rgb"].shape[0]
-    belief = draw.draw_belief(agent)
+    belief = draw.draw_map(agent)
     width = round(belief.shape[1] * height / belief.shape[0])
     belief = np.asarray(cv2.resize(belief, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
     return [observation["rgb"], with_legend(observation["semantic"]), belief]

@@ -1,1 +1,1 @@
-"""Agents to compare with."""
+"""Baselines that the Stubborn agent is compared with."""

@@ -1,8 +1,9 @@
-"""The floor under all baselines: actions drawn at random."""
+"""The lower bound of all baselines: random actions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +12,10 @@ from sim.interface import Action, ConfigError, Observation
 
 @dataclass(frozen=True, kw_only=True)
 class RandomConfig:
-    """How the dice are loaded."""
+    """The distribution of the actions."""
 
     stop_probability: float = 0.004
-    """Of STOP at each step; the three moves share the rest. 0.004 stops after 250 steps on average."""
+    """Probability of STOP at each step; the three moves share the rest. 0.004 stops after 250 steps on average."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.stop_probability <= 1.0:
@@ -22,17 +23,22 @@ class RandomConfig:
 
 
 class RandomAgent:
-    """Draws each action independently; knows nothing."""
+    """Draws each action independently of the observations."""
 
     def __init__(self, config: RandomConfig = RandomConfig()) -> None:
         self.config = config
         self.reset("", 0)
 
     def reset(self, goal: str, seed: int) -> None:
-        """Start a new episode with its own stream of random numbers."""
+        """Starts a new episode with its own stream of random numbers."""
         self._rng = np.random.default_rng(seed)
 
     def act(self, observation: Observation) -> Action:
-        """The next action, whatever is seen."""
+        """Returns the next action."""
         move = (1.0 - self.config.stop_probability) / 3.0
         return Action(int(self._rng.choice(4, p=(self.config.stop_probability, move, move, move))))
+
+
+def random_agent(*, config: RandomConfig, **parts: Any) -> RandomAgent:
+    """Returns the random agent; it uses none of the other parts."""
+    return RandomAgent(config)

@@ -1,19 +1,19 @@
-"""The paper's comparison for verification: one frame decides (Table "ObjIDResults", Single-Frame)."""
+"""The paper's baseline for verification: a single frame decides (Table "ObjIDResults", Single-Frame)."""
 
 from __future__ import annotations
 
-from sim.interface import CameraModel, RobotModel, Segmenter
+from typing import Any
+
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.mapping.object_layers import LatestFrame
+from stubborn.target.verification import AcceptAll, Verifier
 
 
-def single_frame_agent(
-    *, camera: CameraModel, robot: RobotModel, segmenter: Segmenter, config: AgentConfig
-) -> StubbornAgent:
-    """The Stubborn agent without verification, one frame's score in place of the layers.
+def single_frame_agent(*, config: AgentConfig, verifier: Verifier | None = None, **parts: Any) -> StubbornAgent:
+    """Returns the Stubborn agent without verification, with the score of one frame in place of the layers.
 
-    It heads for what looked like the target when it was last in view, and stops within reach of a point that looks so
-    in this very frame.
+    It goes to candidates in the frame that last showed a cell, and stops in reach of a candidate in the current frame.
+    The verifier is not used.
     """
     layers = LatestFrame(config.mapping.candidate_score)
-    return StubbornAgent(camera=camera, robot=robot, segmenter=segmenter, layers=layers, config=config)
+    return StubbornAgent(**parts, layers=layers, verifier=AcceptAll(), config=config)

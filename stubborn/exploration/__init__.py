@@ -1,1 +1,1 @@
-"""Explorers: where to look for the goal while there is no candidate."""
+"""Explorers: they choose where to look for the goal while there is no candidate."""

@@ -1,44 +1,45 @@
-"""Frontier exploration: always to the nearest border between known free ground and unknown.
+"""Frontier exploration: the robot goes to the nearest border between known free ground and unknown ground.
 
 Reference: Yamauchi (1997), "A Frontier-Based Approach for Autonomous Exploration", CIRA. There a robot plans through
-known ground only. Here a level camera cannot see the floor under and beside the robot, so ways may cross unknown
-ground, at the planner's price for it, and ground near the robot's own trail counts as known.
+known ground only. Here a level camera cannot see the floor under and beside the robot, so that paths may cross unknown
+ground at the planner's cost for it, and ground near the robot's own trail counts as known.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import ConfigError
-from stubborn.exploration.corners import Route
-from stubborn.navmap import NavMap
-from stubborn.planning.planner import Bumps, FreeSpace, Planner, trace
-from stubborn.raster import connected, distance_to, large_parts
+from sim.interface import CameraModel, ConfigError
+from stubborn.exploration.explorer import Exploration, Ground, Search
+from stubborn.exploration.places import LookAround, MapCells
+from stubborn.planning.planner import FreeSpace, Goal
+from stubborn.planning.steering import to_nearest_part
+from stubborn.raster import distance_to, large_parts
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrontierConfig:
-    """What counts as a frontier and when it is done with."""
+    """Which cells are a frontier, and when a frontier is done with."""
 
     least_length_m: float = 0.40
-    """Shorter frontiers are left for when there is no other: the robot would hardly fit through."""
+    """Shorter frontiers come last: the robot would hardly fit through."""
     own_known_m: float = 1.0
     """Ground this near the trail counts as known: it lies below the image, whose lowest row shows floor from 1.4 m on.
-    Less makes the robot sweep its own surroundings, more declares rooms behind walls known."""
+    With less the robot sweeps its own surroundings, with more it takes rooms behind walls for known."""
     arrived_m: float = 0.35
-    """A frontier is reached within this length of way."""
+    """A frontier is reached within this length of path."""
     spent_m: float = 0.60
-    """Around a place where a frontier was reached, what is left of it does not count any more."""
+    """Around a place where a frontier was reached, the rest of it does not count any more."""
     look_around_turns: int = 0
-    """Turns on the spot at the start and at each frontier reached; 11 are the reference's sweep of all around."""
+    """Turns on the spot at the start and at each frontier reached; 11 show everything around, as in the reference."""
     margin_cells: int = 20
-    """Ground around the known part of the map on which ways may run."""
+    """Margin around the known part of the map within which paths may run."""
 
     def __post_init__(self) -> None:
         if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
@@ -46,111 +47,110 @@ class FrontierConfig:
                 f"FrontierConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m."
             )
 
+    def make(self, camera: CameraModel) -> FrontierExplorer:
+        """Returns a new explorer with these parameters."""
+        return FrontierExplorer(self)
+
 
 def frontier_cells(known_free: NDArray[np.bool_], open_unknown: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Known free cells with an unknown, not blocked one among their 8 neighbours."""
+    """Returns the known free cells with an unknown cell that is not blocked among their 8 neighbours."""
     near_unknown = cv2.dilate(np.ascontiguousarray(open_unknown).view(np.uint8), np.ones((3, 3), np.uint8))
     return known_free & (near_unknown > 0)
 
 
-class FrontierExplorer:
-    """Goes to the nearest frontier by way, and keeps to it until it is reached or has become known."""
+@dataclass(frozen=True)
+class _Known:
+    """The known part of the map at one step."""
 
-    def __init__(self, config: FrontierConfig, planner: Planner, *, averse: bool, bumps: bool) -> None:
-        """`averse` explores on the pessimistic map, `bumps` says whether collision marks are kept at all."""
+    window: Window
+    free: FreeSpace
+    frontiers: NDArray[np.bool_]
+    spent: NDArray[np.bool_]
+    """Shares memory with the explorer's own mask."""
+    trail_m: NDArray[np.float32]
+    """Distance from the robot's trail."""
+
+    @property
+    def open_frontiers(self) -> NDArray[np.bool_]:
+        """The frontiers that are not spent."""
+        return self.frontiers & ~self.spent
+
+
+class FrontierExplorer:
+    """Goes to the frontier with the shortest path, and keeps to it until it is reached or has become known."""
+
+    def __init__(self, config: FrontierConfig) -> None:
         self.config = config
-        self.planner = planner
-        self._bumps = (Bumps.PESSIMISTIC if averse else Bumps.OPTIMISTIC) if bumps else Bumps.NONE
+        self.look_around = LookAround(config.look_around_turns)
         self.reset()
 
     def reset(self) -> None:
-        """Forget the last episode."""
-        self._goal: tuple[NDArray[np.intp], NDArray[np.intp]] | None = None  # rows and columns on the whole map
-        self._spent: NDArray[np.bool_] | None = None  # on the whole map
-        self._turns_left = self.config.look_around_turns
+        """Forgets the last episode."""
+        self.look_around.begin()
+        self._goal: MapCells | None = None
+        self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
-    def looks_around(self) -> bool:
-        """Whether the next step of exploring is a turn on the spot rather than a route; counts the turns."""
-        self._turns_left -= 1
-        return self._turns_left >= 0
-
-    def goal_xy_m(self, frame: GridFrame) -> tuple[float, float] | None:
-        """None: what is headed for is the end of the route itself."""
-        return None
-
-    def route(self, navmap: NavMap, window: Window, pose: Pose) -> Route | None:
-        """The way to the frontier pursued, else to the nearest, else to where the robot was least; None: walled in."""
-        whole = navmap.known_window(self.config.margin_cells)
-        view = navmap.view(whole)
-        if self._spent is None:
-            self._spent = np.zeros(navmap.frame.shape, np.bool_)
-        trail_m = distance_to(view.trail) * np.float32(view.frame.cell_m)
-        unknown = self._unknown(view) & (trail_m > self.config.own_known_m)
-        free = self.planner.free_space(view, pose, self._bumps, unknown)
-        frontiers = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
+    def explore(self, ground: Ground) -> Exploration:
+        """See `Explorer`; the route to the frontier pursued, else to the nearest, else to ground far from the trail."""
+        turn = self.look_around.next_turn()
+        if turn is not None:
+            return turn
+        known = self._known(ground)
         return (
-            self._go_on(free, frontiers & ~self._spent[whole.index], whole, pose)
-            or self._to_nearest(free, frontiers, whole, pose)
-            or self._to_least_visited(free, trail_m, pose)
+            (yield from self._go_on(known, ground.pose))
+            or (yield from self._to_nearest(known, ground.pose))
+            or (yield from self._to_least_visited(known))
         )
 
-    def _unknown(self, view: NavMap) -> NDArray[np.bool_]:
-        """Ground never in view, gaps within what was seen closed: far floor is seen with gaps."""
-        gap_cells = self.planner.config.unseen_gap_m / view.frame.cell_m
-        return distance_to(self.planner.unseen(view)) <= gap_cells
+    def _known(self, ground: Ground) -> _Known:
+        """Returns the frontiers of the known part of the map."""
+        if self._spent.size == 0:
+            self._spent = np.zeros(ground.navmap.frame.shape, np.bool_)
+        window = ground.navmap.known_window(self.config.margin_cells)
+        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
+        unknown = ground.unknown(window) & (trail_m > self.config.own_known_m)
+        free = ground.free_space(window, costly=unknown)
+        frontiers = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
+        return _Known(window, free, frontiers, self._spent[window.index], trail_m)
 
-    def _go_on(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
-        """The way to what is left of the frontier pursued; None when it is done with."""
+    def _go_on(self, known: _Known, pose: Pose) -> Search:
+        """Returns the route to the rest of the frontier pursued; None when it is done with."""
         if self._goal is None:
             return None
-        rows, cols = self._goal[0] - whole.rows.start, self._goal[1] - whole.cols.start
-        goal = np.zeros_like(frontiers)
-        goal[rows, cols] = frontiers[rows, cols]  # the known window never shrinks, so they lie in it
-        plan = self.planner.plan(free, goal, pose)
-        if plan is None:
+        route = yield Goal(known.free, self._goal.within(known.window) & known.open_frontiers)
+        if route is None:
             self._goal = None
+        elif route.length_m <= self.config.arrived_m:
+            self._spend(known, pose)
             return None
-        if plan.length_m <= self.config.arrived_m:
-            self._spend(whole, pose)
-            return None
-        return Route(plan, free)
+        return route
 
-    def _to_nearest(self, free: FreeSpace, frontiers: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
-        """The way to the nearest frontier that is not spent: a long one, else any; None: there is none left."""
-        assert self._spent is not None
-        unspent = frontiers & ~self._spent[whole.index]
+    def _to_nearest(self, known: _Known, pose: Pose) -> Search:
+        """Returns the route to the nearest open frontier: a long one, else any; None: there is none left."""
+        open_frontiers = known.open_frontiers
         for least_m in (self.config.least_length_m, 0.0):
-            route = self._to_nearest_part(free, large_parts(unspent, least_m / free.frame.cell_m), whole, pose)
+            parts = large_parts(open_frontiers, least_m / known.free.frame.cell_m)
+            route = yield Goal(known.free, parts)
+            while route is not None and route.length_m <= self.config.arrived_m:  # the robot is already there
+                self._spend(known, pose)
+                parts &= ~known.spent
+                route = yield Goal(known.free, parts)
             if route is not None:
+                route = to_nearest_part(route, pose)
+                self._goal = MapCells.of(route.goal.cells, known.window)
                 return route
         return None
 
-    def _to_nearest_part(self, free: FreeSpace, places: NDArray[np.bool_], whole: Window, pose: Pose) -> Route | None:
-        """The way to that connected part of some places which is nearest, and from now on pursue it."""
-        plan = self.planner.plan(free, places, pose)
-        if plan is None:
-            return None
-        if plan.length_m <= self.config.arrived_m:  # it stands at this one already
-            self._spend(whole, pose)
-            assert self._spent is not None
-            return self._to_nearest_part(free, places & ~self._spent[whole.index], whole, pose)
-        row, col = trace(plan, pose, max_cells=places.size)[-1]
-        plan = replace(plan, goal=connected(plan.goal, row, col, connectivity=8))
-        rows, cols = np.nonzero(plan.goal)
-        self._goal = rows + whole.rows.start, cols + whole.cols.start
-        return Route(plan, free)
+    def _to_least_visited(self, known: _Known) -> Search:
+        """Returns the route to the ground farthest from the trail, for when nothing unknown is left."""
+        far_m = np.where(known.free.reachable, known.trail_m, -np.inf)
+        route = yield Goal(known.free, far_m == far_m.max())
+        return None if route is None or route.length_m <= self.config.arrived_m else route
 
-    def _spend(self, whole: Window, pose: Pose) -> None:
-        """The robot is where it could see what there is to see of a frontier."""
-        assert self._spent is not None
-        index, disc = cells_near_segment(whole.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
-        self._spent[whole.index][index] |= disc
+    def _spend(self, known: _Known, pose: Pose) -> None:
+        """Closes the frontiers around the robot, which has seen what they show."""
+        index, disc = cells_near_segment(known.window.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
+        known.spent[index] |= disc
         if self._goal is not None:
-            self._turns_left = self.config.look_around_turns
+            self.look_around.begin()
         self._goal = None
-
-    def _to_least_visited(self, free: FreeSpace, trail_m: NDArray[np.float32], pose: Pose) -> Route | None:
-        """Where nothing unknown is left it does not freeze: the way to the ground farthest from the trail."""
-        far_m = np.where(free.reachable, trail_m, -np.inf)
-        plan = self.planner.plan(free, far_m == far_m.max(), pose)
-        return None if plan is None or plan.length_m <= self.config.arrived_m else Route(plan, free)

@@ -1,7 +1,7 @@
-"""A look to the side in passing: turning costs no way, and a room seen from its door need not be entered.
+"""A look to the side in passing: a turn adds nothing to the path, and a room seen from its door need not be entered.
 
-Not in the paper, whose agent looks where it goes. Where a turn on the spot would show much ground that was never in
-view, because an open door is passed or a corner is turned, the agent looks there before it goes on.
+Not in the paper. Where a turn on the spot would show much ground that was never in view, because the robot passes an
+open door or turns a corner, it looks there before it goes on.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ _SAME_HEADING_RAD = 0.5 * TURN_RAD
 
 @dataclass(frozen=True, kw_only=True)
 class GlanceConfig:
-    """When a look to the side is worth its turns."""
+    """Parameters of the choice of a look."""
 
-    gain_per_turn_m2: float = math.inf
-    """Ground never in view that a look must show for each turn there and back; infinity: it never looks aside."""
+    gain_per_turn_m2: float = 0.75
+    """Area of ground never in view that a look must show for each turn there and back; infinity: no look is made."""
     range_m: float = 3.5
-    """How far such ground counts."""
+    """Ground farther away than this does not count."""
     not_again_within_m: float = 1.0
-    """Around a place from where it looked in a direction, it does not look in that direction again."""
+    """Within this distance of a place from which the robot looked in a direction, it does not look there again."""
 
     def __post_init__(self) -> None:
         if self.range_m <= 0:
@@ -40,7 +40,7 @@ class GlanceConfig:
 
 
 class Glancer:
-    """Decides when to look aside; remembers from where it has looked in which direction."""
+    """Decides when to look aside; remembers the poses from which it has looked."""
 
     def __init__(self, config: GlanceConfig, camera: CameraModel) -> None:
         self.config = config
@@ -53,32 +53,23 @@ class Glancer:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the last episode."""
+        """Forgets the last episode."""
         self._looks: list[Pose] = []
         self._aim_rad: float | None = None
 
-    def next_action(self, navmap: NavMap, pose: Pose) -> Action | None:
-        """A turn towards what is worth a look; None when nothing is."""
+    def next_turn(self, navmap: NavMap, pose: Pose) -> Action | None:
+        """Returns a turn towards a heading that is worth a look; None when there is none."""
         self._looks.append(pose)
-        if self._aim_rad is None and math.isfinite(self.config.gain_per_turn_m2):
-            self._aim_rad = self._worth_a_look(navmap, pose)
-        if self._aim_rad is None:
-            return None
-        off_rad = wrap_angle(self._aim_rad - pose.yaw_rad)
-        if abs(off_rad) <= _SAME_HEADING_RAD:
+        if self._aim_rad is not None and abs(wrap_angle(self._aim_rad - pose.yaw_rad)) <= _SAME_HEADING_RAD:
             self._aim_rad = None
-            return self.next_action_after_look(navmap, pose)
-        return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT
-
-    def next_action_after_look(self, navmap: NavMap, pose: Pose) -> Action | None:
-        """The same once more: one look may show that another is worth it."""
-        self._aim_rad = self._worth_a_look(navmap, pose)
+        if self._aim_rad is None:
+            self._aim_rad = self._worth_a_look(navmap, pose)
         if self._aim_rad is None:
             return None
         return Action.TURN_LEFT if wrap_angle(self._aim_rad - pose.yaw_rad) > 0 else Action.TURN_RIGHT
 
     def _worth_a_look(self, navmap: NavMap, pose: Pose) -> float | None:
-        """The heading, of those the robot can turn to, that would show most new ground, if it is enough."""
+        """Returns the heading that would show most new ground, of those the robot can turn to; None: not enough."""
         hidden_m2 = self.hidden_area_m2(navmap, pose)
         best_gain_m2, best_rad = 0.0, None
         for turn in (*range(-5, 0), *range(1, 7)):
@@ -90,7 +81,7 @@ class Glancer:
         return best_rad
 
     def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> NDArray[np.float64]:
-        """Per bearing of the map, ground never in view that nothing known hides from the robot."""
+        """Returns, per bearing, the area of ground never in view that nothing known hides from the robot."""
         x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
         y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
         rows, cols = navmap.frame.cells(x_m, y_m)

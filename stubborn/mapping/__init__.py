@@ -1,1 +1,1 @@
-"""From observations to map layers: obstacles, collision marks, object scores."""
+"""Map layers from observations: obstacles, collision marks, object scores."""

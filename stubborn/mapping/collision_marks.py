@@ -1,8 +1,8 @@
-"""What the robot learns by bumping: marks where a move failed, free ground where the body has been.
+"""Marks on the map where a move failed, and the ground that the body has driven over.
 
-Paper: Mapping Module, the multi-scale collision map. A depth image misses thin legs, glass and whatever is nearer than
-the camera's range; a failed move says that something is there, but not where exactly or how large it is. So two marks
-are kept, one that is probably too large (pessimistic) and one that is probably too small (optimistic).
+Paper: Mapping Module, the multi-scale collision map. A depth image misses thin legs, glass and surfaces nearer than the
+camera's range. A failed move says that an obstacle is there, but not its exact place or size. So two marks are kept,
+one that is probably too large (pessimistic) and one that is probably too small (optimistic).
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, Action, ConfigError
-from stubborn.navmap import NavMap
+from stubborn.navmap import CollisionLayer, NavMap
 
 
 @dataclass(frozen=True, kw_only=True)
 class CollisionConfig:
-    """Size and place of the marks."""
+    """Size and place of the marks, and the rule for a failed move."""
 
     wide_m: float = 0.25
     """Edge of the pessimistic square."""
@@ -31,11 +31,11 @@ class CollisionConfig:
     near_edge_m: float = 0.15
     """From the robot's centre to the near edge of both squares."""
     failed_below_m: float = 0.20
-    """A MOVE_FORWARD that moved less than this is a collision: a real body slides, so "unmoved" would miss most."""
+    """A MOVE_FORWARD that moved less than this is a collision. A real body slides, so that 0 would miss most."""
     jitter_sigmas: float = 2.5
-    """With a jittery gps a forward must fall short of a whole one by so many standard deviations too."""
+    """With a noisy gps, a failed forward must also fall short of a whole one by so many standard deviations."""
     least_failed_m: float = 0.10
-    """However jittery the gps, a forward that seems to have moved less than this is a collision."""
+    """A forward that seems to have moved less than this is a collision, however noisy the gps."""
     trail_radius_m: float = 0.07
     """Half the width of the trail that the robot's centre leaves: a cell and its neighbours."""
 
@@ -45,15 +45,15 @@ class CollisionConfig:
 
 
 def is_collision(action: Action | None, moved_m: float, failed_below_m: float) -> bool:
-    """Whether the last action was a forward that did not get through."""
+    """Returns whether the last action was a forward that was blocked."""
     return action is Action.MOVE_FORWARD and moved_m < failed_below_m
 
 
-class Jitter:
-    """How much the pose jumps while the robot stands: what a turn on the spot seems to have moved is noise of the gps.
+class GpsNoise:
+    """Estimates the noise of the gps from turns on the spot, during which the robot does not move.
 
-    Between two readings with normal noise the distance has a Rayleigh distribution, whose median is 1.177 standard
-    deviations; the median does not mind the turn that did push the robot aside.
+    The distance between two readings with normal noise has a Rayleigh distribution, whose median is 1.177 standard
+    deviations. The median is robust against single turns that did push the robot aside.
     """
 
     _FEWEST = 3
@@ -63,18 +63,18 @@ class Jitter:
         self._moved_m: list[float] = []
 
     def observe(self, action: Action | None, moved_m: float) -> None:
-        """Take in how far the last action seems to have moved the robot."""
+        """Notes the distance that the last action seems to have moved the robot."""
         if action in (Action.TURN_LEFT, Action.TURN_RIGHT):
             self._moved_m.append(moved_m)
 
     def std_m(self) -> float:
-        """Standard deviation of a measured move along any direction; 0 until some turns were made."""
+        """Returns the standard deviation of a measured move in any direction; 0 until some turns were made."""
         if len(self._moved_m) < self._FEWEST:
             return 0.0
         return statistics.median(self._moved_m) / self._MEDIAN_SIGMAS
 
     def failed_below_m(self, config: CollisionConfig) -> float:
-        """Below which distance a forward has failed: as configured, less where that would be within the jitter."""
+        """Returns the distance below which a forward has failed: as configured, less where the noise is larger."""
         return max(
             min(config.failed_below_m, FORWARD_M - config.jitter_sigmas * self.std_m()),
             min(config.least_failed_m, config.failed_below_m),
@@ -84,10 +84,10 @@ class Jitter:
 def square_ahead(
     frame: GridFrame, pose: Pose, edge_m: float, near_edge_m: float
 ) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
-    """Cells whose centre lies in the square ahead of the robot, rotated with its heading.
+    """Returns the cells whose centre lies in a square ahead of the robot, which is rotated with its heading.
 
-    Every cell is tested on its own, so no heading leaves a hole. Returns the index of a small rectangle of `frame`
-    and the mask inside it.
+    The result is the index of a small rectangle of `frame` and the mask inside it. Every cell is tested on its own, so
+    that no heading leaves a hole.
     """
     middle_xy_m = pose.ahead(near_edge_m + 0.5 * edge_m)
     patch = frame.patch(middle_xy_m[0], middle_xy_m[1], edge_m)
@@ -99,15 +99,16 @@ def square_ahead(
     return patch.index, inside
 
 
-def mark_collision(navmap: NavMap, pose: Pose, config: CollisionConfig) -> None:
-    """Enter both marks in front of where the failed move ended."""
-    for layer, edge_m in ((navmap.bumped_wide, config.wide_m), (navmap.bumped_narrow, config.narrow_m)):
-        index, inside = square_ahead(navmap.frame, pose, edge_m, config.near_edge_m)
-        layer[index] |= inside
+def mark_collision(navmap: NavMap, pose: Pose, layers: tuple[CollisionLayer, ...], config: CollisionConfig) -> None:
+    """Enters a mark into each of some layers, in front of the pose at which the failed move ended."""
+    edges_m = {CollisionLayer.PESSIMISTIC: config.wide_m, CollisionLayer.OPTIMISTIC: config.narrow_m}
+    for layer in layers:
+        index, inside = square_ahead(navmap.frame, pose, edges_m[layer], config.near_edge_m)
+        navmap.collision_marks(layer)[index] |= inside
 
 
 def mark_visited(navmap: NavMap, before: Pose, now: Pose, robot_radius_m: float, config: CollisionConfig) -> None:
-    """Enter what the body swept over from one pose to the next."""
+    """Enters the ground that the body swept from one pose to the next."""
     start, end = (before.x_m, before.y_m), (now.x_m, now.y_m)
     for layer, radius_m in ((navmap.visited, robot_radius_m), (navmap.trail, config.trail_radius_m)):
         index, inside = cells_near_segment(navmap.frame, start, end, radius_m)

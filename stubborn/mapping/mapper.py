@@ -1,4 +1,4 @@
-"""From images to map layers: depth points into obstacles, class scores into object layers (paper: Mapping Module).
+"""Map layers from images: depth points become obstacles, scores become object layers (paper: Mapping Module).
 
 A pixel (u, v) with depth d lies d ahead of the camera, d (c_u - u) / f to its left and d (c_v - v) / f above it. The
 camera is level, so a column of the image is a vertical plane and the ground position of a pixel needs its depth and
@@ -24,28 +24,28 @@ from stubborn.navmap import NavMap
 
 @dataclass(frozen=True, kw_only=True)
 class MappingConfig:
-    """Which depth points count as what."""
+    """Which depth points and scores enter which layer."""
 
     obstacle_min_height_m: float = 0.10
-    """Lower surfaces are floor: rugs, thresholds, slabs the robot drives under or over."""
+    """Lower surfaces are floor: rugs, thresholds, slabs that the robot drives over."""
     obstacle_max_height_m: float | None = None
     """Higher surfaces are overhead; None takes the robot's height (0.88 m)."""
     score_max_height_m: float = 2.2
-    """Object layers take points up to here: pictures, towels and wall screens hang high."""
+    """Object layers take points up to this height: pictures, towels and wall screens hang high."""
     eye_level_halfwidth_m: float = 0.06
-    """Surfaces this near the camera's height can hide what is behind them."""
+    """Surfaces this near the camera's height can hide an object behind them."""
     obstacle_stride_px: int = 2
-    """Every so many pixels of depth, each way, go into the obstacle layer."""
+    """Every so many pixels of depth, in rows and columns, enter the obstacle layer."""
     score_stride_px: int = 4
-    """Every so many pixels, each way, go into the object layers."""
+    """Every so many pixels, in rows and columns, enter the object layers."""
     rim_px: int = 3
-    """How far the edges of depth may lie from those of the scores, in pixels of the image, when depth is noisy."""
+    """Width of the target's rim that does not count with inexact images, in pixels: depth and scores differ there."""
     candidate_score: float = 0.5
     """A cell with a higher target score is a candidate."""
     candidate_gap_m: float = 0.15
-    """A candidate goes where a frame sees through it, and sees the target only farther than this behind it."""
+    """A candidate is removed when a frame sees through it and shows the target only farther than this behind it."""
     occupancy: OccupancyConfig = field(default_factory=OccupancyConfig)
-    """When points of a noisy depth image count."""
+    """Evidence from a noisy depth image."""
 
     def __post_init__(self) -> None:
         if min(self.obstacle_stride_px, self.score_stride_px) < 1:
@@ -56,7 +56,7 @@ class MappingConfig:
 
 @dataclass(frozen=True)
 class GroundPoints:
-    """Depth pixels of one frame seen from above; a pixel without a distance is left out."""
+    """Depth pixels of one frame seen from above; pixels without a distance are left out."""
 
     valid: NDArray[np.bool_]
     """(h, w) True where depth is a distance; the other fields hold these pixels only, in row-major order."""
@@ -69,10 +69,10 @@ class GroundPoints:
 
 
 class Rays:
-    """The fixed part of the projection: where every `stride_px`-th pixel looks, from pixel `first_px` on, each way."""
+    """The directions of every `stride_px`-th pixel, from pixel `first_px` on, in rows and columns."""
 
     def __init__(self, camera: CameraModel, first_px: int, stride_px: int, top_m: float = math.inf) -> None:
-        """Rows of the image that cannot see anything below `top_m` are left out."""
+        """Rows of the image that cannot show points below `top_m` are left out."""
         self.camera = camera
         u_px = np.arange(first_px, camera.width_px, stride_px)
         v_px = np.arange(first_px, camera.height_px, stride_px)
@@ -84,15 +84,15 @@ class Rays:
         self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
 
     def sample(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The pixels of a full-size depth image, (height_px, width_px) metres, that are looked at; a new array."""
+        """Returns those pixels of a full-size depth image, (height_px, width_px) metres, as a new array."""
         return np.ascontiguousarray(depth[self.pick])
 
     def project(
         self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: Pose, window: Window
     ) -> GroundPoints:
-        """Cells of `window` and heights of the confirmed points of a sampled depth image.
+        """Returns cells of `window` and heights of the confirmed points of a sampled depth image.
 
-        The window must hold everything within sight: see `sight_window_cells`.
+        The window must contain everything in range: see `sight_window_cells`.
         """
         valid = confirmed & (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
         cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
@@ -118,7 +118,7 @@ class Sighting:
     """From the robot's centre, in plan."""
 
     def nearest_m(self, navmap: NavMap) -> float:
-        """Distance of the nearest target point in view that was not rejected; infinite when there is none."""
+        """Returns the distance of the nearest target point that was not rejected; infinite when there is none."""
         counts = ~navmap.rejected[self.rows, self.cols]
         return float(self.distance_m[counts].min()) if counts.any() else math.inf
 
@@ -128,12 +128,12 @@ NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(
 
 
 class Mapper:
-    """Writes frames into a `NavMap`. Holds precomputed rays, no memory of the episode."""
+    """Writes frames into a `NavMap`. It holds precomputed rays and no memory of the episode."""
 
     def __init__(
         self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
     ) -> None:
-        """`layers` is how scores are kept; by default over all frames, as in the paper."""
+        """`layers` keeps the scores; by default those of all frames, as in the paper."""
         self.layers = layers or AllFrames(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
         if config.obstacle_min_height_m >= top_m:
@@ -152,10 +152,10 @@ class Mapper:
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
 
     def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: Pose) -> bool:
-        """Enter one depth image, (height_px, width_px) metres, into the obstacle layers.
+        """Enters one depth image, (height_px, width_px) metres, into the obstacle layers.
 
         Returns:
-            Whether the image is exact, that is, shows no noise.
+            True when the image is exact, that is, shows no noise.
         """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
@@ -169,7 +169,7 @@ class Mapper:
             surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
         )
         in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
-        self._occupancy.add(view, in_band, at_eye_level, sight, exact=surfaces.exact)
+        self._occupancy.add(view, in_band, at_eye_level, sight, self._occupancy.evidence_of_one(surfaces))
         return surfaces.exact
 
     def add_scores(
@@ -180,19 +180,19 @@ class Mapper:
         pose: Pose,
         step: int,
         *,
-        exact: bool = True,
+        rim_px: int = 0,
     ) -> Sighting:
-        """Enter one frame of class scores into the object layers; returns the target points it shows.
+        """Enters one frame of scores into the object layers, and returns the target points in it.
 
-        The rim of the target does not count unless depth is `exact` (see `add_depth`) and so are the scores' outlines.
+        A rim of `rim_px` pixels of the image at the target's outline does not count: with inexact depth or scores it
+        may show what is beside the target.
         """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores)
         target = scores.target[score_pick]
         d, confirmed = self._confirm(target, rays.sample(depth))
-        if not exact:
-            confirmed &= self._inner(scores.target)[score_pick] | (target <= self.config.candidate_score)
+        confirmed &= self._inner(scores.target, rim_px)[score_pick] | (target <= self.config.candidate_score)
         points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
         if points.rows.size == 0:
             return NOTHING_SIGHTED
@@ -219,9 +219,9 @@ class Mapper:
     def _confirm(
         self, target: NDArray[np.float32], d: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """Depth smoothed over the target, and False where a target pixel lies elsewhere than most of those around it.
+        """Returns depth smoothed over the target, and False at target pixels off the surface of most neighbours.
 
-        At the rim of an object a noisy depth image shows what is behind or before it.
+        At the rim of an object a noisy depth image shows what is behind or in front of it.
         """
         confirmed = np.ones(d.shape, np.bool_)
         found = target > self.config.candidate_score
@@ -234,21 +234,21 @@ class Mapper:
         d[box] = np.where(found[box], smooth, d[box])
         return d, confirmed
 
-    def _inner(self, target: NDArray[np.float32]) -> NDArray[np.bool_]:
-        """Target pixels with nothing but target around them, as far as a noisy camera shifts the edges of things.
+    def _inner(self, target: NDArray[np.float32], rim_px: int) -> NDArray[np.bool_]:
+        """Returns the target pixels that are farther than `rim_px` pixels of the image from the target's outline.
 
-        Beyond the rim of something near, a noisy depth image has a seam where the target behind it looks as near. A
-        detector's outline that runs over what stands in front of the target has the same effect: a stop too early.
+        At the rim of a near object, a noisy depth image gives its distance to the target behind it. A detected outline
+        that includes a part of an object in front of the target has the same effect: the agent stops too early.
         """
         found = (target > self.config.candidate_score).view(np.uint8)
-        rim = -(-self.config.rim_px * target.shape[1] // self.camera.width_px)
+        rim = -(-rim_px * target.shape[1] // self.camera.width_px)
         kernel = np.ones((2 * rim + 1, 2 * rim + 1), np.uint8)
         return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
 
     def _drop_candidates(
         self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: Pose
     ) -> None:
-        """Forget candidates in free air with the target behind: from afar a noisy image shows it too near."""
+        """Removes candidates in free air in front of the target: from afar a noisy image shows it too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
         target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
         sight = SightLines.of_frame(
@@ -267,7 +267,7 @@ class Mapper:
         return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
 
     def _rays_for(self, scores: Scores) -> tuple[Rays, tuple[slice, slice]]:
-        """Rays for the score pixels that are used, and the slices that pick those out of the score images."""
+        """Returns the rays of the score pixels that are used, and the slices that pick these from the score images."""
         height, width = scores.target.shape
         block_px = self.camera.width_px // max(width, 1)
         if (height * block_px, width * block_px) != (self.camera.height_px, self.camera.width_px):
@@ -284,13 +284,13 @@ class Mapper:
 
 
 def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
-    """Cells of a square around the camera that holds every point nearer than the camera's range."""
+    """Returns the edge, in cells, of a square around the camera that contains every point within its range."""
     farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
     return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
 
 
 def _cells(points: GroundPoints, which: NDArray[np.bool_], window: Window) -> NDArray[np.int32]:
-    """Row-major cells of some of the points."""
+    """Returns the row-major cells of some of the points."""
     return points.rows[which] * np.int32(window.frame.shape[1]) + points.cols[which]
 
 

@@ -1,7 +1,7 @@
 """How the scores of one frame enter the object layers of the map (paper: Mapping Module, channels 4 to 7).
 
-A cell stands for the pixel in it that looks most like the target: a picture shares its cell with the wall above and
-below it, and what these look like says nothing about the picture.
+Of the pixels in a cell, the one with the highest target score counts: a picture shares its cell with the wall above and
+below it, whose scores say nothing about the picture.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ class ObjectLayers(Protocol):
     """Writes one frame of scores into the object layers."""
 
     def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
-        """Enter a frame seen at `step` into a view of the map that holds everything within sight."""
+        """Enters a frame seen at `step` into a view of the map that contains everything in range."""
         ...
 
 
 class FrameScores:
-    """One frame's pixels reduced to one score a cell, on the grid of a view."""
+    """The pixels of one frame reduced to one score per cell, on the grid of a view."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class FrameScores:
     ) -> None:
         """`flat` (n,) is the row-major cell of each pixel; `target` and `other` (n,) are its scores in [0, 1]."""
         self.in_view = np.zeros(shape, np.bool_)
-        """(rows, cols) True where a pixel fell."""
+        """(rows, cols) True where a pixel lies."""
         self.in_view.reshape(-1)[flat] = True
         self.target: NDArray[np.float32] | None = None
         """(rows, cols) Highest score of the target; 0 out of view. None: 0 everywhere."""
@@ -50,7 +50,7 @@ class FrameScores:
 
 
 class AllFrames:
-    """The paper's layers: frames counted, the target's scores summed, the highest of either kept."""
+    """The paper's layers: the number of frames, the sum of the target's scores, the highest target and other score."""
 
     def __init__(self, candidate_score: float) -> None:
         """A cell becomes a candidate at a score higher than `candidate_score`."""
@@ -68,9 +68,9 @@ class AllFrames:
 
 
 class LatestFrame:
-    """One frame's score in place of the layers: what a cell looked like when it was last in view.
+    """The score of one frame in place of the layers: that of the frame in which a cell was last in view.
 
-    The single-frame detector of the paper's comparison. `frames_in_view` still counts: it also says what is known.
+    The single-frame detector of the paper's comparison. `frames_in_view` still counts frames: exploration reads it.
     """
 
     def __init__(self, candidate_score: float) -> None:
@@ -87,5 +87,5 @@ class LatestFrame:
 
 
 def _note_found(view: NavMap, target: NDArray[np.float32], candidate_score: float, step: int) -> None:
-    """Write down when a cell became a candidate."""
+    """Notes the step for cells that become candidates."""
     view.found_step[(target > candidate_score) & (view.score_max <= candidate_score)] = step

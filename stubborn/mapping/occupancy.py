@@ -1,9 +1,9 @@
-"""What single depth pixels are worth: those that nothing beside them confirms, and those that later looks contradict.
+"""Obstacle evidence from depth pixels: their neighbours confirm them, and later frames may contradict them.
 
-A depth camera invents points: flying pixels between the two sides of an edge, floor that seems to rise far away, walls
-that shift with a noisy pose. Three questions keep them off the map. Does a pixel lie on a surface, that is, at the
-depth of some of its neighbours? Does a cell hold more than one such point? And do later frames see through it? Exact
-depth passes all three, so there the map is nearly as if nothing had been asked.
+A depth camera shows points that are not there: flying pixels between the two sides of an edge, floor that seems to rise
+far away, walls that shift with a noisy pose. Three tests keep them off the map: a pixel must lie on a surface, that is,
+at the depth of some of its neighbours; a cell must hold more than one such point; and later frames must not see through
+it. Exact depth passes all three, so that they change little there.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from stubborn.navmap import NavMap
 
 @dataclass(frozen=True, kw_only=True)
 class OccupancyConfig:
-    """How much evidence makes an obstacle, and what takes it away."""
+    """The evidence that makes an obstacle, and the evidence that removes it."""
 
     jump_1_m: float = 0.03
     """Two pixels lie on one surface when their 1 / depth differs by less: 3 cm at 1 m, 27 cm at 3 m."""
     neighbours: int = 2
-    """Of its eight neighbours so many must lie on a pixel's surface: a thin leg is one pixel wide; 0: none need."""
+    """Of a pixel's eight neighbours so many must lie on its surface: a thin leg is one pixel wide; 0: no test."""
     exact_1_m: float = 0.0005
-    """An image whose 1 / depth differs from its smoothed self by less, at the median, is exact and stays as it is."""
+    """An image whose 1 / depth differs from the smoothed image by less, at the median, is exact and not smoothed."""
     hit: int = 2
-    """Evidence that a frame adds to a cell where it shows at least two points; a single noisy point adds half."""
+    """Evidence that a frame adds to a cell with at least two points; a single noisy point adds half."""
     miss: int = 1
-    """Evidence that a frame takes away where it sees through a cell at all heights of the obstacle band; 0: none."""
+    """Evidence that a frame removes where it sees through a cell at all heights of the obstacle band; 0: none."""
     obstacle_from: int = 2
-    """A cell is an obstacle from so much evidence on."""
+    """A cell with at least so much evidence is an obstacle."""
     most: int = 10
-    """Evidence does not grow beyond this: what was moved away is forgotten after so many looks."""
+    """Evidence does not grow beyond this, so that an object that was moved disappears after so many frames."""
     margin_m: float = 0.05
-    """A frame sees through a cell where it sees so far past the cell's centre."""
+    """A frame sees through a cell when it sees farther than this past the cell's centre."""
 
     def __post_init__(self) -> None:
         if not 0 < self.obstacle_from <= self.most <= 100:
@@ -53,18 +53,18 @@ class OccupancyConfig:
 
 @dataclass(frozen=True)
 class Surfaces:
-    """A depth image smoothed along surfaces but never across their edges."""
+    """A depth image smoothed along surfaces, but not across their edges."""
 
     depth: NDArray[np.float32]
     """(h, w) metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
     neighbours: NDArray[np.uint8]
-    """(h, w) how many of the neighbours that are."""
+    """(h, w) the number of these neighbours."""
     exact: bool
-    """True: there is no noise to be seen, so every pixel is believed."""
+    """True: the image shows no noise, so that every pixel counts."""
 
     @classmethod
     def of(cls, depth: NDArray[np.float32], config: OccupancyConfig) -> Surfaces:
-        """Of an image (h, w) of metres, where 0 is no distance."""
+        """Returns the surfaces of an image (h, w) of metres, where 0 is no distance."""
         scaled = depth * np.float32(config.jump_1_m)
         total, count = depth.copy(), np.zeros(depth.shape, np.uint8)
         for ahead, behind in _NEIGHBOUR_PAIRS:
@@ -88,14 +88,14 @@ class Surfaces:
         return cls(depth if exact else total + depth, count, exact)
 
     def confirmed(self, least: int) -> NDArray[np.bool_]:
-        """(h, w) Which pixels have at least so many neighbours on their surface; in an exact image all of them."""
+        """Returns (h, w) True where a pixel has so many neighbours on its surface; everywhere in an exact image."""
         return self.neighbours >= (0 if self.exact else least)
 
 
 def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
-    """Which pixels of an image lie on one surface with most of their neighbours that have a distance, and how far.
+    """Returns which pixels lie on one surface with most of their neighbours, and the smoothed depth.
 
-    `depth` is (h, w) metres, 0 where there is no distance; both results are (h, w).
+    `depth` is (h, w) metres, 0 where there is no distance; such neighbours do not count. Both results are (h, w).
     """
     known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     surfaces = Surfaces.of(depth, config)
@@ -115,16 +115,16 @@ _NEIGHBOUR_PAIRS = (
 
 @dataclass(frozen=True)
 class SightLines:
-    """How far one frame sees through the obstacle band, by image column and lowest row looked at."""
+    """The range of sight of one frame through the obstacle band, by image column and lowest row."""
 
     nearest_m: NDArray[np.float32]
     """(rows, columns) depth of the nearest surface between the band's top row and this one; 0 where one is unknown."""
     up: NDArray[np.float32]
-    """(rows,) rise per metre of depth, falling at even steps."""
+    """(rows,) rise per metre of depth, decreasing in even steps."""
     left: NDArray[np.float32]
-    """(columns,) metres to the left per metre of depth, falling at even steps."""
+    """(columns,) metres to the left per metre of depth, decreasing in even steps."""
     pose: Pose
-    """Of the camera."""
+    """Pose of the camera."""
 
     @classmethod
     def of_frame(
@@ -135,15 +135,15 @@ class SightLines:
         pose: Pose,
         rise_m: float,
     ) -> SightLines:
-        """Of an image whose pixels look `up` and `left`; the band ends `rise_m` above the camera.
+        """Returns the lines of sight of an image whose pixels look `up` and `left`.
 
-        Where the band ends above the camera, rows count that reach its top a metre away.
+        The band ends `rise_m` above the camera. Where this is positive, the rows count that reach its top a metre away.
         """
         first = int(np.count_nonzero(up > max(rise_m, 0.0)))
         return cls(np.minimum.accumulate(depth[first:], axis=0), up[first:], left, pose)
 
     def towards(self, target_m: NDArray[np.float32]) -> SightLines:
-        """The same, no farther than the nearest target point of each column, (columns,) metres; inf: no sight."""
+        """Returns the same, cut off at the nearest target point of each column, (columns,) metres; inf: no target."""
         nearest_m = np.where(np.isfinite(target_m), np.minimum(self.nearest_m, target_m), np.float32(0.0))
         return replace(self, nearest_m=nearest_m)
 
@@ -156,9 +156,9 @@ class SightLines:
         range_m: tuple[float, float],
         margin_m: float,
     ) -> NDArray[np.bool_]:
-        """For each cell whether the frame saw through it, from the camera's height to `drop_m` below the camera.
+        """Returns, for each cell, whether the frame saw through it, from the camera's height to `drop_m` below it.
 
-        Looks through the middle and both sides of a cell; cells outside the image or the range are not seen through.
+        The middle and both sides of a cell are tested. Cells outside the image or the range are not seen through.
         """
         x_m, y_m = frame.centres(rows, cols)
         cos, sin = math.cos(self.pose.yaw_rad), math.sin(self.pose.yaw_rad)
@@ -180,7 +180,7 @@ class SightLines:
 
 
 class Occupancy:
-    """Weighs the points of each frame against what later frames see through. Keeps no memory: that is on the map."""
+    """Adds and removes obstacle evidence. It keeps no memory of its own; the evidence is on the map."""
 
     def __init__(self, camera: CameraModel, config: OccupancyConfig, min_height_m: float) -> None:
         """The obstacle band starts at `min_height_m`."""
@@ -189,15 +189,15 @@ class Occupancy:
         self._drop_m = camera.height_m - min_height_m
 
     def add(
-        self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines, *, exact: bool
+        self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines, single: int
     ) -> None:
-        """Enter a frame into the obstacle layers of a view that holds everything within sight.
+        """Enters a frame into the obstacle layers of a view that contains everything in range.
 
         `solid` (n,) and `tall` (n,) are the row-major cells of the points in the obstacle band and at eye level;
-        `exact` says that one point is enough.
+        `single` is the evidence from a cell's only point, see `evidence_of_one`.
         """
-        hits = self._hits(view.frame.shape, solid, exact)
-        view.seen_at_eye_level |= self._hits(view.frame.shape, tall, exact) > 0
+        hits = self._hits(view.frame.shape, solid, single)
+        view.seen_at_eye_level |= self._hits(view.frame.shape, tall, single) > 0
         rows, cols = np.divmod(np.flatnonzero((hits | view.obstacle_evidence) != 0), view.frame.shape[1])
         evidence, hit = view.obstacle_evidence[rows, cols], hits[rows, cols]
         if self.config.miss:
@@ -212,15 +212,19 @@ class Occupancy:
     def passes(
         self, frame: GridFrame, rows: NDArray[np.integer], cols: NDArray[np.integer], sight: SightLines, margin_m: float
     ) -> NDArray[np.bool_]:
-        """For each cell whether a frame saw through it, and so far past it, at all heights of the obstacle band."""
+        """Returns, for each cell, whether a frame saw `margin_m` past its centre at all heights of the band."""
         range_m = (self.camera.min_depth_m, self.camera.max_depth_m)
         return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
 
-    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer], exact: bool) -> NDArray[np.int8]:
-        """(rows, cols) evidence from one frame's points."""
+    def evidence_of_one(self, surfaces: Surfaces) -> int:
+        """Returns the evidence from a single point in a cell: all in an exact image, half in a noisy one."""
+        return self.config.hit if surfaces.exact else self.config.hit // 2
+
+    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer], single: int) -> NDArray[np.int8]:
+        """Returns the evidence (rows, cols) from one frame's points."""
         evidence = np.zeros(shape, np.int8)
-        evidence.reshape(-1)[cells] = self.config.hit if exact else self.config.hit // 2
-        if exact:
+        evidence.reshape(-1)[cells] = single
+        if single == self.config.hit:
             return evidence
         counts = np.bincount(cells, minlength=evidence.size)
         evidence.reshape(-1)[counts > 1] = self.config.hit

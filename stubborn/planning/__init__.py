@@ -1,1 +1,1 @@
-"""Routes over the map: fast marching, the next action, the untrap mode."""
+"""Routes over the map, the next action, and the measures against collisions."""

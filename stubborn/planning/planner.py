@@ -1,116 +1,130 @@
-"""Ways over the map by fast marching, and the next action along one (paper: Path Planning Module)."""
+"""Free space and routes over the map by fast marching (paper: Path Planning Module)."""
 
 from __future__ import annotations
 
-import enum
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, TURN_RAD, Action, ConfigError, wrap_angle
-from stubborn.navmap import NavMap
-from stubborn.planning.fast_marching import march
+from sim.interface import FORWARD_M, ConfigError
+from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.planning.avoidance import ProvenGround
 from stubborn.raster import connected, distance_to
-
-
-class Bumps(enum.Enum):
-    """Which collision marks count as obstacles."""
-
-    NONE = enum.auto()
-    OPTIMISTIC = enum.auto()
-    PESSIMISTIC = enum.auto()
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlanningConfig:
-    """Safety distances and the choice of the next step."""
+    """Safety distances, traversability costs and the choice of the next step."""
 
     dilation_m: float = 0.15
     """Obstacles grow by this much; the robot's centre stays out."""
-    wary_m: float = 0.30
-    """Nearer to an obstacle than this the march slows down, so that ways keep clear where there is room."""
-    wary_speed: float = 0.35
-    """Speed of the march at an obstacle's edge, growing to 1 at `wary_m`; 1 switches the slowing off."""
-    unknown_speed: float = 0.4
-    """Speed of the march over ground that was never in view, where the caller asks for wariness of it: a way through
-    what is known is worth a detour, since the other may end at a wall."""
+    clearance_m: float = 0.30
+    """Nearer to an obstacle than this the speed of the front falls, so that routes keep clear where there is room."""
+    edge_speed: float = 0.35
+    """Speed of the front at the edge of a dilated obstacle, rising to 1 at `clearance_m`; 1: no such cost."""
+    unseen_speed: float = 0.4
+    """Speed of the front over ground that was never in view, for routes on which unseen ground costs more: they may
+    end at a wall, so that a detour over known ground pays."""
     unseen_gap_m: float = 0.20
-    """Ground this far from anything that was in view counts as never in view."""
+    """Ground this far from all ground that was in view counts as unseen."""
     own_ground_m: float = 0.12
-    """Around its centre the robot's own ground is free, whatever the map says: it stands there."""
+    """Around the robot's centre the ground is free, whatever the map says."""
     ring_m: float = FORWARD_M
     """Distance of the short-term goal: 5 cells, one forward."""
     turn_cost_m: float = 0.02
-    """What a turn of 30 degrees weighs against a shorter way; keeps the choice from swinging to and fro."""
-    comfort_m: float = 0.24
-    """A straight forward that comes nearer to an obstacle than this is taken only where others are worse."""
-    comfort_cost: float = 1.5
-    """What each metre short of `comfort_m` weighs, in metres of way."""
+    """Cost of a turn of 30 degrees, in metres of path; keeps the choice from alternating."""
+    preferred_clearance_m: float = 0.24
+    """A forward that comes nearer to an obstacle than this is taken only where the others are worse."""
+    clearance_cost: float = 1.5
+    """Cost of each metre short of `preferred_clearance_m`, in metres of path."""
     aligned_rad: float = math.radians(15.0)
-    """Turn when the short-term goal is farther off the heading than this, else go forward."""
+    """The robot turns when the short-term goal is farther off the heading than this, else it goes forward."""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.wary_speed <= 1.0:
-            raise ConfigError(f"PlanningConfig.wary_speed must lie in (0, 1], got {self.wary_speed}.")
+        if not 0.0 < self.edge_speed <= 1.0:
+            raise ConfigError(f"PlanningConfig.edge_speed must lie in (0, 1], got {self.edge_speed}.")
 
 
 @dataclass(frozen=True)
 class FreeSpace:
-    """Where the robot's centre may go, on one window of the map."""
+    """The cells of one window of the map that the robot's centre may enter."""
 
     frame: GridFrame
     traversable: NDArray[np.bool_]
-    """True: free of dilated obstacles, or proven free by the robot's own trail."""
+    """True: outside dilated obstacles, or proven free by the robot's own trail."""
     clearance_m: NDArray[np.float32]
-    """Distance from each cell's centre to the nearest obstacle cell's, before dilation."""
+    """Distance from each cell's centre to that of the nearest obstacle cell, before dilation."""
     reachable: NDArray[np.bool_]
     """True: traversable and connected to the robot's cell (4-neighbourhood)."""
     speed: NDArray[np.float32]
-    """Of the march: 1 in the open, less along obstacles and, if asked for, on unknown ground."""
+    """Speed of the front: 1 in the open, less near obstacles and, where asked for, on unseen ground."""
 
 
 @dataclass(frozen=True)
-class Plan:
-    """Distances to a goal."""
+class Goal:
+    """Cells to reach; any of them will do."""
 
-    frame: GridFrame
-    goal: NDArray[np.bool_]
-    """The cells to reach."""
+    free: FreeSpace
+    """The free space to plan on."""
+    cells: NDArray[np.bool_]
+    """(rows, cols) of the free space; cells that are not reachable do not count."""
+    longest_m: float = math.inf
+    """A longer route does not count."""
+    marker_xy_m: tuple[float, float] | None = None
+    """A point to mark in pictures of the map, such as the corner that the cells belong to."""
+
+
+@dataclass(frozen=True)
+class Route:
+    """Distances to a goal, to be followed downhill."""
+
+    goal: Goal
+    """The goal; its cells are the reachable ones only."""
     distance_m: NDArray[np.float32]
-    """From each cell to the goal; infinite where there is no way, and where the march had no need to go."""
+    """From each cell to the goal; infinite where there is no path, and where the front did not need to go."""
     length_m: float
     """From the robot's cell."""
+
+    @property
+    def frame(self) -> GridFrame:
+        """The frame of the free space."""
+        return self.goal.free.frame
 
 
 class Planner:
     """Plans on a window of the map."""
 
-    def __init__(self, config: PlanningConfig, *, trust_visited: bool) -> None:
+    def __init__(self, config: PlanningConfig, proven_ground: ProvenGround) -> None:
+        """`proven_ground` says where the robot's own motion overrules marks and obstacles."""
         self.config = config
-        self.trust_visited = trust_visited
+        self.proven_ground = proven_ground
 
-    def obstacles(self, view: NavMap, bumps: Bumps) -> NDArray[np.bool_]:
-        """Depth obstacles, and the collision marks asked for where the body has not proved them wrong; a new array."""
-        if bumps is Bumps.NONE:
-            return view.seen_obstacle.copy()
-        marks = view.bumped_wide if bumps is Bumps.PESSIMISTIC else view.bumped_narrow
-        return view.seen_obstacle | (marks & ~view.visited if self.trust_visited else marks)
+    def obstacles(self, view: NavMap, layer: CollisionLayer) -> NDArray[np.bool_]:
+        """Returns a new mask of depth obstacles and of the marks of a layer that the body has not proved wrong."""
+        return view.seen_obstacle | (view.collision_marks(layer) & ~self.proven_ground(view).body)
 
     def unseen(self, view: NavMap) -> NDArray[np.bool_]:
-        """Ground that is some way off everything that was in view: far floor is seen with gaps."""
+        """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""
         seen = (view.frames_in_view > 0) | view.visited
         return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
 
-    def free_space(self, view: NavMap, pose: Pose, bumps: Bumps, unseen: NDArray[np.bool_] | None = None) -> FreeSpace:
-        """Dilate the obstacles of a window; what lies outside the window is not free.
+    def unknown(self, view: NavMap) -> NDArray[np.bool_]:
+        """Returns the ground never in view, up to the border of what was; gaps within that are closed."""
+        return distance_to(self.unseen(view)) <= self.config.unseen_gap_m / view.frame.cell_m
 
-        Ways avoid `unseen` ground where they can without too long a detour; by default unknown is as good as known.
+    def free_space(
+        self, view: NavMap, pose: Pose, layer: CollisionLayer, costly: NDArray[np.bool_] | None = None
+    ) -> FreeSpace:
+        """Returns the free space of a window with dilated obstacles; ground outside the window is not free.
+
+        Routes avoid `costly` ground (rows, cols) where the detour is not too long.
         """
-        obstacles = self.obstacles(view, bumps)
+        obstacles = self.obstacles(view, layer)
         own_index, own = cells_near_segment(
             view.frame, pose.xy_m, pose.xy_m, max(self.config.own_ground_m, view.frame.cell_m)
         )
@@ -118,150 +132,39 @@ class Planner:
         obstacles[own_index][own] = False
         clearance_m = distance_to(obstacles) * np.float32(view.frame.cell_m)
         traversable = clearance_m > self.config.dilation_m + 1e-4
-        if self.trust_visited:
-            traversable |= view.trail
+        traversable |= self.proven_ground(view).centre
         traversable[own_index] |= own
         row, col = view.frame.cell(pose.x_m, pose.y_m)
         reachable = connected(traversable, row, col, connectivity=4)
         speed = self._speed(clearance_m)
-        if unseen is not None:
-            speed[unseen] *= self.config.unknown_speed
+        if costly is not None:
+            speed[costly] *= self.config.unseen_speed
         return FreeSpace(view.frame, traversable, clearance_m, reachable, speed)
 
-    def plan(
-        self, free: FreeSpace, goal: NDArray[np.bool_], pose: Pose, *, farthest_m: float = math.inf
-    ) -> Plan | None:
-        """March from the goal over the ground that is connected to the robot.
+    def route(self, goal: Goal, pose: Pose) -> Route | None:
+        """Returns the route to the nearest goal cell by travel time.
 
-        None when no goal cell is connected, or the way is longer than `farthest_m`.
+        None when no goal cell is connected to the robot, or the route is longer than `goal.longest_m`.
         """
-        goal = goal & free.reachable
-        if not goal.any():
+        free = goal.free
+        goal = replace(goal, cells=goal.cells & free.reachable)
+        if not goal.cells.any():
             return None
         here = free.frame.cell(pose.x_m, pose.y_m)
-        distance_m = march(
-            goal,
+        distance_m = travel_times(
+            goal.cells,
             free.reachable,
             free.speed,
             free.frame.cell_m,
-            farthest_m,
+            goal.longest_m,
             until=here,
             beyond_m=2.0 * self.config.ring_m,
         )
         length_m = float(distance_m[here])
-        return Plan(free.frame, goal, distance_m, length_m) if math.isfinite(length_m) else None
-
-    def next_action(self, plan: Plan, free: FreeSpace, pose: Pose) -> Action:
-        """The action along the plan: turn towards the short-term goal when it is off the heading, else forward."""
-        turn_rad = self.short_term_turn(plan, free, pose)
-        if turn_rad > self.config.aligned_rad:
-            return Action.TURN_LEFT
-        return Action.TURN_RIGHT if turn_rad < -self.config.aligned_rad else Action.MOVE_FORWARD
-
-    def short_term_turn(self, plan: Plan, free: FreeSpace, pose: Pose) -> float:
-        """Angle from the heading to the short-term goal, radians, positive to the left.
-
-        Short-term goals lie on a ring one forward away, in the directions the robot can turn to. Of those whose
-        straight way keeps the safety distance, so never through a wall however thin, the best descent wins.
-        """
-        turns_rad = np.arange(-5, 7) * TURN_RAD
-        yaw_rad = pose.yaw_rad + turns_rad
-        distance_m = _interpolate(
-            plan.distance_m,
-            plan.frame,
-            pose.x_m + self.config.ring_m * np.cos(yaw_rad),
-            pose.y_m + self.config.ring_m * np.sin(yaw_rad),
-        )
-        clear, clearance_m = self._sweep(free, pose, yaw_rad)
-        distance_m[~clear] = np.inf
-        discomfort_m = np.maximum(self.config.comfort_m - clearance_m, 0.0)
-        turns = np.abs(turns_rad) / TURN_RAD
-        cost_m = distance_m + self.config.turn_cost_m * turns + self.config.comfort_cost * discomfort_m
-        best = int(np.argmin(cost_m))
-        if distance_m[best] < plan.length_m:
-            return float(turns_rad[best])
-        return wrap_angle(descent_direction(plan, pose, self.config.ring_m) - pose.yaw_rad)
-
-    def _sweep(
-        self, free: FreeSpace, pose: Pose, yaw_rad: NDArray[np.floating]
-    ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
-        """Whether a straight forward in each direction stays traversable, and its least clearance in metres.
-
-        A robot that already stands nearer than the safety distance may leave, but not come nearer still.
-        """
-        along_m = np.arange(1, 11)[:, None] * (self.config.ring_m / 10)
-        x_m, y_m = pose.x_m + along_m * np.cos(yaw_rad), pose.y_m + along_m * np.sin(yaw_rad)
-        rows, cols = free.frame.cells(x_m, y_m)  # (10, directions)
-        inside = free.frame.contains(rows, cols)
-        rows, cols = np.clip(rows, 0, free.frame.shape[0] - 1), np.clip(cols, 0, free.frame.shape[1] - 1)
-        here_m = free.clearance_m[free.frame.cell(pose.x_m, pose.y_m)]
-        clearance_m = free.clearance_m[rows, cols]
-        clear = free.traversable[rows, cols] | (clearance_m >= max(here_m, free.frame.cell_m))
-        return np.asarray((clear & inside).all(axis=0)), clearance_m.min(axis=0)
+        return Route(goal, distance_m, length_m) if math.isfinite(length_m) else None
 
     def _speed(self, clearance_m: NDArray[np.float32]) -> NDArray[np.float32]:
-        """1 in the open, less along obstacles."""
+        """Returns 1 in the open and less near obstacles."""
         c = self.config
-        share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.wary_m - c.dilation_m, 1e-6))
-        return np.clip(c.wary_speed + (1.0 - c.wary_speed) * share, c.wary_speed, 1.0)
-
-
-def trace(plan: Plan, pose: Pose, max_cells: int) -> list[tuple[int, int]]:
-    """Steepest descent from the robot's cell, at most so many cells on, as rows and columns.
-
-    Steps go to 8 neighbours, diagonally only past two passable cells.
-    """
-    cells = [plan.frame.cell(pose.x_m, pose.y_m)]
-    while len(cells) <= max_cells:
-        step = _lowest_neighbour(plan.distance_m, *cells[-1])
-        if step == cells[-1]:
-            break
-        cells.append(step)
-    return cells
-
-
-def descent_direction(plan: Plan, pose: Pose, length_m: float) -> float:
-    """World angle from the robot to where steepest descent, cell by cell, leads it within `length_m`.
-
-    For ways too narrow for a straight forward.
-    """
-    row, col = trace(plan, pose, max(1, round(length_m / plan.frame.cell_m)))[-1]
-    x_m, y_m = plan.frame.centres(row, col)
-    dx, dy = float(x_m) - pose.x_m, float(y_m) - pose.y_m
-    return math.atan2(dy, dx) if math.hypot(dx, dy) > 1e-3 else pose.yaw_rad
-
-
-def _lowest_neighbour(distance_m: NDArray[np.float32], row: int, col: int) -> tuple[int, int]:
-    rows, cols = distance_m.shape
-    best, lowest_m = (row, col), distance_m[row, col]
-    for dr in (-1, 0, 1):
-        for dc in (-1, 0, 1):
-            r, c = row + dr, col + dc
-            if not (0 <= r < rows and 0 <= c < cols):
-                continue
-            cuts_corner = dr and dc and not (np.isfinite(distance_m[r, col]) and np.isfinite(distance_m[row, c]))
-            if distance_m[r, c] < lowest_m and not cuts_corner:
-                best, lowest_m = (r, c), distance_m[r, c]
-    return best
-
-
-def _interpolate(
-    values: NDArray[np.float32], frame: GridFrame, x_m: NDArray[np.float64], y_m: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Bilinear values at points, over the finite ones of the four cells around; infinite where their cell's is."""
-    fc = (x_m - frame.origin_xy_m[0]) / frame.cell_m - 0.5
-    fr = (y_m - frame.origin_xy_m[1]) / frame.cell_m - 0.5
-    c0, r0 = np.floor(fc).astype(int), np.floor(fr).astype(int)
-    total, weight = np.zeros(len(x_m)), np.zeros(len(x_m))
-    for dr in (0, 1):
-        for dc in (0, 1):
-            r = np.clip(r0 + dr, 0, frame.shape[0] - 1)
-            c = np.clip(c0 + dc, 0, frame.shape[1] - 1)
-            share = np.abs(1 - dr - (fr - r0)) * np.abs(1 - dc - (fc - c0))
-            finite = np.isfinite(values[r, c])
-            total += np.where(finite, share * np.where(finite, values[r, c], 0.0), 0.0)
-            weight += np.where(finite, share, 0.0)
-    rows, cols = frame.cells(x_m, y_m)
-    known = frame.contains(rows, cols) & (weight > 1e-6)
-    known[known] = np.isfinite(values[rows[known], cols[known]])
-    return np.where(known, total / np.maximum(weight, 1e-9), np.inf)
+        share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.clearance_m - c.dilation_m, 1e-6))
+        return np.clip(c.edge_speed + (1.0 - c.edge_speed) * share, c.edge_speed, 1.0)

@@ -1,4 +1,4 @@
-"""Brute-force untrap mode (paper: Path Planning Module): turn and push until something gives."""
+"""Brute-force untrap mode (paper: Path Planning Module): turn and push until a forward moves the robot."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class UntrapConfig:
     """When the mode begins."""
 
     failed_forwards: int = 10
-    """Failed forwards in a row; turns between do not reset the count."""
+    """Failed forwards in a row; turns in between do not reset the count."""
 
     def __post_init__(self) -> None:
         if self.failed_forwards < 1:
@@ -20,41 +20,42 @@ class UntrapConfig:
 
 
 class Untrap:
-    """Counts failed forwards and, once trapped, dictates L F L F ... (or R F R F ...) until a forward moves.
+    """Counts failed forwards and, once the robot is trapped, alternates a turn and a forward until a forward moves.
 
-    The side alternates from one entry to the next, left first in every episode.
+    The side of the turns alternates from one entry to the next, left first in every episode.
     """
 
-    def __init__(self, config: UntrapConfig) -> None:
-        self.config = config
+    def __init__(self, failed_forwards: float) -> None:
+        """The mode begins after so many failed forwards in a row; infinite: never."""
+        self.failed_forwards = failed_forwards
         self.reset()
 
     def reset(self) -> None:
-        """Forget the last episode."""
+        """Forgets the last episode."""
         self._failed = 0
         self._active = False
-        self._side = Action.TURN_RIGHT  # the first entry turns the other way
+        self._side = Action.TURN_RIGHT  # the first entry turns to the other side
         self._turn_next = True
 
     @property
     def active(self) -> bool:
-        """Whether the mode dictates the actions now."""
+        """True while the mode chooses the actions."""
         return self._active
 
     def observe(self, action: Action | None, failed: bool) -> None:
-        """Take in how the last action went; `failed` is the collision rule of `stubborn.mapping.collision_marks`."""
+        """Notes the outcome of the last action; `failed` as in `stubborn.mapping.collision_marks.is_collision`."""
         if action is not Action.MOVE_FORWARD:
             return
         if not failed:
             self._failed, self._active = 0, False
             return
         self._failed += 1
-        if self._failed >= self.config.failed_forwards and not self._active:
+        if self._failed >= self.failed_forwards and not self._active:
             self._active, self._turn_next = True, True
             self._side = Action.TURN_LEFT if self._side is Action.TURN_RIGHT else Action.TURN_RIGHT
 
     def next_action(self) -> Action | None:
-        """The action that the mode demands, or None when the robot is not trapped."""
+        """Returns the action of the mode, or None while the robot is not trapped."""
         if not self._active:
             return None
         turn, self._turn_next = self._turn_next, not self._turn_next

@@ -1,4 +1,4 @@
-"""Maps of the agent drawn in letters. The top line has the largest y, as on paper; x grows to the right."""
+"""Maps of the agent drawn with letters. The top line has the largest y; x grows to the right."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from stubborn.navmap import NavMap
 LAYER_OF = {
     "#": ("seen_obstacle", "seen_at_eye_level"),
     "o": ("seen_obstacle",),
-    "w": ("bumped_wide",),
-    "n": ("bumped_narrow", "bumped_wide"),
+    "w": ("pessimistic_marks",),
+    "n": ("optimistic_marks", "pessimistic_marks"),
     "v": ("visited", "trail"),
     "T": ("score_max",),
 }
-"""# wall, o low obstacle, w pessimistic mark only, n both marks, v visited, T target; R is the robot, . free."""
+"""# wall, o low obstacle, w pessimistic mark only, n both marks, v visited, T target; R: the robot, .: free."""
 
 
 def grid_of(text: str) -> NDArray[np.str_]:
-    """Letters as (rows, cols), row 0 the bottom line."""
+    """Returns the letters as (rows, cols), row 0 the bottom line."""
     return np.array([list(line) for line in text.strip("\n").split("\n")][::-1])
 
 
 def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, Pose]:
-    """The map, and the robot in the middle of the cell marked R, looking along +x."""
+    """Returns the map, and the pose in the middle of the cell marked R, with the heading along +x."""
     letters = grid_of(text)
     navmap = NavMap.empty(GridFrame(origin_xy_m=(0.0, 0.0), shape=letters.shape, cell_m=cell_m))
     for letter, layers in LAYER_OF.items():
@@ -38,11 +38,11 @@ def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, Pose]:
 
 
 def mask_of(text: str, letter: str) -> NDArray[np.bool_]:
-    """True where the letter stands."""
+    """Returns True where the letter is."""
     return grid_of(text) == letter
 
 
 def enlarged(text: str, factor: int) -> str:
-    """Each letter as a block of letters."""
+    """Returns the text with each letter enlarged to a block of letters."""
     lines = text.strip("\n").split("\n")
     return "\n".join("".join(c * factor for c in line) for line in lines for _ in range(factor))

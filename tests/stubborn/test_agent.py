@@ -47,7 +47,7 @@ def run(
 
 
 @pytest.mark.parametrize("goal", ["bed", "picture", "cushion", "cabinet", "chair", "table"])
-def test_it_finds_each_kind_of_thing_and_stops_within_a_metre(goal: str):
+def test_it_finds_each_kind_of_object_and_stops_within_a_metre(goal: str):
     start = (10.0, 3.7, 1.9) if goal == "cabinet" else (1.2, 0.7, 1.9)
     trace, _ = run(APARTMENT, start, goal)
     assert trace.stopped
@@ -74,7 +74,7 @@ def test_it_does_not_stop_in_front_of_the_wall_that_the_target_stands_behind():
     assert x > 8 * 0.3 or y < 4 * 0.3  # past the wall, or in its doorway
 
 
-def test_glass_is_bumped_marked_and_walked_around():
+def test_glass_is_hit_marked_and_passed():
     plan = """
 ####################
 #                  #
@@ -91,7 +91,7 @@ def test_glass_is_bumped_marked_and_walked_around():
     assert trace.stopped
     assert trace.goal_distance_m < 1.0
     assert 1 <= trace.collisions <= 12
-    assert agent.navmap.bumped_wide.any()
+    assert agent.navmap.pessimistic_marks.any()
 
 
 def test_walled_in_it_keeps_pushing_instead_of_freezing():
@@ -110,23 +110,23 @@ def test_the_same_house_turned_by_the_start_heading_is_still_solved():
         assert trace.goal_distance_m < 1.0
 
 
-def test_the_picture_of_a_belief_shows_robot_target_and_legend_and_changes_nothing():
+def test_the_picture_of_a_map_shows_robot_target_and_legend_and_changes_nothing():
     _, agent = run(APARTMENT, (1.2, 0.7, 1.9), "chair")
     before = agent.navmap.seen_obstacle.copy()
-    picture = draw.draw_belief(agent, size_px=480)
+    picture = draw.draw_map(agent, size_px=480)
     assert picture.dtype == np.uint8
     assert picture.shape[0] == 480
     assert picture.shape[1] > 480
     for colour in (draw.SEEN_OBSTACLE, draw.CANDIDATE, draw.TRAIL):
         assert (picture[:, :480] == colour).all(axis=2).any()
-    assert draw.draw_belief(agent, whole=True).shape[0] == 720
+    assert draw.draw_map(agent, whole=True).shape[0] == 720
     np.testing.assert_array_equal(agent.navmap.seen_obstacle, before)
 
 
 def test_a_picture_can_be_drawn_before_the_first_step():
     agent = agents.make("stubborn", camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
-    assert draw.draw_belief(agent).ndim == 3
+    assert draw.draw_map(agent).ndim == 3
 
 
 class Smeared:

@@ -43,7 +43,7 @@ def look_in(navmap: NavMap, pose: Pose) -> None:
 
 def test_an_open_door_at_the_side_is_worth_a_look():
     navmap, glance, pose, turns = corridor(), glancer(), START, []
-    while (action := glance.next_action(navmap, pose)) is not None:
+    while (action := glance.next_turn(navmap, pose)) is not None:
         turns.append(action)
         pose = turned(pose, action)
         look_in(navmap, pose)
@@ -55,11 +55,11 @@ def test_walls_and_seen_ground_are_not():
     navmap = corridor()
     left, middle = FRAME.cell(0.0, 0.7)
     navmap.seen_obstacle[left, middle - 12 : middle + 13] = True
-    assert glancer().next_action(navmap, START) is None
+    assert glancer().next_turn(navmap, START) is None
     assert glancer().hidden_area_m2(navmap, START).sum() < 0.3
     seen = corridor()
     seen.frames_in_view[:] = 1
-    assert glancer().next_action(seen, START) is None
+    assert glancer().next_turn(seen, START) is None
 
 
 def test_hidden_ground_is_measured_in_square_metres():
@@ -74,17 +74,17 @@ def test_it_does_not_look_twice_from_the_same_place():
     """Not even where the look showed nothing, as behind glass."""
     navmap, glance, pose = corridor(), glancer(), START
     turns = 0
-    while (action := glance.next_action(navmap, pose)) is not None:
+    while (action := glance.next_turn(navmap, pose)) is not None:
         pose, turns = turned(pose, action), turns + 1
         assert turns < 12
-    assert glance.next_action(navmap, START) is None
+    assert glance.next_turn(navmap, START) is None
     glance.reset()
-    assert glance.next_action(navmap, START) is not None
+    assert glance.next_turn(navmap, START) is not None
 
 
-def test_a_price_without_bound_switches_it_off():
-    assert glancer(gain_per_turn_m2=math.inf).next_action(NavMap.empty(FRAME), START) is None
-    assert glancer().next_action(NavMap.empty(FRAME), START) is not None
+def test_with_an_infinite_gain_it_never_looks():
+    assert glancer(gain_per_turn_m2=math.inf).next_turn(NavMap.empty(FRAME), START) is None
+    assert glancer().next_turn(NavMap.empty(FRAME), START) is not None
 
 
 def test_a_range_of_zero_is_refused():

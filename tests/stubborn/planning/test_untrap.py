@@ -22,7 +22,7 @@ def dictated(untrap: Untrap, steps: int) -> list[Action | None]:
 
 
 def test_ten_failed_forwards_start_it_and_nine_do_not():
-    untrap = Untrap(UntrapConfig())
+    untrap = Untrap(UntrapConfig().failed_forwards)
     fail(untrap, 9)
     assert untrap.next_action() is None
     fail(untrap, 1)
@@ -30,7 +30,7 @@ def test_ten_failed_forwards_start_it_and_nine_do_not():
 
 
 def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
-    untrap = Untrap(UntrapConfig())
+    untrap = Untrap(UntrapConfig().failed_forwards)
     for _ in range(9):
         untrap.observe(F, True)
         untrap.observe(L, False)
@@ -47,7 +47,7 @@ def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
 
 
 def test_it_turns_and_pushes_until_a_forward_moves():
-    untrap = Untrap(UntrapConfig())
+    untrap = Untrap(UntrapConfig().failed_forwards)
     fail(untrap, 10)
     assert dictated(untrap, 7) == [L, F, L, F, L, F, L]
     assert untrap.next_action() is F
@@ -56,7 +56,7 @@ def test_it_turns_and_pushes_until_a_forward_moves():
 
 
 def test_the_side_alternates_from_entry_to_entry_and_a_new_episode_begins_left():
-    untrap = Untrap(UntrapConfig())
+    untrap = Untrap(UntrapConfig().failed_forwards)
     for side in (L, R, L):
         fail(untrap, 10)
         assert dictated(untrap, 4) == [side, F, side, F]

@@ -3,19 +3,20 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame, Window
+from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import ConfigError
+from sim.interface import ConfigError, SegmenterSpec, SuccessRule
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
-from stubborn.planning.planner import Planner, PlanningConfig
 from stubborn.raster import distance_to, nearest, sight_is_clear
 from stubborn.target.classifiers import Features
-from stubborn.target.seeker import TargetConfig, TargetSeeker
-from stubborn.target.verification import AcceptAll
+from stubborn.target.distances import StopDistances, TargetConfig
+from stubborn.target.seeker import TargetSeeker
+from stubborn.target.verification import AcceptAll, Verifier
 from tests.helpers.asciimap import map_of
+from tests.helpers.ground import BOTH_LAYERS, PLANNER, whole
 
-PLANNER = Planner(PlanningConfig(), trust_visited=True)
+EXACT, INEXACT = SegmenterSpec(exact_outlines=True), SegmenterSpec(exact_outlines=False)
 
 
 class RefuseAll:
@@ -45,14 +46,15 @@ class Doubtful:
     would_accept = accepts
 
 
-def seeker(verifier: AcceptAll | RefuseAll | Doubtful | None = None, **options: float) -> TargetSeeker:
-    made = TargetSeeker(TargetConfig(**options), PLANNER, verifier or AcceptAll(), bumps=True)  # type: ignore[arg-type]
-    made.reset("sofa")
-    return made
+def made(config: TargetConfig, verifier: Verifier, segmenter: SegmenterSpec) -> TargetSeeker:
+    distances = StopDistances.of(config, SuccessRule(), segmenter)
+    seek = TargetSeeker(config, PLANNER, verifier, layers=BOTH_LAYERS, distances=distances)
+    seek.reset("sofa")
+    return seek
 
 
-def whole(navmap: NavMap) -> Window:
-    return navmap.frame.part(slice(None), slice(None))
+def seeker(verifier: Verifier | None = None, **options: float) -> TargetSeeker:
+    return made(TargetConfig(**options), verifier or AcceptAll(), EXACT)  # type: ignore[arg-type]
 
 
 def known(text: str) -> tuple[NavMap, Pose]:
@@ -81,18 +83,18 @@ def test_without_a_candidate_there_is_no_approach():
     assert seeker().approach(navmap, whole(navmap), pose, 0) is None
 
 
-def test_the_way_leads_to_a_stand_near_the_candidate():
+def test_the_route_leads_to_a_viewpoint_near_the_candidate():
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     approach = seeker().approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
     assert approach.cell == (30, 60)
-    rows, cols = np.nonzero(approach.route.plan.goal)
+    rows, cols = np.nonzero(approach.route.goal.cells)
     assert np.hypot(rows - 30, cols - 60).max() * 0.05 <= 0.85 * 1.03  # the fast distance is good to 2 %
-    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
+    assert approach.route.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
 
 
-def test_on_a_stand_there_is_nothing_left_to_walk():
+def test_on_a_viewpoint_there_is_no_route_left():
     navmap, pose = known(text_of(room(R=(30, 46), T=(30, 60))))
     approach = seeker().approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
@@ -100,37 +102,57 @@ def test_on_a_stand_there_is_nothing_left_to_walk():
     assert approach.bearing_rad == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_detector_that_errs_is_followed_nearer():
+def test_with_inexact_outlines_the_agent_goes_nearer():
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     config = TargetConfig(outline_margin_m=0.3)
-    careful = TargetSeeker(config, PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    careful = made(config, AcceptAll(), INEXACT)
     approach = careful.approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
-    assert approach.route.plan.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
+    assert approach.route.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
     for distance_m, near_enough in ((0.80, False), (0.60, True)):
         sighting = Sighting(np.array([30]), np.array([60]), np.array([distance_m], np.float32))
         assert seeker().in_reach(navmap, sighting) == (30, 60)
         assert (careful.in_reach(navmap, sighting) is not None) == near_enough
 
 
-def test_where_there_is_no_nearer_stand_the_usual_one_will_do():
+def test_where_there_is_no_nearer_viewpoint_the_usual_one_will_do():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in range(48, 60):
             rows[row][col] = "o"
     navmap, pose = known(text_of(rows))
-    careful = TargetSeeker(TargetConfig(), PLANNER, AcceptAll(), bumps=True, true_outlines=False)
+    careful = made(TargetConfig(), AcceptAll(), INEXACT)
     approach = careful.approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.near_enough
     assert approach.route is not None
-    _, cols = np.nonzero(approach.route.plan.goal)
+    _, cols = np.nonzero(approach.route.goal.cells)
     assert cols.min() >= 60 - 0.85 / 0.05  # not from farther away than with true outlines
 
 
+@pytest.mark.parametrize("segmenter", [EXACT, INEXACT])
+def test_distances_shift_with_the_success_distance_and_stay_within_it(segmenter: SegmenterSpec):
+    usual = StopDistances.of(TargetConfig(), SuccessRule(), segmenter)
+    for distance_m in (0.06, 0.3, 0.5, 2.0):
+        shifted = StopDistances.of(TargetConfig(), SuccessRule(distance_m=distance_m), segmenter)
+        assert 0.0 < shifted.in_view_m < distance_m
+        assert 0.0 < shifted.viewpoints_m[0] <= shifted.viewpoints_m[1] < distance_m
+        assert shifted.last_resort_m > shifted.viewpoints_m[1]
+        if distance_m > 1.0:
+            assert shifted.in_view_m - usual.in_view_m == pytest.approx(distance_m - 1.0)
+
+
+def test_at_a_success_distance_of_a_metre_the_distances_are_those_of_the_config():
+    exact = StopDistances.of(TargetConfig(), SuccessRule(), EXACT)
+    assert (exact.in_view_m, exact.viewpoints_m, exact.last_resort_m) == (0.92, (0.85, 0.93), 1.6)
+    assert exact.nearer_viewpoint_m is None
+    inexact = StopDistances.of(TargetConfig(), SuccessRule(), INEXACT)
+    assert (inexact.in_view_m, inexact.nearer_viewpoint_m) == (0.92 - 0.25, 0.85 - 0.25)
+
+
 def test_a_margin_as_large_as_the_distance_is_refused():
-    with pytest.raises(ConfigError, match=r"0 <= outline_margin_m < stand_m and stop_in_view_m, got 0\.9, 0\.85"):
+    with pytest.raises(ConfigError, match=r"0 <= outline_margin_m < viewpoint_m and stop_in_view_m, got 0\.9, 0\.85"):
         TargetConfig(outline_margin_m=0.9)
 
 
@@ -159,7 +181,7 @@ def test_doubtful_candidates_are_approached_when_there_is_no_other():
     assert approach.cell == (30, 35)
 
 
-def test_a_likely_candidate_that_cannot_be_got_near_does_not_hold_up_the_others():
+def test_an_acceptable_candidate_without_a_viewpoint_does_not_hold_up_the_others():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(60):
         for col in range(40, 80):
@@ -184,22 +206,22 @@ class Wavering(Doubtful):
         return self.asked % 4 in (0, 1)
 
 
-def test_what_is_pursued_as_likely_is_pursued_to_the_end():
+def test_what_is_pursued_as_acceptable_is_pursued_to_the_end():
     navmap, pose = doubtful_one_first()
     wavering = seeker(Wavering())
     approaches = [wavering.approach(navmap, whole(navmap), pose, step) for step in range(6)]
     assert len({approach.cell for approach in approaches if approach}) == 1
 
 
-def test_a_part_is_likely_as_its_cell_seen_best():
+def test_a_part_is_acceptable_as_its_cell_seen_best():
     navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
     navmap.score_max[30, 61] = navmap.score_max[30, 35] = 0.6
     navmap.frames_in_view[:] = 10
     navmap.score_sum[30, 60], navmap.score_sum[30, 61], navmap.score_sum[30, 35] = 9.0, 2.0, 3.0
-    assert np.argwhere(seeker(Doubtful()).likely(navmap)).tolist() == [[30, 60], [30, 61]]
+    assert np.argwhere(seeker(Doubtful()).acceptable(navmap)).tolist() == [[30, 60], [30, 61]]
 
 
-def test_no_stand_lies_behind_a_wall_however_near():
+def test_no_viewpoint_lies_behind_a_wall_however_near():
     rows = room(R=(30, 30), T=(30, 41))
     for row in range(60):
         rows[row][39] = "#"
@@ -208,13 +230,13 @@ def test_no_stand_lies_behind_a_wall_however_near():
     navmap, pose = known(text_of(rows))
     approach = seeker().approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
-    assert approach.route is not None  # 0.55 m away in a straight line, and yet the way goes round
-    assert approach.route.plan.length_m > 1.5
-    _, cols = np.nonzero(approach.route.plan.goal)
+    assert approach.route is not None  # 0.55 m away in a straight line, and yet the path goes around
+    assert approach.route.length_m > 1.5
+    _, cols = np.nonzero(approach.route.goal.cells)
     assert cols.min() > 39
 
 
-def test_no_stand_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
+def test_no_viewpoint_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
     """The wall behind a picture is hidden by it, and the ground behind that wall was never in view."""
     rows = room(R=(30, 10), T=(30, 40))
     for row in range(20, 40):
@@ -228,13 +250,13 @@ def test_no_stand_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
     approach = seek.approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
-    _, cols = np.nonzero(approach.route.plan.goal)
+    _, cols = np.nonzero(approach.route.goal.cells)
     assert cols.max() <= 40
     navmap.frames_in_view[:, 41:] = 1  # now the ground behind is known to be open
     approach = seek.approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
-    _, cols = np.nonzero(approach.route.plan.goal)
+    _, cols = np.nonzero(approach.route.goal.cells)
     assert cols.max() > 40
 
 
@@ -247,7 +269,7 @@ def test_low_furniture_hides_nothing():
     approach = seeker().approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
-    assert approach.route.plan.length_m < 1.0
+    assert approach.route.length_m < 1.0
 
 
 def enclosed_target() -> tuple[NavMap, Pose]:
@@ -314,8 +336,8 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     assert approach is not None
     assert approach.route is not None
     assert not approach.near_enough
-    rows, cols = np.nonzero(approach.route.plan.goal)
-    reachable = approach.route.free.reachable
+    rows, cols = np.nonzero(approach.route.goal.cells)
+    reachable = approach.route.goal.free.reachable
     gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
     assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
     x_m, y_m = navmap.frame.centres(rows[0], cols[0])
@@ -351,8 +373,8 @@ def test_pessimistic_marks_that_close_the_way_to_a_target_give_way_to_optimistic
     approach = seeker().approach(navmap, whole(navmap), pose, 0)
     assert approach is not None
     assert approach.route is not None
-    assert approach.route.plan.length_m < 2.0
-    navmap.bumped_narrow[:] = navmap.bumped_wide
+    assert approach.route.length_m < 2.0
+    navmap.optimistic_marks[:] = navmap.pessimistic_marks
     assert seeker().approach(navmap, whole(navmap), pose, 0) is None
 
 
@@ -363,7 +385,7 @@ def test_a_candidate_outside_the_local_window_is_still_approached():
     assert approach is not None
     assert approach.route is not None
     assert approach.cell == (30, 280)
-    assert approach.route.plan.length_m > 12.0
+    assert approach.route.length_m > 12.0
 
 
 def sighting_at(*places: tuple[int, int, float]) -> Sighting:
@@ -422,15 +444,15 @@ def test_reset_forgets_what_was_set_aside_and_how_long_it_would_have_waited():
     fresh, pose = enclosed_target()
     assert seek.approach(fresh, whole(fresh), pose, 0) is None
     assert fresh.set_aside.any()
-    fresh.seen_obstacle[:] = False  # the way opens
+    fresh.seen_obstacle[:] = False  # the path opens
     fresh.seen_at_eye_level[:] = False
     assert seek.approach(fresh, whole(fresh), pose, 9) is None
     assert seek.approach(fresh, whole(fresh), pose, 10) is not None
 
 
-def test_stands_in_the_wrong_order_are_refused():
-    with pytest.raises(ConfigError, match="stand_m <= far_stand_m"):
-        TargetConfig(stand_m=1.2)
+def test_viewpoints_in_the_wrong_order_are_refused():
+    with pytest.raises(ConfigError, match="viewpoint_m <= far_viewpoint_m"):
+        TargetConfig(viewpoint_m=1.2)
 
 
 def test_sight_ends_at_the_first_blocked_cell_but_not_at_the_targets_own_edge():

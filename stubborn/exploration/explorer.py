@@ -1,0 +1,103 @@
+"""The interface of explorers: an explorer proposes goal cells, the agent plans the routes and follows one.
+
+An explorer is one class with two methods and holds no planner:
+
+    class Farthest:
+        def reset(self) -> None: ...
+
+        def explore(self, ground: Ground) -> Exploration:
+            free = ground.free_space()
+            route = yield Goal(free, my_choice_of(free.reachable))  # the planned route, or None
+            return route
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.grid import Window
+from sim.geometry.pose import Pose
+from sim.interface import Action, CameraModel
+from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.planning.planner import FreeSpace, Goal, Planner, Route
+
+Search = Generator[Goal, Route | None, Route | None]
+"""Yields goals, gets the route to each or None, and returns the route to follow or None."""
+Exploration = Generator[Goal, Route | None, Route | Action | None]
+"""The same; it may also return a turn on the spot, to look around."""
+
+
+class Explorer(Protocol):
+    """Chooses where to go while there is no candidate."""
+
+    def reset(self) -> None:
+        """Forgets the last episode."""
+        ...
+
+    def explore(self, ground: Ground) -> Exploration:
+        """Yields goals until it returns a route to follow, a turn on the spot, or None when there is no path at all.
+
+        It is called at each step of exploration, so that a goal to keep to is the explorer's own memory.
+        """
+        ...
+
+
+class ExplorerConfig(Protocol):
+    """A frozen dataclass with the parameters of an explorer."""
+
+    def make(self, camera: CameraModel) -> Explorer:
+        """Returns a new explorer with these parameters."""
+        ...
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The map around the robot as an explorer gets it. It is to be read only."""
+
+    navmap: NavMap
+    """The whole map."""
+    window: Window
+    """The local window, which moves with the robot."""
+    pose: Pose
+    """The robot's pose in the start frame."""
+    layers: tuple[CollisionLayer, ...]
+    """Collision layers to plan on, in order of preference."""
+    planner: Planner
+    """The agent's planner, for the methods of this class."""
+
+    def free_space(
+        self,
+        window: Window | None = None,
+        layer: CollisionLayer | None = None,
+        costly: NDArray[np.bool_] | None = None,
+    ) -> FreeSpace:
+        """Returns the free space of a window (the local one) on a collision layer (the preferred one).
+
+        Routes avoid `costly` ground, (rows, cols) of the window.
+        """
+        view = self.navmap.view(self.window if window is None else window)
+        return self.planner.free_space(view, self.pose, self.layers[0] if layer is None else layer, costly)
+
+    def unseen(self, window: Window) -> NDArray[np.bool_]:
+        """Returns the ground of a window at some distance from all that was in view."""
+        return self.planner.unseen(self.navmap.view(window))
+
+    def unknown(self, window: Window) -> NDArray[np.bool_]:
+        """Returns the ground of a window never in view, up to the border of what was."""
+        return self.planner.unknown(self.navmap.view(window))
+
+
+def run_explorer(explorer: Explorer, ground: Ground) -> Route | Action | None:
+    """Plans to the goals that an explorer yields, and returns its choice."""
+    exploration = explorer.explore(ground)
+    try:
+        goal = next(exploration)
+        while True:
+            goal = exploration.send(ground.planner.route(goal, ground.pose))
+    except StopIteration as ended:
+        return ended.value

@@ -1,0 +1,92 @@
+"""Destinations that an explorer keeps to over many steps, and the turns on the spot when it gets there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.grid import Window
+from sim.interface import Action
+from stubborn.exploration.explorer import Ground, Search
+from stubborn.planning.planner import Goal
+
+
+@dataclass(frozen=True)
+class MapCells:
+    """Some cells of the whole map."""
+
+    rows: NDArray[np.intp]
+    cols: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, mask: NDArray[np.bool_], window: Window) -> MapCells:
+        """Returns the cells of a mask over a window."""
+        rows, cols = np.nonzero(mask)
+        return cls(rows + window.rows.start, cols + window.cols.start)
+
+    def within(self, window: Window) -> NDArray[np.bool_]:
+        """Returns the mask (rows, cols) of those cells that lie in a window."""
+        mask = np.zeros(window.frame.shape, np.bool_)
+        rows, cols = self.rows - window.rows.start, self.cols - window.cols.start
+        inside = window.frame.contains(rows, cols)
+        mask[rows[inside], cols[inside]] = True
+        return mask
+
+
+@dataclass
+class Place:
+    """A place to go to; any of its cells will do."""
+
+    cells: MapCells
+    margin_cells: int
+    """Margin around the known part of the map within which the route may run."""
+    arrived_m: float
+    """The place is reached within this length of path."""
+    reached: bool = field(default=False, init=False)
+    """True: the robot has been there."""
+
+    def head_for(self, ground: Ground) -> Search:
+        """Returns the route to the place; None when it is reached, or cannot be reached any more."""
+        known = ground.navmap.known_window(self.margin_cells)
+        free = ground.free_space(known, costly=ground.unseen(known))
+        route = yield Goal(free, self.cells.within(known))
+        self.reached = route is not None and route.length_m <= self.arrived_m
+        return None if self.reached else route
+
+
+@dataclass(frozen=True)
+class UnseenArea:
+    """An area to look at; it is done with as soon as all of it was in view."""
+
+    cells: MapCells
+    margin_cells: int
+    """Margin around the known part of the map within which the route may run."""
+    reached = False
+
+    def head_for(self, ground: Ground) -> Search:
+        """Returns the route to what is still unseen of the area; None when nothing of it is or can be reached."""
+        known = ground.navmap.known_window(self.margin_cells)
+        unseen = ground.unseen(known)
+        return (yield Goal(ground.free_space(known, costly=unseen), self.cells.within(known) & unseen))
+
+
+class LookAround:
+    """Turns on the spot that show the surroundings."""
+
+    def __init__(self, turns: int) -> None:
+        self.turns = turns
+        """Turns of 30 degrees; 11 show everything around, 0 nothing."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Starts the turns from the first one."""
+        self._left = self.turns
+
+    def next_turn(self) -> Action | None:
+        """Returns the next turn, or None when all were made."""
+        if self._left == 0:
+            return None
+        self._left -= 1
+        return Action.TURN_LEFT

@@ -1,0 +1,80 @@
+"""The paper's four measures against collisions, and what each of them means for mapping and planning."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.planning.untrap import UntrapConfig
+
+
+@dataclass(frozen=True, kw_only=True)
+class CollisionAvoidance:
+    """The four measures of the paper's ablation (Table "stubborn-ablation"); the full agent has all of them."""
+
+    untrap: bool = True
+    """The brute-force untrap mode."""
+    collision_layers: bool = True
+    """Collision marks are kept and planned around."""
+    averse_exploration: bool = True
+    """Exploration plans on the pessimistic layer; without this measure on the optimistic one."""
+    visited_is_free: bool = True
+    """Collision marks do not count where the body has been."""
+
+
+class ProvenFree(NamedTuple):
+    """Ground that the robot's own motion has proved free; masks (rows, cols)."""
+
+    body: NDArray[np.bool_]
+    """The body was here: no collision mark counts."""
+    centre: NDArray[np.bool_]
+    """The robot's centre was here: no obstacle counts."""
+
+
+ProvenGround = Callable[[NavMap], ProvenFree]
+"""Returns the ground of a map that counts as proven free."""
+
+
+def visited_ground(view: NavMap) -> ProvenFree:
+    """Returns the ground that the robot has driven over."""
+    return ProvenFree(view.visited, view.trail)
+
+
+def no_ground(view: NavMap) -> ProvenFree:
+    """Returns empty masks: driving over ground proves nothing."""
+    nothing = np.zeros_like(view.visited)
+    return ProvenFree(nothing, nothing)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CollisionPolicies:
+    """The values that the parts of the agent are given for a choice of measures."""
+
+    marked: tuple[CollisionLayer, ...]
+    """Layers that a failed move is marked in."""
+    exploration: tuple[CollisionLayer, ...]
+    """Layers to plan on while exploring, in order of preference."""
+    approach: tuple[CollisionLayer, ...]
+    """Layers to plan on towards a candidate, in order of preference."""
+    proven_ground: ProvenGround
+    untrap_after: float
+    """Failed forwards in a row that begin the untrap mode; infinite: it never begins."""
+
+
+def collision_policies(avoidance: CollisionAvoidance, untrap: UntrapConfig) -> CollisionPolicies:
+    """Returns the policies of a choice of measures."""
+    both = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
+    layers = both if avoidance.collision_layers else (CollisionLayer.NONE,)
+    return CollisionPolicies(
+        marked=both if avoidance.collision_layers else (),
+        exploration=layers if avoidance.averse_exploration else layers[-1:],
+        approach=layers,
+        proven_ground=visited_ground if avoidance.visited_is_free else no_ground,
+        untrap_after=untrap.failed_forwards if avoidance.untrap else math.inf,
+    )

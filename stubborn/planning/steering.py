@@ -1,0 +1,138 @@
+"""From a route to the next action (paper: Path Planning Module, the short-term goal)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
+from sim.interface import TURN_RAD, Action, wrap_angle
+from stubborn.planning.planner import FreeSpace, PlanningConfig, Route
+from stubborn.raster import connected
+
+
+def next_action(route: Route, pose: Pose, config: PlanningConfig) -> Action:
+    """Returns a turn towards the short-term goal when it is off the heading, else a forward."""
+    turn_rad = short_term_turn(route, pose, config)
+    if turn_rad > config.aligned_rad:
+        return Action.TURN_LEFT
+    return Action.TURN_RIGHT if turn_rad < -config.aligned_rad else Action.MOVE_FORWARD
+
+
+def short_term_turn(route: Route, pose: Pose, config: PlanningConfig) -> float:
+    """Returns the angle from the heading to the short-term goal, radians, positive to the left.
+
+    Short-term goals lie on a ring one forward away, in the directions that the robot can turn to. Only those count to
+    which the straight path keeps the safety distance, so that none lies behind a thin wall. The steepest descent wins.
+    """
+    turns_rad = np.arange(-5, 7) * TURN_RAD
+    yaw_rad = pose.yaw_rad + turns_rad
+    distance_m = _interpolate(
+        route.distance_m,
+        route.frame,
+        pose.x_m + config.ring_m * np.cos(yaw_rad),
+        pose.y_m + config.ring_m * np.sin(yaw_rad),
+    )
+    clear, clearance_m = _sweep(route.goal.free, pose, yaw_rad, config.ring_m)
+    distance_m[~clear] = np.inf
+    missing_m = np.maximum(config.preferred_clearance_m - clearance_m, 0.0)
+    turns = np.abs(turns_rad) / TURN_RAD
+    cost_m = distance_m + config.turn_cost_m * turns + config.clearance_cost * missing_m
+    best = int(np.argmin(cost_m))
+    if distance_m[best] < route.length_m:
+        return float(turns_rad[best])
+    return wrap_angle(descent_direction(route, pose, config.ring_m) - pose.yaw_rad)
+
+
+def trace(route: Route, pose: Pose, max_cells: int) -> list[tuple[int, int]]:
+    """Returns the steepest descent from the robot's cell, at most so many cells on, as rows and columns.
+
+    Steps go to 8 neighbours, diagonally only past two passable cells.
+    """
+    cells = [route.frame.cell(pose.x_m, pose.y_m)]
+    while len(cells) <= max_cells:
+        step = _lowest_neighbour(route.distance_m, *cells[-1])
+        if step == cells[-1]:
+            break
+        cells.append(step)
+    return cells
+
+
+def to_nearest_part(route: Route, pose: Pose) -> Route:
+    """Returns the same route with only that connected part of the goal cells at which it ends."""
+    cells = route.goal.cells
+    row, col = trace(route, pose, max_cells=cells.size)[-1]
+    return replace(route, goal=replace(route.goal, cells=connected(cells, row, col, connectivity=8)))
+
+
+def descent_direction(route: Route, pose: Pose, length_m: float) -> float:
+    """Returns the world angle from the robot to the end of a steepest descent of `length_m`, cell by cell.
+
+    For passages that are too narrow for a straight forward.
+    """
+    row, col = trace(route, pose, max(1, round(length_m / route.frame.cell_m)))[-1]
+    x_m, y_m = route.frame.centres(row, col)
+    dx, dy = float(x_m) - pose.x_m, float(y_m) - pose.y_m
+    return math.atan2(dy, dx) if math.hypot(dx, dy) > 1e-3 else pose.yaw_rad
+
+
+def _sweep(
+    free: FreeSpace, pose: Pose, yaw_rad: NDArray[np.floating], length_m: float
+) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+    """Returns whether a straight move in each direction stays traversable, and its least clearance in metres.
+
+    A robot that is already nearer than the safety distance may leave, but not come nearer still.
+    """
+    along_m = np.arange(1, 11)[:, None] * (length_m / 10)
+    x_m, y_m = pose.x_m + along_m * np.cos(yaw_rad), pose.y_m + along_m * np.sin(yaw_rad)
+    rows, cols = free.frame.cells(x_m, y_m)  # (10, directions)
+    inside = free.frame.contains(rows, cols)
+    rows, cols = np.clip(rows, 0, free.frame.shape[0] - 1), np.clip(cols, 0, free.frame.shape[1] - 1)
+    here_m = free.clearance_m[free.frame.cell(pose.x_m, pose.y_m)]
+    clearance_m = free.clearance_m[rows, cols]
+    clear = free.traversable[rows, cols] | (clearance_m >= max(here_m, free.frame.cell_m))
+    return np.asarray((clear & inside).all(axis=0)), clearance_m.min(axis=0)
+
+
+def _lowest_neighbour(distance_m: NDArray[np.float32], row: int, col: int) -> tuple[int, int]:
+    """Returns the neighbour with the least distance, or the cell itself when none is nearer."""
+    rows, cols = distance_m.shape
+    best, lowest_m = (row, col), distance_m[row, col]
+    for dr in (-1, 0, 1):
+        for dc in (-1, 0, 1):
+            r, c = row + dr, col + dc
+            if not (0 <= r < rows and 0 <= c < cols):
+                continue
+            cuts_corner = dr and dc and not (np.isfinite(distance_m[r, col]) and np.isfinite(distance_m[row, c]))
+            if distance_m[r, c] < lowest_m and not cuts_corner:
+                best, lowest_m = (r, c), distance_m[r, c]
+    return best
+
+
+def _interpolate(
+    values: NDArray[np.float32], frame: GridFrame, x_m: NDArray[np.float64], y_m: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Returns bilinear values at points, over the finite ones of the four cells around each.
+
+    The value is infinite where that of the point's own cell is.
+    """
+    fc = (x_m - frame.origin_xy_m[0]) / frame.cell_m - 0.5
+    fr = (y_m - frame.origin_xy_m[1]) / frame.cell_m - 0.5
+    c0, r0 = np.floor(fc).astype(int), np.floor(fr).astype(int)
+    total, weight = np.zeros(len(x_m)), np.zeros(len(x_m))
+    for dr in (0, 1):
+        for dc in (0, 1):
+            r = np.clip(r0 + dr, 0, frame.shape[0] - 1)
+            c = np.clip(c0 + dc, 0, frame.shape[1] - 1)
+            share = np.abs(1 - dr - (fr - r0)) * np.abs(1 - dc - (fc - c0))
+            finite = np.isfinite(values[r, c])
+            total += np.where(finite, share * np.where(finite, values[r, c], 0.0), 0.0)
+            weight += np.where(finite, share, 0.0)
+    rows, cols = frame.cells(x_m, y_m)
+    known = frame.contains(rows, cols) & (weight > 1e-6)
+    known[known] = np.isfinite(values[rows[known], cols[known]])
+    return np.where(known, total / np.maximum(weight, 1e-9), np.inf)

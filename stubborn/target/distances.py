@@ -1,0 +1,102 @@
+"""Distances at which the agent verifies a candidate and stops, for a success rule and a segmenter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sim.interface import ConfigError, SegmenterSpec, SuccessRule
+from stubborn.navmap import CollisionLayer
+
+TUNED_FOR_M = 1.0
+"""The success distance that the distances of `TargetConfig` are for."""
+_LEAST_M = 0.05
+"""No distance becomes shorter than this, a cell, however small the success distance is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetConfig:
+    """Distances and steps of the approach. With another success distance than 1 m, the first four distances shift."""
+
+    stop_in_view_m: float = 0.92
+    """A target point in view within this distance ends the approach: it is near and nothing hides it."""
+    viewpoint_m: float = 0.85
+    """A viewpoint is this near a candidate cell: a metre, less the error of the cells."""
+    far_viewpoint_m: float = 0.93
+    """A viewpoint this near will do where there is no nearer one."""
+    last_resort_m: float = 1.6
+    """Where there is no viewpoint at all, a candidate is verified from the nearest reachable place within this
+    distance; late in an episode the agent stops there, which may still succeed."""
+    outline_margin_m: float = 0.25
+    """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
+    may include a part of what is beside the target."""
+    candidate_score: float = 0.5
+    """A cell with a higher target score is a candidate."""
+    last_resort_step: int = 420
+    """From this step on the agent stops at a last resort."""
+    rejection_margin_m: float = 0.25
+    """Cells this near to rejected ones are rejected too."""
+    verify_until_step: int = 200
+    """A candidate first found later is not verified: no time is left to look elsewhere."""
+    retry_after_steps: int = 15
+    """A candidate that could not be reached is tried again after so many steps of exploration, then after twice as
+    many, and so on."""
+    margin_cells: int = 40
+    """Margin around the known part of the map within which routes to a far candidate may run."""
+    target_edge_m: float = 0.08
+    """A wall this near the candidate cell is the wall that the object is mounted on, and does not hide it."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.viewpoint_m <= self.far_viewpoint_m <= self.last_resort_m:
+            raise ConfigError(
+                "TargetConfig needs 0 < viewpoint_m <= far_viewpoint_m <= last_resort_m, "
+                f"got {self.viewpoint_m}, {self.far_viewpoint_m} and {self.last_resort_m} m."
+            )
+        if not 0.0 <= self.outline_margin_m < min(self.viewpoint_m, self.stop_in_view_m):
+            raise ConfigError(
+                "TargetConfig needs 0 <= outline_margin_m < viewpoint_m and stop_in_view_m, "
+                f"got {self.outline_margin_m}, {self.viewpoint_m} and {self.stop_in_view_m} m."
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopDistances:
+    """The distances of `TargetConfig` for one success rule and one segmenter."""
+
+    in_view_m: float
+    """A target point in view within this distance ends the approach."""
+    nearer_viewpoint_m: float | None
+    """Viewpoints this near come first, with inexact outlines; they are not worth crossing collision marks for."""
+    viewpoints_m: tuple[float, ...]
+    """Viewpoints within the first distance come before those within the next one."""
+    last_resort_m: float
+    """Limit for the nearest reachable place, where there is no viewpoint."""
+
+    @classmethod
+    def of(cls, config: TargetConfig, success: SuccessRule, segmenter: SegmenterSpec) -> StopDistances:
+        """Returns the distances, shifted by the difference of the success distance to 1 m, but never below a cell."""
+        shift_m = success.distance_m - TUNED_FOR_M
+        in_view_m, usual_m, far_m, last_m = (
+            max(distance_m + shift_m, _LEAST_M)
+            for distance_m in (
+                config.stop_in_view_m,
+                config.viewpoint_m,
+                config.far_viewpoint_m,
+                config.last_resort_m,
+            )
+        )
+        margin_m = 0.0 if segmenter.exact_outlines else config.outline_margin_m
+        return cls(
+            in_view_m=max(in_view_m - margin_m, _LEAST_M),
+            nearer_viewpoint_m=max(usual_m - margin_m, _LEAST_M) if margin_m > 0.0 else None,
+            viewpoints_m=(usual_m, far_m),
+            last_resort_m=last_m,
+        )
+
+    def tried_on(self, layers: tuple[CollisionLayer, ...]) -> Iterator[tuple[float, CollisionLayer]]:
+        """Yields distance and collision layer of viewpoints in order of preference."""
+        if self.nearer_viewpoint_m is not None:
+            yield self.nearer_viewpoint_m, layers[0]
+        for within_m in self.viewpoints_m:
+            for layer in layers:
+                yield within_m, layer

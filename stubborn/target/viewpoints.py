@@ -1,0 +1,92 @@
+"""Viewpoints: reachable cells from which a STOP at a candidate counts, or from which it can at least be verified.
+
+A STOP counts where some point of the object is within the success distance of the robot *and* in free line of sight. A
+surface at the camera's height may be a wall and hide the object; a table or a sofa in between does not matter.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.pose import Pose
+from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.planning.planner import FreeSpace, Planner
+from stubborn.raster import NearestCells, sight_is_clear
+from stubborn.target.distances import StopDistances
+
+
+class LastResort(enum.Enum):
+    """The use of the nearest reachable place to a candidate that has no viewpoint."""
+
+    NONE = enum.auto()
+    """The candidate is left alone."""
+    VERIFY = enum.auto()
+    """It is verified from there."""
+    STOP = enum.auto()
+    """The agent stops there."""
+
+
+@dataclass(frozen=True)
+class Viewpoints:
+    """Reachable cells to look at a candidate from, all of one kind."""
+
+    free: FreeSpace
+    cells: NDArray[np.bool_]
+    near_enough: bool
+    """True: the agent may stop there."""
+
+
+class ViewpointFinder:
+    """Finds the viewpoints of candidates on a part of the map."""
+
+    def __init__(
+        self, planner: Planner, layers: tuple[CollisionLayer, ...], distances: StopDistances, target_edge_m: float
+    ) -> None:
+        """`layers` are the collision layers to plan on, in order of preference."""
+        self.planner = planner
+        self.layers = layers
+        self.distances = distances
+        self.target_edge_m = target_edge_m
+
+    def find(self, view: NavMap, pose: Pose, nearest: NearestCells, last_resort: LastResort) -> Iterator[Viewpoints]:
+        """Yields viewpoints from the best kind to the last resort.
+
+        `nearest` holds, for each cell of the view, the distance and the place of the nearest candidate cell.
+        """
+        gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
+        in_sight = self._in_sight(view, gap_m, nearest)
+        unseen = self.planner.unseen(view)
+        free_spaces: dict[CollisionLayer, FreeSpace] = {}
+        for within_m, layer in self.distances.tried_on(self.layers):
+            if layer not in free_spaces:
+                free_spaces[layer] = self.planner.free_space(view, pose, layer, unseen)
+            cells = free_spaces[layer].reachable & in_sight & (gap_m <= within_m)
+            if cells.any():
+                yield Viewpoints(free_spaces[layer], cells, near_enough=True)
+        if last_resort is LastResort.NONE:
+            return
+        free = free_spaces[self.layers[-1]]
+        reach_m = np.where(free.reachable, gap_m, np.inf)
+        if reach_m.min() <= self.distances.last_resort_m:
+            # The robot's own ground is free to it and moves with it: without a margin it would push on for ever.
+            margin_m = self.planner.config.own_ground_m + view.frame.cell_m
+            near_enough = last_resort is LastResort.STOP
+            yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)
+
+    def _in_sight(self, view: NavMap, gap_m: NDArray[np.float32], nearest: NearestCells) -> NDArray[np.bool_]:
+        """Returns the cells near a candidate from which nothing hides its nearest cell."""
+        edge_cells = self.target_edge_m / view.frame.cell_m
+        rows, cols = np.nonzero(gap_m <= self.distances.viewpoints_m[-1])
+        ends = nearest.rows[rows, cols], nearest.cols[rows, cols]
+        in_sight = np.zeros_like(view.rejected)
+        in_sight[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), ends, edge_cells)
+        # A picture hides the wall it is mounted on. Behind that wall there may seem to be free ground, from which the
+        # picture cannot be seen: ground never in view counts only on the side from which the candidate was seen.
+        seen_side = (rows - ends[0]) * view.shown_y[ends] + (cols - ends[1]) * view.shown_x[ends] > 0
+        in_sight[rows, cols] &= seen_side | (view.frames_in_view[rows, cols] > 0)
+        return in_sight
