@@ -156,7 +156,18 @@ def _converted(value: Any, hint: Any, current: Any, path: str) -> Any:
         raise ConfigError(
             f"'{path}' is a group of fields, set one of them: {', '.join(f.name for f in dataclasses.fields(current))}."
         )
+    if hint is Any:
+        if value is None and current is None:
+            return None
+        raise ConfigError(f"'{path}' has no fields here: there is nothing to configure.")
     try:
-        return msgspec.convert(value, Any if hint is Any else hint, strict=False)
+        return msgspec.convert(value, hint, strict=False, dec_hook=_decoded)
     except (msgspec.ValidationError, TypeError) as error:
         raise ConfigError(f"'{path}' cannot be {value!r}: {error}. Its value now is {current!r}.") from None
+
+
+def _decoded(hint: type, value: Any) -> Any:
+    """Returns a value of a type that msgspec does not know."""
+    if hint is Path and isinstance(value, str):
+        return Path(value)
+    raise NotImplementedError(f"no value of type {hint.__name__} can be set")

@@ -53,7 +53,7 @@ PROMISED = (
     *(
         "sim.task.trajectory.read_trajectory",
         "sim.episodes.splits.load_split",
-        "sim.run.Args.agent",
+        "sim.composition.options.RunOptions.agent",
         "sim.task.failures",
     ),
 )

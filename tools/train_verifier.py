@@ -1,17 +1,20 @@
-"""Fit the verifier of a kind of semantics, on candidates that the agent meets in houses of the train split.
+"""Fits the verifier of a kind of segmentation to candidates that the agent finds in houses of the train split.
 
     python tools/train_verifier.py --semantics noisy --split train --episodes 2000 --workers 2
     python tools/train_verifier.py --semantics noisy --split val --episodes 200 --judge
 
-The agent plays without stopping: whatever it would verify is logged with its four features, the truth, whether a STOP
-there would succeed, and the place; then it goes on as if the candidate had been rejected. A last resort, a place too
-far away or out of sight, is left out: no STOP there tells what is true. The log has a line an episode; the same
-command goes on where it was, and more episodes add to what is there, while split, modules and rates are the same;
---minutes 0 plays nothing and fits what is there, whatever code played it. What is left of an object after such a
-rejection is met again, several times: of the true candidates of an episode within 2 m of one another only the first
-counts, and so with the false ones. Then each method of verification is fitted for each goal category, and pooled for
-those with too few candidates of either kind, and written as JSON with counts and with what it is worth on episodes left
-out (`stubborn/target/verifier_fit.py`). Houses of val and test are for --judge only.
+The agent runs without stopping. Each candidate that it would verify is logged with its four features, the truth
+(whether a STOP there would succeed) and the robot's position; the agent then continues as if it had rejected the
+candidate. Candidates that are verified from too far away to stop are not logged, since a STOP there always fails.
+
+The log has one line per episode. The same command continues it, and more episodes extend it, as long as split, modules
+and detector are the same. --minutes 0 runs no episode and fits the existing log, whichever code made it. The agent
+finds the rest of an object again after such a rejection: of the true candidates of an episode within 2 m of each other
+only the first counts, and so for the false ones.
+
+Then each method of verification is fitted for each goal category, and pooled for those with too few true or false
+candidates, and written as JSON with the counts and its quality on episodes left out (`stubborn.target.verifier_fit`).
+Houses of val and test are for --judge only.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from sim import cli
+from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -34,54 +38,53 @@ from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
 from sim.interface import Action, ConfigError
 from sim.paths import code_hash
-from sim.segmenters import SEMANTICS, check_semantics, describe_semantics, make_segmenter, truth_needed
-from stubborn import agents
-from stubborn.agent import StubbornAgent
+from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.target.classifiers import Features
-from stubborn.target.seeker import TargetConfig
-from stubborn.target.verification import FOLDER, METHODS, UNVERIFIED, FittedVerifier
+from stubborn.target.distances import TargetConfig
+from stubborn.target.verification import FOLDER, METHODS, FittedVerifier
 from stubborn.target.verifier_fit import fit, judge_by_category
 
 NEVER = 1_000_000
 """A step that no episode reaches."""
 BATCH = 100
+"""Number of episodes that are given to the workers together."""
 
 
 @dataclass(frozen=True)
 class Args:
-    """Let the agent meet candidates, then fit a verifier to them."""
+    """Logs candidates that the agent finds, then fits a verifier to them."""
 
     semantics: str = "noisy"
-    """Whose mistakes are learned: a kind of `sim.run` that leaves something to verify."""
+    """The kind of segmentation whose errors are learned; one of `sim.run` that needs verification."""
     weights: Path | None = None
-    """With --semantics rednet: your network in place of the shipped one."""
+    """With --semantics rednet: weights in place of the shipped ones."""
     split: str = "train"
-    """A shipped split, or a folder laid out like one."""
+    """A shipped split, or a folder with the same layout."""
     episodes: int = 400
-    """The first N of the split."""
+    """Number of episodes, the first of the split."""
     workers: int = 1
-    """Processes."""
+    """Number of processes."""
     minutes: float | None = None
-    """Play no longer than this; 0 plays nothing."""
+    """Time limit of the episodes; 0 runs none."""
     judge: bool = False
-    """Fit nothing: judge the parameters that are there (--out) on these candidates, by category."""
+    """Fit nothing; judge the existing parameters (--out) on these candidates, by category."""
     max_steps: int = 200
-    """Of an episode: what is first found after step 200 is never verified."""
+    """Steps of an episode; an agent never verifies what it first finds after step 200."""
     least_of_either: int = 20
-    """A category with fewer true or fewer false candidates takes the pooled classifier."""
+    """A category with fewer true or fewer false candidates uses the pooled classifier."""
     seed: int = 0
-    """Of the episodes."""
+    """Seed of the episodes."""
     log: Path | None = None
-    """Folder of the log; runs/verifier-<semantics>-<split> when not given."""
+    """Folder of the log; None: runs/verifier-<semantics>-<split>."""
     out: Path | None = None
-    """File of the parameters; stubborn/verifiers/<semantics>.json when not given."""
+    """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
 
 
-class Witness:
-    """A verifier that refuses everything and writes down what it was asked, and what would have been right.
+class RecordingVerifier:
+    """A verifier that rejects every candidate and records it with the truth.
 
-    Not what it is asked from a last resort (`Approach.near_enough` is False), up to 1.6 m away: there a STOP at the
-    real thing fails too, so that real objects would be logged as false candidates.
+    Candidates that are verified from too far away to stop (`Approach.near_enough` is False) are not recorded: a STOP
+    fails there at a true instance too, which would be recorded as a false candidate.
     """
 
     may_refuse = True
@@ -89,12 +92,12 @@ class Witness:
     def __init__(self, env: ObjectNavEnv) -> None:
         self._env = env
         self.agent: StubbornAgent | None = None
-        """Who asks: its approach tells from where. None: whatever is asked is written down."""
+        """The agent that asks; None: every candidate is recorded."""
         self.candidates: list[list[float]] = []
-        """Features, then 1 where a STOP would have succeeded, else 0, then the robot's x and y in metres."""
+        """Features; 1 where a STOP would have succeeded, else 0; the robot's x and y in metres."""
 
     def accepts(self, goal: str, features: Features) -> bool:
-        """False."""
+        """Records the candidate and returns False."""
         approach = None if self.agent is None else self.agent.approach
         if approach is not None and not approach.near_enough:
             return False
@@ -105,12 +108,12 @@ class Witness:
         return False
 
     def would_accept(self, goal: str, features: Features) -> bool:
-        """False, and nothing is written down: the nearest candidate is visited first."""
+        """Returns False and records nothing, so that the nearest candidate is visited first."""
         return False
 
 
 def main(args: Args) -> int:
-    """Play, then fit and write, or judge."""
+    """Runs the episodes, then fits and writes, or judges; returns the exit status."""
     _check(args)
     split = load_split(args.split)
     lines = candidates_of(args, split)
@@ -128,7 +131,7 @@ def main(args: Args) -> int:
 
 
 def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
-    """The lines of the log's first `args.episodes` episodes, those that were there and those played now."""
+    """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or Path("runs") / f"verifier-{args.semantics}-{split.name}"
     if args.minutes == 0:
         text = (log / "results.jsonl").read_text(encoding="utf-8") if (log / "results.jsonl").is_file() else ""
@@ -136,7 +139,7 @@ def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
     else:
         run = RunDirectory(log, log_config(args, split))
         try:
-            play(args, split, run)
+            run_episodes(args, split, run)
             lines = run.lines
         finally:
             run.close()
@@ -145,13 +148,13 @@ def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
 
 
 def log_config(args: Args, split: Split) -> dict[str, Any]:
-    """What all lines of a log have in common: with anything else `RunDirectory` refuses to go on.
+    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others.
 
-    The code is that of the modules only: what is fitted here is not used while playing, and would end its own log.
+    The hash of the code is that of the modules without fitted parameters, since the episodes do not use them.
     """
     return {
         "semantics": args.semantics,
-        **describe_semantics(args.semantics, args.weights),
+        "detector": detector_record(detector_config(args.semantics, args.weights)),
         "seed": args.seed,
         "max_steps": args.max_steps,
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
@@ -159,15 +162,15 @@ def log_config(args: Args, split: Split) -> dict[str, Any]:
     }
 
 
-def play(args: Args, split: Split, run: RunDirectory) -> None:
-    """Play what is not in the log yet, until the time is up."""
+def run_episodes(args: Args, split: Split, run: RunDirectory) -> None:
+    """Runs the episodes that are not in the log yet, until the time is up."""
     done = {line["episode_id"] for line in run.lines}
     todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
-    print(f"{len(done)} episodes are there, {len(todo)} to go; log in {run.path}", flush=True)
+    print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
     until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
     executor = make_executor("local", workers=args.workers)
-    spec = RunnerSpec(f"{__name__}:{Outing.__name__}", args)  # a script is `__main__` to its workers too
-    # In batches: a house is loaded once in a batch, and a run cut short is still balanced.
+    spec = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
+    # In batches: a house is loaded once per batch, and a run that is cut short is still balanced.
     for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
         for line in executor.run(spec, batch, on_death=lambda episode: line_of(episode, 0, [])):
             run.append(line)
@@ -176,37 +179,33 @@ def play(args: Args, split: Split, run: RunDirectory) -> None:
 
 
 def line_of(episode: Episode, steps: int, candidates: list[list[float]]) -> dict[str, Any]:
-    """A line of the log."""
+    """Returns a line of the log."""
     about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
     return about | {"steps": steps, "candidates": candidates}
 
 
-class Outing:
-    """One process's environment, agent and witness; see `sim.evaluation.workers`."""
+class CandidateRunner:
+    """A runner of `sim.evaluation.workers` whose agent records candidates."""
 
     def __init__(self, args: Args) -> None:
         self._seed = args.seed
+        spec = KINDS[args.semantics].spec
         self._env = ObjectNavEnv(
-            split=args.split,
-            sensors=("depth", *SEMANTICS[args.semantics]),
-            truth=truth_needed(args.semantics),
-            max_steps=args.max_steps,
+            split=args.split, sensors=("depth", *spec.sensors), truth=spec.truth, max_steps=args.max_steps
         )
-        self.witness = Witness(self._env)
-        agent = agents.make(
-            "stubborn",
+        self._recorder = RecordingVerifier(self._env)
+        self._agent = self._recorder.agent = StubbornAgent(
             camera=self._env.camera_model,
             robot=self._env.robot_model,
-            segmenter=make_segmenter(args.semantics, self._env, weights=args.weights),
-            verifier=self.witness,
-            target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER),
+            success=self._env.success_rule,
+            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
+            verifier=self._recorder,
+            config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
         )
-        assert isinstance(agent, StubbornAgent)
-        self._agent = self.witness.agent = agent
 
     def run(self, episode: Episode) -> dict[str, Any]:
-        """One episode to its last step; one that breaks ends there."""
-        self.witness.candidates = []
+        """Runs one episode to its last step, or until it fails; returns its line."""
+        self._recorder.candidates = []
         seed = episode_seed(self._seed, episode.episode_id)
         try:
             observation, _ = self._env.reset(seed=seed, options={"episode": episode})
@@ -214,27 +213,27 @@ class Outing:
             truncated = False
             while not truncated:
                 action = self._agent.act(observation)
-                if action == Action.STOP:  # cannot be: everything is refused
+                if action == Action.STOP:  # cannot happen: every candidate is rejected
                     break
                 observation, _, _, truncated, _ = self._env.step(action)
             steps = self._env.scene.task.num_steps
         except (EpisodeError, PhysicsError):
             steps = 0
-        return line_of(episode, steps, self.witness.candidates)
+        return line_of(episode, steps, self._recorder.candidates)
 
     def close(self) -> None:
-        """Free the renderers."""
+        """Frees the renderers."""
         self._env.close()
 
 
 def command(args: Args) -> str:
-    """What to type to get the same."""
+    """Returns the command that gives the same parameters."""
     options = f"--semantics {args.semantics} --split {Path(args.split).name} --episodes {args.episodes}"
     return f"python tools/train_verifier.py {options} --max-steps {args.max_steps} --seed {args.seed}"
 
 
 def report(content: Mapping[str, Any]) -> None:
-    """Print counts, and what each method is worth on episodes left out."""
+    """Prints the counts, and the quality of each method on episodes left out."""
     print(f"{content['episodes']} episodes")
     own = content["methods"]["naive-bayes"]["categories"]
     for goal, pair in content["candidates"].items():
@@ -249,25 +248,26 @@ def report(content: Mapping[str, Any]) -> None:
 
 
 def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
-    """A Markdown table: candidates of each category before and after verification by the parameters of a file."""
+    """Returns a Markdown table of the candidates of each category, before and after verification."""
     rows = ["| method | goal | true | false | precision before | precision after | true accepted | false rejected |"]
     rows.append("|---|---|---|---|---|---|---|---|")
     for method in METHODS:
         for goal, found in judge_by_category(lines, FittedVerifier.read(file, method)).items():
             true = round(found["precision_before"] * found["candidates"])
             shares = [found[key] for key in ("precision_before", "precision", "true_accepted", "false_rejected")]
-            told = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
-            rows.append(f"| {method} | {goal} | {true} | {found['candidates'] - true} | {told} |")
+            cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
+            rows.append(f"| {method} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
     return "\n".join(rows)
 
 
 def _check(args: Args) -> None:
+    """Raises ConfigError for arguments that are not allowed."""
     check_semantics(args.semantics, args.weights)
-    if args.semantics in UNVERIFIED:
-        kinds = [kind for kind in SEMANTICS if kind not in UNVERIFIED]
+    if not KINDS[args.semantics].spec.needs_verification:
+        kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' has no verifier to fit. There is: {', '.join(kinds)}.")
     if args.split in ("val", "test") and not args.judge:
-        raise ConfigError(f"Verifiers are never fitted on '{args.split}'; --judge judges one there.")
+        raise ConfigError(f"Verifiers are never fitted on '{args.split}'; use --judge there.")
     if args.workers < 1:
         raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
     if args.minutes is not None and not args.minutes >= 0.0:

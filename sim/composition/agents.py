@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 import importlib
 import inspect
 import sys
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
 from sim.errors import ConfigError
-from sim.interface import Agent, AgentSpec, Segmenter
+from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.target.verification import Verifier
 
 
@@ -61,7 +63,29 @@ def find_agent(name: str) -> AgentSpec:
         return found
     if not callable(found):
         raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
-    return AgentSpec(make=found, description=(inspect.getdoc(found) or "").partition("\n")[0])
+    return AgentSpec(make=cast(AgentFactory, found), description=(inspect.getdoc(found) or "").partition("\n")[0])
+
+
+def find_explorer(name: str) -> ExplorerConfig:
+    """Returns the configuration of an explorer, whose `make` builds it.
+
+    Args:
+        name: one of `stubborn.agents.EXPLORERS`, or `package.module:NAME`, where NAME is such a configuration.
+
+    Raises:
+        ConfigError: there is no such explorer.
+    """
+    if name in agents.EXPLORERS:
+        return agents.EXPLORERS[name]
+    module_name, separator, attribute = name.partition(":")
+    if not separator or not attribute:
+        raise ConfigError(
+            f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
+        )
+    found = _import_attribute(name, module_name, attribute)
+    if not dataclasses.is_dataclass(found) or isinstance(found, type) or not callable(getattr(found, "make", None)):
+        raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
+    return cast(ExplorerConfig, found)
 
 
 def build_agent(
@@ -98,7 +122,7 @@ def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
     try:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
-        raise ConfigError(f"Agent '{name}': no module '{error.name}' can be imported from here.") from None
+        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
     if not hasattr(module, attribute):
-        raise ConfigError(f"Agent '{name}': module '{module_name}' has no '{attribute}'.")
+        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.")
     return getattr(module, attribute)

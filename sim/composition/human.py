@@ -15,7 +15,7 @@ from sim.viewers.overlay import ACTION_WORDS, colour_depth, in_words
 from sim.viewers.palette import colour_segmentation
 from sim.viewers.terminal import Colours, beside, fitted, half_blocks
 from stubborn.agent import StubbornAgent
-from stubborn.draw import BeliefPainter, describe_intention
+from stubborn.draw import AgentMapPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 KEYS: dict[str, Action] = {
@@ -54,7 +54,7 @@ class Human:
     def __init__(self, env: ObjectNavEnv, cockpit: Cockpit) -> None:
         self._env, self._cockpit = env, cockpit
         self.mapper = StubbornAgent(camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
-        self.painter = BeliefPainter(self.mapper, show_plan=False)
+        self.painter = AgentMapPainter(self.mapper, show_plan=False)
         self.camera, self.layout = CAMERAS[0], LAYOUTS[0]
 
     def reset(self, goal: str, seed: int) -> None:

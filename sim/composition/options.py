@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim.composition.agents import find_agent
+from sim.composition.agents import find_agent, find_explorer
 from sim.composition.segmenters import KINDS, check_semantics
 from sim.errors import ConfigError
 from sim.evaluation.parallel import Shard
@@ -24,7 +24,7 @@ class RunOptions:
     agent: str = "stubborn"
     """The agent: a name of --list-agents, or your own as package.module:NAME (an AgentSpec or a factory)."""
     explorer: str | None = None
-    """The explorer of agents that take one, in place of their own; see --list-agents."""
+    """The explorer of agents that take one: a name of --list-agents, or your own as package.module:NAME."""
     semantics: str = "rednet"
     """Source of segmentation: rednet, noisy (ground truth with the errors of a network) or gt (ground truth)."""
     weights: Path | None = None
@@ -99,6 +99,8 @@ def check_options(options: RunOptions) -> None:
     check_semantics(options.semantics, options.weights)
     verifier_for(options.semantics, KINDS[options.semantics].spec, options.verifier, options.verification)
     find_agent(options.agent)
+    if options.explorer is not None:
+        find_explorer(options.explorer)
 
 
 def start_pose(start_deg: str | None) -> Pose | None:

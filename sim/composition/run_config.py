@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from sim.composition.agents import find_agent
+from sim.composition.agents import find_agent, find_explorer
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import KINDS, NetworkConfig, detector_config, file_sha256
 from sim.configuration import as_json, parse_assignments, read_settings, with_fields
@@ -20,6 +20,7 @@ from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.opengl import describe_gl
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.task.config import TaskConfig
+from stubborn.agent import AgentConfig
 from stubborn.target.verification import FittedVerifier, Verifier, verifier_for
 
 NOT_RECORDED = ("list_agents", "config", "config_file")
@@ -73,7 +74,7 @@ def configuration_of(options: RunOptions, spec: AgentSpec | None = None) -> RunC
     spec = spec or find_agent(options.agent)
     robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
     tree = RunConfig(
-        agent=spec.config,
+        agent=_agent_config(options, spec),
         detector=detector_config(options.semantics, options.weights),
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
         robot=robot,
@@ -127,6 +128,15 @@ def versions() -> dict[str, str]:
 def truth_images(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
     """Returns the true images that the segmentation of an agent reads in the environment."""
     return KINDS[semantics].spec.truth if spec.uses_segmentation else ()
+
+
+def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
+    """Returns the default configuration of the agent, with the explorer of `--explorer`."""
+    if options.explorer is None:
+        return spec.config
+    if not isinstance(spec.config, AgentConfig):
+        raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
+    return replace(spec.config, explorer=find_explorer(options.explorer))
 
 
 def _sensors(spec: AgentSpec, semantics: str) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, EpisodeError
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.interface import AgentSpec
+from sim.interface import AgentSpec, Segmenter
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.errors import ConfigError
@@ -154,6 +155,14 @@ def weights_file(weights: Path | None) -> Path:
         )
         raise ConfigError(f"No weights at '{file}'.{hint}")
     return file
+
+
+def detector_record(config: Any) -> Any:
+    """Returns a detector's configuration as JSON types, with the checksum of its weights if it has any."""
+    content = as_json(config)
+    if isinstance(config, NetworkConfig):
+        return content | {"weights_sha256": file_sha256(weights_file(config.weights))}
+    return content
 
 
 @functools.cache

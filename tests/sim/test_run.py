@@ -144,10 +144,10 @@ def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
     from sim.run import entry
 
     assert entry(["--goal", "bed", "--episodes", "1", "--out", str(tmp_path)]) == 0
-    assert "stubborn with rednet semantics" in capsys.readouterr().out
+    assert "stubborn with rednet segmentation" in capsys.readouterr().out
     (line,) = lines_of(tmp_path)
     assert (line["agent"], line["semantics"]) == ("stubborn", "rednet")
-    assert "weights_sha256" in json.loads((tmp_path / "config.json").read_text())["semantics_config"]
+    assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]
 
 
 def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:
@@ -234,7 +234,7 @@ def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
     assert codes == ["0lder"]
     out, codes = played(2)
     assert [line for line in out.splitlines() if "0lder" in line] == [
-        f"Episodes that were there were played by other code (0lder) than these ({code_hash()})."
+        f"The episodes that were there were run by other code (0lder) than these ({code_hash()})."
     ]
     assert codes == ["0lder", code_hash()]
 

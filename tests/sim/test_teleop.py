@@ -16,6 +16,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sim import teleop
+from sim.composition import human
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, write_split
 from sim.evaluation.rollout import play_episode
@@ -111,7 +112,7 @@ def test_the_map_learns_collisions_from_what_was_driven_not_from_what_it_would_h
     with pytest.raises(teleop.Quit):
         play_episode(env, human, env.split.episodes[0], seed=0)
     assert "COLLISION" in " ".join(cockpit.screens[-1][:2])
-    marked = np.argwhere(human.mapper.navmap.bumped_narrow)
+    marked = np.argwhere(human.mapper.navmap.optimistic_marks)
     assert len(marked) > 0
     x_m, _ = human.mapper.navmap.frame.centres(marked[:, 0], marked[:, 1])
     assert 1.9 < float(x_m.min()) < float(x_m.max()) < 2.6  # the sofa begins at 2.1 m
@@ -129,7 +130,7 @@ def test_no_line_is_wider_and_no_screen_higher_than_the_terminal(env: ObjectNavE
         assert any(HALF_BLOCK in line for line in screen)
         words = " ".join(line for line in screen if HALF_BLOCK not in line)
         assert "Look for: SOFA, step" in words
-        assert words.split()[-len(teleop.HELP.split()) :] == teleop.HELP.split()
+        assert words.split()[-len(human.HELP.split()) :] == human.HELP.split()
 
 
 def read_back(lines: Sequence[str]) -> NDArray[np.int64]:

@@ -1,8 +1,7 @@
-"""The tool that lets the agent meet candidates: what it logs, and that it goes on where it was."""
+"""The tool that logs candidates and fits verifiers: its log, how it continues one, what it refuses."""
 
 from __future__ import annotations
 
-import functools
 import json
 import shutil
 from dataclasses import replace
@@ -10,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from sim import segmenters
+from sim.composition.segmenters import KINDS
 from sim.detectors.noisy import NoisyConfig
 from sim.episodes.splits import Episode, load_split, write_split
 from sim.geometry.pose import Pose
@@ -34,18 +33,18 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
-    """The log after so many episodes; too few candidates to fit anything."""
+    """The log after this number of episodes; it holds too few candidates for a fit."""
     args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
     with pytest.raises(ConfigError, match="500 of either are needed"):
         train_verifier.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
 
-def test_it_never_stops_logs_candidates_with_the_truth_and_goes_on_where_it_was(split: Path, tmp_path: Path):
+def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
     first = played(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     candidates = [each for line in first for each in line["candidates"]]
-    assert any(each[4] == 1.0 for each in candidates)  # it came to the sofa, where a STOP would have succeeded
+    assert any(each[4] == 1.0 for each in candidates)  # it reached the sofa, where a STOP would have succeeded
     for *features, truth, x_m, y_m in candidates:
         views, total, highest, other = Features(*features)
         assert truth in (0.0, 1.0)
@@ -60,8 +59,8 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_goes_on_where_it_was(
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
-@pytest.mark.parametrize("change", ["split_identity", "semantics_config", "code", "seed", "max_steps"])
-def test_a_log_of_another_split_code_or_detector_is_refused_and_the_difference_named(
+@pytest.mark.parametrize("change", ["split_identity", "detector.flicker_rate", "code", "seed", "max_steps"])
+def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
     split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: str
 ):
     args = train_verifier.Args(split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log")
@@ -72,30 +71,32 @@ def test_a_log_of_another_split_code_or_detector_is_refused_and_the_difference_n
         shutil.copytree(split, other)
         (other / "seats.xml").write_text((split / "seats.xml").read_text() + "\n")
         args = replace(args, split=str(other))
-    elif change == "semantics_config":
-        monkeypatch.setattr(segmenters, "NoisyConfig", functools.partial(NoisyConfig, flicker_rate=0.5))
+    elif change == "detector.flicker_rate":
+        monkeypatch.setattr(train_verifier, "detector_config", lambda *_: NoisyConfig(flicker_rate=0.5))
     elif change == "code":
         monkeypatch.setattr(train_verifier, "code_hash", lambda **_: "another")
     else:
         args = replace(args, **{change: 4})
-    with pytest.raises(ConfigError, match=f"holds a run with {change} = "):
+    with pytest.raises(ConfigError, match=f"holds a run with {change}"):
         train_verifier.main(args)
 
 
-def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     folder = tmp_path / "fenced"
     folder.mkdir()
     house = with_box(room(7, 5), "sofa_00", centre_m=(3.0, 0.5, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_20", centre_m=(2.0, 0.0, 0.15), half_m=(0.4, 2.5, 0.15))  # before it
     house = with_box(house, "wall_21", centre_m=(-1.5, -0.5, 1.25), half_m=(0.05, 2.0, 1.25))
-    house = with_box(house, "sofa_01", centre_m=(-3.0, -1.5, 0.4), half_m=(0.4, 0.8, 0.4))  # next door: there is a way
+    house = with_box(house, "sofa_01", centre_m=(-3.0, -1.5, 0.4), half_m=(0.4, 0.8, 0.4))  # reachable
     (folder / "seats.xml").write_text(house.spec.to_xml())
     episodes = [Episode(f"fenced_{i}", "seats", "sofa", Pose(-0.3, 0.4 * i, 0.0)) for i in range(3)]
     write_split(folder, episodes, {"seats": {}}, version="0.0.1")
     asked: list[tuple[bool, int]] = []
-    accepts = train_verifier.Witness.accepts
+    accepts = train_verifier.RecordingVerifier.accepts
 
-    def spy(self: train_verifier.Witness, goal: str, features: Features) -> bool:
+    def spy(self: train_verifier.RecordingVerifier, goal: str, features: Features) -> bool:
         before = len(self.candidates)
         answer = accepts(self, goal, features)
         assert self.agent is not None
@@ -106,15 +107,16 @@ def test_what_can_only_be_judged_from_too_far_to_stop_is_not_logged(tmp_path: Pa
     judged: list[object] = []
     judge = TargetSeeker.judge
     monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
-    monkeypatch.setattr(train_verifier.Witness, "accepts", spy)
-    monkeypatch.setattr(train_verifier, "SEMANTICS", {"noisy": GroundTruthSegmenter.sensors})  # sharp outlines
+    monkeypatch.setattr(train_verifier.RecordingVerifier, "accepts", spy)
+    exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
+    monkeypatch.setattr(train_verifier, "KINDS", {"noisy": exact})
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
     played(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
-    assert len(asked) == len(judged)  # what is only seen from afar is not logged
+    assert len(asked) == len(judged)  # candidates that are only seen from afar are not logged
 
 
-def test_two_workers_log_what_one_does(split: Path, tmp_path: Path):
+def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
     one = played(split, tmp_path / "one", 3)
     args = train_verifier.Args(
         split=str(split), episodes=3, max_steps=30, least_of_either=500, log=tmp_path / "two", workers=2
@@ -125,7 +127,7 @@ def test_two_workers_log_what_one_does(split: Path, tmp_path: Path):
     assert sorted(two, key=lambda line: line["episode_id"]) == one
 
 
-def test_time_that_is_up_leaves_whole_lines_and_none_plays_nothing(split: Path, tmp_path: Path):
+def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(split: Path, tmp_path: Path):
     args = train_verifier.Args(split=str(split), episodes=3, max_steps=30, minutes=1e-6, log=tmp_path / "log")
     there = load_split(str(split))
     assert len(train_verifier.candidates_of(args, there)) == 1
@@ -135,10 +137,10 @@ def test_time_that_is_up_leaves_whole_lines_and_none_plays_nothing(split: Path, 
 
 def test_val_and_test_are_only_judged():
     for split in ("val", "test"):
-        with pytest.raises(ConfigError, match=f"never fitted on '{split}'; --judge"):
+        with pytest.raises(ConfigError, match=f"never fitted on '{split}'; use --judge"):
             train_verifier.main(train_verifier.Args(split=split))
 
 
-def test_semantics_without_anything_to_verify_are_refused():
+def test_segmentation_that_needs_no_verification_is_refused():
     with pytest.raises(ConfigError, match=r"'gt' has no verifier to fit\. There is: noisy, rednet"):
         train_verifier.main(train_verifier.Args(semantics="gt"))

@@ -10,7 +10,6 @@ import pytest
 from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.configuration import as_json, field_paths, with_fields
-from sim.errors import ConfigError
 from sim.run import entry
 
 SPLIT = {"name": "val", "version": "1", "sha256": "0"}
@@ -54,7 +53,7 @@ def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semanti
         ("task.success.distance_m=-1", "distance_m"),
         ("sensors=[]", "needs depth"),
         ('sensors=["depth", "semantic"]', "'semantic' is ground truth"),
-        ("detector.weights=none", "'detector.weights'"),
+        ("detector.weights=none", "'detector' has no fields here"),
     ],
 )
 def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
@@ -85,4 +84,4 @@ def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest
     assert entry([*options, *settings]) == 0
     capsys.readouterr()
     assert entry([*options, "--config", "task.max_steps=4", *settings[2:]]) == 2
-    assert "config.task.max_steps = 3, this one has 4" in capsys.readouterr().err
+    assert "config.task.max_steps = 3, this run has 4" in capsys.readouterr().err

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import torch
 
-from sim import segmenters
+from sim.composition.options import RunOptions, check_options
+from sim.composition.run_config import configuration_of, record_of
+from sim.composition.segmenters import NetworkConfig, make_segmenter
 from sim.interface import CameraModel, ConfigError
-from sim.run import Args, check, config_of
 from stubborn.segmentation.checkpoints import save_rednet
 from stubborn.segmentation.network import RedNetSegmenter
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
@@ -35,7 +36,7 @@ def weights(tmp_path: Path) -> Path:
 
 
 def test_rednet_is_made_of_the_weights_that_are_given(weights: Path) -> None:
-    segmenter = segmenters.make_segmenter("rednet", Eyes(), weights=weights)  # type: ignore[arg-type]
+    segmenter = make_segmenter("rednet", Eyes(), NetworkConfig(weights=weights))  # type: ignore[arg-type]
     assert isinstance(segmenter, RedNetSegmenter)
     assert (segmenter.block_px, segmenter.temperature) == (4, 1.5)
     rng = np.random.default_rng(0)
@@ -49,7 +50,7 @@ def test_the_network_of_a_run_has_one_thread_since_others_would_change_its_last_
     before = torch.get_num_threads()
     try:
         torch.set_num_threads(2)
-        segmenters.make_segmenter("rednet", Eyes(), weights=weights)  # type: ignore[arg-type]
+        make_segmenter("rednet", Eyes(), NetworkConfig(weights=weights))  # type: ignore[arg-type]
         assert torch.get_num_threads() == 1
     finally:
         torch.set_num_threads(before)
@@ -57,23 +58,28 @@ def test_the_network_of_a_run_has_one_thread_since_others_would_change_its_last_
 
 def test_the_checksum_of_the_weights_is_part_of_a_run(weights: Path, tmp_path: Path) -> None:
     split = {"name": "val", "version": "1.0.0", "sha256": "0"}
-    first = config_of(Args(semantics="rednet", weights=weights), split)["semantics_config"]
+
+    def checksums(file: Path) -> dict[str, str]:
+        options = RunOptions(semantics="rednet", weights=file)
+        return record_of(options, configuration_of(options), split)["files_sha256"]
+
+    first = checksums(weights)
     other = tmp_path / "other.safetensors"
     save_rednet(other, RedNet(TINY), {"block_px": 4})
-    assert first != config_of(Args(semantics="rednet", weights=other), split)["semantics_config"]
+    assert first != checksums(other)
     assert json.dumps(first)
 
 
 def test_weights_that_are_not_there_and_weights_without_rednet_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="No weights at"):
-        check(Args(semantics="rednet", weights=tmp_path / "none.safetensors"))
+        check_options(RunOptions(semantics="rednet", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match="--weights go with --semantics rednet, not with 'gt'"):
-        check(Args(semantics="gt", weights=tmp_path / "none.safetensors"))
+        check_options(RunOptions(semantics="gt", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match="Unknown --semantics 'dreams'"):
-        check(Args(semantics="dreams"))
+        check_options(RunOptions(semantics="dreams"))
 
 
 def test_a_run_without_a_network_does_not_load_torch() -> None:
-    code = "import sys, sim.run, sim.segmenters; print('torch' in sys.modules)"
+    code = "import sys, sim.run, sim.composition.segmenters; print('torch' in sys.modules)"
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "False"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from sim import run
+from sim.composition.options import RunOptions
 from sim.detectors.confusions import CONFUSIONS
 from sim.detectors.noisy import Classification, LabelledObjects, NoisyConfig, NoisySegmenter
 from sim.env.objectnav import ObjectNavEnv
@@ -216,10 +217,10 @@ def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a
 def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_with(house: Path, tmp_path: Path):
     lines = []
     for name in ("once", "twice"):
-        args = run.Args(house=house, goal="sofa", semantics="noisy", episodes=1, out=tmp_path / name)
+        args = RunOptions(house=house, goal="sofa", semantics="noisy", episodes=1, out=tmp_path / name)
         assert run.main(args) == 0
         config = json.loads((tmp_path / name / "config.json").read_text())
-        assert config["semantics_config"] == json.loads(json.dumps(asdict(NoisyConfig())))
+        assert config["config"]["detector"] == json.loads(json.dumps(asdict(NoisyConfig())))
         (line,) = [json.loads(text) for text in (tmp_path / name / "results.jsonl").read_text().splitlines()]
         lines.append({key: value for key, value in line.items() if key not in ("wall_time_s", "steps_per_s")})
     assert lines[0] == lines[1]
@@ -228,7 +229,7 @@ def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_
 
 def test_unknown_semantics_are_refused_with_what_there_is(house: Path, tmp_path: Path):
     with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. There is: gt, noisy"):
-        run.main(run.Args(house=house, semantics="dreams", out=tmp_path))
+        run.main(RunOptions(house=house, semantics="dreams", out=tmp_path))
 
 
 def test_rates_outside_their_range_are_refused():
