@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from sim.episodes import habitat
 from sim.geometry.pose import Pose
 from sim.houses.house import Room
+from sim.task.footprints import Footprint
 from sim.task.objectnav import Task
-from sim.task.success import Footprint, GoalRegion
+from sim.task.success import GoalRegion
 from sim.world.freespace import FreeSpace
 
 VIEW_STEP_CELLS = 10

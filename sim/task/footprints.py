@@ -1,0 +1,153 @@
+"""Footprints: the union of the plan projections of an instance's rendered geoms, and the floors below instances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import KDTree
+
+from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.gl import mujoco
+from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
+from sim.interface import MPCAT40_ID
+
+SAMPLE_M = 0.025
+"""Largest gap between neighbouring sample points on a footprint's boundary."""
+FLOOR_CONTACT_M = 0.1
+"""Largest depth by which an object may sink into the floor that it stands on."""
+_PIXEL_M = 0.005
+_BORDER_PX = 2
+
+
+class Floor(NamedTuple):
+    """A piece of floor: the height of its top, and its outline in plan."""
+
+    top_m: float
+    plan: ConvexPolygon | None
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """The union of the plan projections of an instance's rendered geoms."""
+
+    instance: Instance
+    parts: tuple[ConvexPolygon, ...]
+    """Convex polygons; the footprint is their union."""
+    boundary_m: KDTree
+    """Points (n, 2) on its boundary, `SAMPLE_M` apart or nearer."""
+    bounds_m: tuple[float, float, float, float]
+    z_m: tuple[float, float]
+    """Heights of the lowest and the highest point."""
+    floor_z_m: float
+    """Height of the floor below the instance."""
+
+    def near(self, xy_m: NDArray[np.float64], margin_m: float) -> NDArray[np.bool_]:
+        """Returns (n,) which places (n, 2) are in the bounding box grown by a margin."""
+        x0, y0, x1, y1 = self.bounds_m
+        return np.all((xy_m >= (x0 - margin_m, y0 - margin_m)) & (xy_m <= (x1 + margin_m, y1 + margin_m)), axis=1)
+
+    def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Returns (n,) which places (n, 2) are in the footprint."""
+        inside = np.zeros(len(xy_m), dtype=np.bool_)
+        candidates = np.flatnonzero(self.near(xy_m, 0.0))
+        for part in self.parts if candidates.size else ():
+            inside[candidates] |= part.contains(xy_m[candidates])
+        return inside
+
+
+def footprint_of(
+    model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[Floor] = ()
+) -> Footprint | None:
+    """Returns the footprint of an instance; None where nothing of it is rendered."""
+    rendered = rendered_geoms(model)
+    geoms = [geom for geom in instance.geom_ids if rendered[geom]]
+    parts = tuple(part for geom in geoms for part in _rendered_parts(model, data, geom))
+    if not parts:
+        return None
+    bounds = np.array([part.bounds_m for part in parts])
+    low, high = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
+    z = np.concatenate([geom_polytope(model, data, geom, rendered=True).vertices_m[:, 2] for geom in geoms])
+    z_m = (float(z.min()), float(z.max()))
+    floor_z_m = _floor_under(floors, 0.5 * (low + high), z_m[0])
+    boundary = KDTree(_boundary_points(parts, low, high))
+    return Footprint(instance, parts, boundary, (*low.tolist(), *high.tolist()), z_m, floor_z_m)
+
+
+def house_floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> tuple[Floor, ...]:
+    """Returns the floors of all storeys that wheels can stand on."""
+    geoms = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
+    bodies = [geom_polytope(model, data, geom) for geom in geoms.tolist()]
+    return tuple(Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies)
+
+
+def _floor_under(floors: Sequence[Floor], xy_m: NDArray[np.float64], bottom_m: float) -> float:
+    """Returns the height of the highest floor under a place, not above `bottom_m`; elsewhere of any floor below it."""
+    below = [floor for floor in floors if floor.top_m <= bottom_m + FLOOR_CONTACT_M]
+    under = [floor for floor in below if floor.plan is not None and floor.plan.contains(xy_m[None])[0]]
+    return max((floor.top_m for floor in under or below), default=0.0)
+
+
+def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
+    """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh."""
+    whole = plan_polygon(geom_polytope(model, data, geom, rendered=True))
+    if whole is None or not is_hollow(model, geom):
+        return [whole] if whole is not None else []
+    corners = mesh_triangles(model, data, geom)[..., :2]
+    low = np.array(whole.bounds_m[:2])
+    hull = _raster([whole.vertices_m], low, whole.bounds_m[2:])
+    missing = hull & ~_raster(corners, low, whole.bounds_m[2:])
+    if not _eroded(missing, 1).any():
+        return [whole]
+    parts = (ConvexPolygon.of_corners(corner) for corner in corners)
+    return [part for part in parts if part is not None]
+
+
+def is_hollow(model: mujoco.MjModel, geom: int) -> bool:
+    """Returns whether a geom is a mesh that is not convex."""
+    return model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH and not mesh_is_convex(model, geom)
+
+
+def _boundary_points(
+    parts: Sequence[ConvexPolygon], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Returns (n, 2) corners and points `SAMPLE_M` apart on the edges of the parts, without those inside the union."""
+    points = np.concatenate([_edge_points(part) for part in parts])
+    if len(parts) == 1:
+        return points
+    pixels = np.round((points - low) / _PIXEL_M).astype(np.int64) + _BORDER_PX
+    inner = _eroded(_raster([part.vertices_m for part in parts], low, high), _BORDER_PX)
+    points = points[~inner[pixels[:, 1], pixels[:, 0]]]
+    return points[np.unique(np.round(points / 0.001).astype(np.int64), axis=0, return_index=True)[1]]
+
+
+def _edge_points(part: ConvexPolygon) -> NDArray[np.float64]:
+    """Returns (n, 2) the corners of a polygon and points on its edges."""
+    ahead = np.roll(part.vertices_m, -1, axis=0)
+    points = []
+    for start, end in zip(part.vertices_m, ahead, strict=True):
+        count = max(1, int(np.ceil(np.hypot(*(end - start)) / SAMPLE_M)))
+        points.append(start + (np.arange(count) / count)[:, None] * (end - start))
+    return np.concatenate(points)
+
+
+def _raster(
+    polygons: Sequence[NDArray[np.float64]] | NDArray[np.float64], low: NDArray[np.float64], high: ArrayLike
+) -> NDArray[np.bool_]:
+    """Returns an image of convex polygons (k, 2), pixels of `_PIXEL_M` with a border around them."""
+    size = np.ceil((np.asarray(high) - low) / _PIXEL_M).astype(int) + 1 + 2 * _BORDER_PX
+    image = np.zeros((size[1], size[0]), dtype=np.uint8)
+    for polygon in polygons:
+        pixels = np.round((polygon - low) / _PIXEL_M).astype(np.int32) + _BORDER_PX
+        cv2.fillConvexPoly(image, pixels, 1)
+    return image.astype(np.bool_)
+
+
+def _eroded(image: NDArray[np.bool_], radius_px: int) -> NDArray[np.bool_]:
+    kernel = np.ones((2 * radius_px + 1, 2 * radius_px + 1), dtype=np.uint8)
+    return cv2.erode(image.astype(np.uint8), kernel, borderValue=0).astype(np.bool_)
