@@ -1,12 +1,12 @@
-"""Measure a RedNet on labelled views: intersection over union, what its scores are worth, time a frame.
+"""Evaluates a RedNet on labelled views: intersection over union, calibration of its scores, time per frame.
 
     python tools/evaluate_rednet.py --views runs/views_val_fast runs/views_val_good
     python tools/evaluate_rednet.py --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
         --fit-temperature --card stubborn/segmentation/weights/README.md
 
-With --fit-temperature the temperature of the softmax is fitted on the views of every second house, written into the
-file of the weights, and judged on the other houses; --block-px tries another working resolution. --card writes the
-model card that ships beside the weights.
+With --fit-temperature the temperature of the softmax is fitted to the views of every second house, written to the
+file of the weights, and evaluated on the other houses; --block-px sets another resolution. --card writes the model
+card that is shipped with the weights.
 """
 
 from __future__ import annotations
@@ -34,41 +34,42 @@ from stubborn.segmentation.rednet import CLASSES, RedNet
 from stubborn.segmentation.samples import NONE, Sampler, Samples
 
 TIMED_FRAMES = 30
-ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) that sees {width} x {height} pixels and knows mpcat40.
-Trained from random weights on views of this repository's houses (pools train and wide), nothing else; MIT licence.
-Measured on houses of `val`, whose furniture styles and textures are in no train house; calibration on those half of
-them that the temperature was not fitted on. Checkpoint and working resolution were chosen by mIoU on views of these
-houses as well, so the figure flatters a little."""
+ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
+the categories of mpcat40; MIT licence.
+It was trained from random weights on views of this repository's houses only (pools train and wide). It was evaluated
+on houses of `val`, whose furniture styles and textures are in no train house, and its calibration on the half of them
+to which the temperature was not fitted. Checkpoint and resolution were chosen by mIoU on views of these houses as
+well, so that the mIoU is slightly optimistic."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Which network, on which views."""
+    """Evaluates a network on views."""
 
     views: tuple[Path, ...]
     """Folders of shards of one size (tools/generate_views.py), of houses that the network was not trained on."""
     weights: Path | None = None
-    """The network; the shipped one when not given."""
+    """Weights of the network; None: the shipped ones."""
     fit_temperature: bool = False
-    """Fit the softmax's temperature and write it into the file of the weights."""
+    """Fit the softmax temperature and write it to the file of the weights."""
     card: Path | None = None
-    """Write a model card here."""
+    """File of the model card to write."""
     block_px: int | None = None
-    """Let it see the image shrunk by this (of 640 x 480), not by what its file says; --fit-temperature writes it."""
+    """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --fit-temperature stores it."""
     threads: int = 2
-    """Of PyTorch."""
+    """Number of threads of PyTorch."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What was found out about a network."""
+    """The results of an evaluation."""
 
     iou: Iou
     by_folder: dict[str, float]
     """mIoU over the goal categories of each folder of views."""
     views: int
     before: Reliability
-    """On the houses that the temperature was not fitted on, with temperature 1."""
+    """On the houses to which the temperature was not fitted, with temperature 1."""
     after: Reliability
     """The same with the network's temperature."""
     temperature: float
@@ -76,7 +77,7 @@ class Measured:
 
 
 def main(args: Args) -> int:
-    """Measure, tell and, if asked to, write; returns the exit status."""
+    """Evaluates, prints and, where asked to, writes; returns the exit status."""
     for name in ("threads", "block_px"):
         value = getattr(args, name)
         if value is not None and value < 1:
@@ -98,7 +99,7 @@ def main(args: Args) -> int:
 
 
 def measure(args: Args, model: RedNet, metadata: dict[str, Any]) -> Measured:
-    """Everything about a network on the views of some folders."""
+    """Returns the results of a network on the views of some folders."""
     block_px = int(metadata.get("block_px", 1))
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
     by_folder, views = {}, []
@@ -122,31 +123,35 @@ def measure(args: Args, model: RedNet, metadata: dict[str, Any]) -> Measured:
 
 
 def loader(views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
-    """Batches of views at the network's resolution.
+    """Returns batches of views at the network's resolution.
 
     Raises:
-        ConfigError: they are stored smaller than that.
+        ConfigError: the views are stored at a lower resolution.
     """
     if block_px % stored_px:
-        raise ConfigError(f"The network sees every {block_px} pixels, the views are stored every {stored_px}.")
+        raise ConfigError(
+            f"The network needs blocks of {block_px} pixels, but the views are stored in blocks of {stored_px}."
+        )
     return DataLoader(Samples(views, Sampler(CameraModel(), block_px // stored_px, NONE)), batch_size=8)
 
 
 def split_by_house(views: Sequence[tuple[LabelledView, int]]) -> tuple[list, list]:
-    """Views of every second house, and those of the others.
+    """Returns the views of every second house, and those of the other houses.
 
     Raises:
-        ConfigError: all are of one house.
+        ConfigError: all views are of one house.
     """
     houses = sorted({view.record["house"] for view, _ in views})
     if len(houses) < 2:
-        raise ConfigError("--views are of one house only; calibration is judged on other houses than it is fitted on.")
+        raise ConfigError(
+            "--views are of one house only; calibration needs houses to fit and other houses to evaluate."
+        )
     first = set(houses[::2])
     return [v for v in views if v[0].record["house"] in first], [v for v in views if v[0].record["house"] not in first]
 
 
 def sampled_logits(model: RedNet, views: Sequence[tuple[LabelledView, int]], block_px: int) -> tuple[Tensor, Tensor]:
-    """Logits (k, classes) and class channels (k,) of every eighth pixel each way that has a label."""
+    """Returns logits (k, classes) and class channels (k,) of the labelled pixels in every eighth row and column."""
     logits, truth = [], []
     with torch.inference_mode():
         for stored_px in sorted({px for _, px in views}):
@@ -155,27 +160,27 @@ def sampled_logits(model: RedNet, views: Sequence[tuple[LabelledView, int]], blo
                 kept = target[:, 2::8, 2::8].reshape(-1)
                 logits.append(some[kept >= 0])
                 truth.append(kept[kept >= 0])
-    return torch.cat(logits).clone(), torch.cat(truth).clone()  # clones are no inference tensors
+    return torch.cat(logits).clone(), torch.cat(truth).clone()  # a clone is not an inference tensor
 
 
 def frame_ms(model: RedNet, block_px: int) -> float:
-    """Median milliseconds of one frame, from 640 x 480 images to scores."""
+    """Returns the median time of one frame in milliseconds, from 640 x 480 images to scores."""
     segmenter = RedNetSegmenter(model, block_px=block_px, score_block_px=max(4, block_px))
     rng = np.random.default_rng(0)
     frame = {
         "rgb": rng.integers(0, 255, (480, 640, 3), np.uint8),
         "depth": rng.uniform(0.5, 5.0, (480, 640)).astype("f4"),
     }
-    took_s = []
+    times_s = []
     for _ in range(TIMED_FRAMES):
-        began = time.perf_counter()
-        segmenter.scores(frame, "chair")  # pyright: ignore[reportArgumentType] - what it reads of an observation
-        took_s.append(time.perf_counter() - began)
-    return 1000.0 * float(np.median(took_s))
+        start_s = time.perf_counter()
+        segmenter.scores(frame, "chair")  # pyright: ignore[reportArgumentType] - the two images that it reads
+        times_s.append(time.perf_counter() - start_s)
+    return 1000.0 * float(np.median(times_s))
 
 
 def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -> str:
-    """The model card, Markdown."""
+    """Returns the model card, Markdown."""
     parameters = sum(tensor.numel() for tensor in load_rednet(file)[0].parameters())
     iou, px = measured.iou, int(metadata.get("block_px", 1))
     stages = list(training_stages(metadata))
@@ -192,11 +197,11 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             "| | |",
             "|---|---|",
             f"| mIoU, goal categories present | {iou.goals:.3f} |",
-            *(f"| the same, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items()),
+            *(f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items()),
             f"| mIoU, all categories present | {iou.everything:.3f} |",
             f"| pixel accuracy | {iou.accuracy:.3f} |",
-            f"| views measured | {measured.views} |",
-            f"| time a frame, {args.threads} threads | {measured.frame_ms:.0f} ms |",
+            f"| number of views | {measured.views} |",
+            f"| time per frame, {args.threads} threads | {measured.frame_ms:.0f} ms |",
             *(f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages),
             f"| calibration error, temperature 1 | {measured.before.error:.3f} |",
             f"| calibration error, temperature {measured.temperature:.2f} | {measured.after.error:.3f} |",
@@ -210,9 +215,9 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             *rows,
             "",
             *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
-            "How often a goal category scored p is right, before and after the temperature:",
+            "Share of correct pixels by the score of a goal category, before and after the temperature:",
             "",
-            "| mean score | share right | pixels | mean score | share right | pixels |",
+            "| mean score | share correct | pixels | mean score | share correct | pixels |",
             "|---|---|---|---|---|---|",
             *reliability,
             "",
@@ -221,19 +226,20 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
 
 
 def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """What is known of each training that led to a network, the first one first."""
+    """Yields the metadata of each training that led to a network, the first one first."""
     if "started_from" in metadata:
         yield from training_stages(metadata["started_from"])
     yield metadata
 
 
 def _command(stage: dict[str, Any]) -> str:
-    told = (
+    """Returns the command of one training."""
+    options = (
         f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
         for key, value in stage.get("options", {}).items()
         if value
     )
-    return " ".join(["python tools/train_rednet.py", *told])
+    return " ".join(["python tools/train_rednet.py", *options])
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
-"""Train a RedNet on labelled views, or finetune a published checkpoint.
+"""Trains a RedNet on labelled views, or finetunes a published checkpoint.
 
 python tools/train_rednet.py --views runs/views_fast runs/views_good --val-views runs/views_val --out runs/rednet \
     --block-px 2 --hours 3
 python tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views runs/views \
     --val-views runs/views_val --out runs/finetuned --steps 20000
 
-Killed and started again it goes on: `state.pt` (one file, replaced) holds weights, optimiser and step. `train.csv` and
-`val.csv` hold the curves; `rednet.safetensors` is the network of the best evaluation so far.
+The same command continues a killed run: `state.pt` holds weights, optimiser and step. `train.csv` and `val.csv` hold
+the curves; `rednet.safetensors` is the network of the best evaluation so far.
 """
 
 from __future__ import annotations
@@ -42,67 +42,67 @@ from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import learning_rate, pyramid_loss
 
 LOG_EVERY_STEPS = 20
+MAX_GRADIENT_NORM = 5.0
 SAVE_EVERY_S = 60.0
-"""State is written no more often than this."""
+"""Shortest time between two writes of the state."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """What to train, on what, how long."""
+    """Trains a RedNet."""
 
     views: tuple[Path, ...]
     """Folders of training shards (tools/generate_views.py)."""
     val_views: tuple[Path, ...]
     """Folders of shards to evaluate on."""
     out: Path
-    """Folder of the run; one that is there goes on."""
+    """Folder of the run; an existing run is continued."""
     size: str = "compact"
     """compact or published."""
     init: Path | None = None
-    """Weights to start from: a file of ours, or a checkpoint of the published network."""
+    """Initial weights: a file of this tool, or a checkpoint of the published network."""
     block_px: int = 1
-    """The network sees the views shrunk by this; views stored small (--shrink 2) need no more."""
+    """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
     window_px: int | None = None
-    """Train on windows of so many columns at random scales, a quarter of the pixels at half the width; None: whole
-    views. It is evaluated, and meant to be used, on whole views in any case."""
+    """Train on windows of this width at random scales (half the width: a quarter of the pixels); None: whole views.
+    Evaluation always uses whole views."""
     whole_share: float = 0.0
-    """With --window-px: this share of the samples is the whole view, shrunk, as a network sees it that works at that
-    width."""
+    """With --window-px: share of the samples that are the whole view, shrunk, as for a network that uses that width."""
     val_block_px: int | None = None
-    """Evaluate on views shrunk by this, which the weights then name as what they work at; None: as --block-px."""
+    """Factor for evaluation; it is stored with the weights as their resolution. None: as --block-px."""
     steps: int = 20_000
-    """Steps of the learning-rate schedule."""
+    """Number of steps of the learning-rate schedule."""
     hours: float | None = None
-    """End after so much time, the schedule fitted to it (the speed is measured first)."""
+    """Time limit, to which the schedule is fitted by the measured speed; None: --steps."""
     batch: int = 16
-    """Views a step."""
+    """Views per step."""
     rate: float = 2e-3
     """Peak learning rate of AdamW."""
     weight_decay: float = 0.01
-    """Of AdamW."""
+    """Weight decay of AdamW."""
     workers: int = 0
-    """Processes that read views."""
+    """Number of processes that read views."""
     threads: int | None = None
-    """Threads of PyTorch; None leaves its choice."""
+    """Number of threads of PyTorch; None does not change it."""
     device: str = "auto"
     """auto, cpu or cuda."""
     evaluate_every: int = 500
     """Steps between evaluations."""
     val_count: int = 400
-    """Views an evaluation looks at; 0: all."""
+    """Number of views of an evaluation; 0: all."""
     seed: int = 0
-    """Drives initial weights, order and augmentation."""
+    """Seed of the initial weights, the order and the augmentation."""
 
 
 def main(args: Args) -> int:
-    """Train; returns the exit status."""
+    """Trains; returns the exit status."""
     trainer = Trainer(args)
     trainer.run()
     return 0
 
 
 class Trainer:
-    """Network, optimiser and data of one run, and where it stands."""
+    """The network, the optimiser, the data and the progress of one run."""
 
     def __init__(self, args: Args) -> None:
         _check(args)
@@ -131,15 +131,15 @@ class Trainer:
         self._resume()
 
     def run(self) -> None:
-        """Go on until the steps are done or the time is up."""
-        began, last_saved = time.perf_counter() - self.spent_s, time.perf_counter()
+        """Trains until the steps are done or the time is up."""
+        start_s, last_saved_s = time.perf_counter() - self.spent_s, time.perf_counter()
         losses: list[float] = []
         for rgb, depth, target in self._batches():
             if self.step >= self.total:
                 break
             losses.append(self._train_on(rgb, depth, target))
             self.step += 1
-            self.spent_s = time.perf_counter() - began
+            self.spent_s = time.perf_counter() - start_s
             if self.args.hours is not None and self.step % LOG_EVERY_STEPS == 0:
                 self.total = max(self.step, int(self.step * 3600 * self.args.hours / self.spent_s))
             if self.step % LOG_EVERY_STEPS == 0:
@@ -147,15 +147,15 @@ class Trainer:
                 losses.clear()
             if self.step % self.args.evaluate_every == 0:
                 self._evaluate()
-            if time.perf_counter() - last_saved > SAVE_EVERY_S:
+            if time.perf_counter() - last_saved_s > SAVE_EVERY_S:
                 self._save_state()
-                last_saved = time.perf_counter()
+                last_saved_s = time.perf_counter()
         if self.step % self.args.evaluate_every:
             self._evaluate()
         self._save_state()
 
     def _batches(self) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-        """Batches without end, epoch after epoch."""
+        """Yields batches without end, epoch after epoch."""
         self.data.epoch = self.step  # another order after a restart
         while True:
             loader = DataLoader(self.data, batch_size=self.args.batch, num_workers=self.args.workers, drop_last=True)
@@ -163,10 +163,11 @@ class Trainer:
             yield from loader
             if self.step == before:
                 folders = ", ".join(map(str, self.args.views))
-                raise ConfigError(f"{folders}: fewer views than one batch of {self.args.batch}.")
+                raise ConfigError(f"--views {folders}: fewer views than one batch of {self.args.batch}.")
             self.data.epoch += 1
 
     def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor) -> float:
+        """Makes one step of the optimiser and returns the loss."""
         for group in self.optimiser.param_groups:
             group["lr"] = learning_rate(
                 self.step, self.total, peak=self.args.rate, warmup=min(200, 1 + self.total // 20)
@@ -178,12 +179,12 @@ class Trainer:
             outputs = self.model.pyramid(rgb, depth.to(self.device))
             loss = pyramid_loss(outputs, target.to(self.device), self.weights)
         loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), 5.0)
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
         self.optimiser.step()
         return float(loss.detach())
 
     def _evaluate(self) -> None:
-        """Measure, write a row, and keep the network if it is the best so far."""
+        """Evaluates, writes a row, and saves the network if it is the best so far."""
         iou, reliability = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
@@ -194,7 +195,7 @@ class Trainer:
             save_rednet(self.args.out / "rednet.safetensors", self.model, self._card(iou))
 
     def _card(self, iou: Iou) -> dict[str, Any]:
-        """What the file of weights says of itself."""
+        """Returns the metadata of the file of weights."""
         options: dict[str, Any] = {
             key: None if value is None else str(value) for key, value in asdict(self.args).items()
         }
@@ -210,12 +211,14 @@ class Trainer:
         }
 
     def _log(self, loss: float) -> None:
+        """Writes a row of the training curve."""
         rate = self.optimiser.param_groups[0]["lr"]
         per_s = self.args.batch * self.step / max(self.spent_s, 1e-9)
         row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
         _append(self.args.out / "train.csv", row | {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2)})
 
     def _save_state(self) -> None:
+        """Writes the state of the run; the file is replaced in one step."""
         part = self.args.out / "state.pt.part"
         torch.save(
             {
@@ -229,6 +232,11 @@ class Trainer:
         part.replace(self.args.out / "state.pt")
 
     def _resume(self) -> None:
+        """Loads the state of the run, if there is one.
+
+        Raises:
+            ConfigError: the run is of another size.
+        """
         file = self.args.out / "state.pt"
         if not file.exists():
             return
@@ -241,7 +249,7 @@ class Trainer:
         self.step, self.spent_s, self.best = progress["step"], progress["spent_s"], progress["best"]
         if self.args.hours is not None:
             self.total = max(progress["total"], self.step)
-        print(f"goes on from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+        print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:
@@ -249,7 +257,7 @@ def _all_shards(folders: Sequence[Path]) -> list[Path]:
 
 
 def _network(args: Args) -> tuple[RedNet, dict[str, Any]]:
-    """The network to train, and what its file says of its training so far."""
+    """Returns the network to train, and the metadata of its earlier training."""
     if args.init is None:
         return RedNet(SIZES[args.size]), {}
     model, metadata = load_rednet(args.init)
@@ -259,6 +267,7 @@ def _network(args: Args) -> tuple[RedNet, dict[str, Any]]:
 
 
 def _device(name: str) -> torch.device:
+    """Returns the device of a name; `auto` is CUDA where there is a device."""
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
     if name == "cuda" and not torch.cuda.is_available():
@@ -267,7 +276,7 @@ def _device(name: str) -> torch.device:
 
 
 def _append(file: Path, row: dict[str, Any]) -> None:
-    """A row of a CSV file, under a heading that the first row makes."""
+    """Appends a row to a CSV file; the keys of the first row are its heading."""
     if file.exists():
         with file.open(newline="") as stream:
             heading = next(csv.reader(stream))
@@ -280,6 +289,7 @@ def _append(file: Path, row: dict[str, Any]) -> None:
 
 
 def _check(args: Args) -> None:
+    """Raises ConfigError for arguments that are not allowed."""
     if args.size not in SIZES:
         raise ConfigError(f"--size must be one of {', '.join(SIZES)}, got '{args.size}'.")
     if args.device not in ("auto", "cpu", "cuda"):
@@ -288,15 +298,13 @@ def _check(args: Args) -> None:
         if getattr(args, name) < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
     if args.window_px is not None and args.window_px < 32:
-        raise ConfigError(
-            f"--window-px must be at least 32, got {args.window_px}: a network halves a sample five times."
-        )
+        raise ConfigError(f"--window-px must be at least 32 (the network halves it five times), got {args.window_px}.")
     if not 0.0 <= args.whole_share <= 1.0 or (args.whole_share and args.window_px is None):
         raise ConfigError(f"--whole-share must be in [0, 1] and needs --window-px, got {args.whole_share}.")
     if args.val_block_px is not None and args.val_block_px < 1:
         raise ConfigError(f"--val-block-px must be at least 1, got {args.val_block_px}.")
     if args.batch < 2:
-        raise ConfigError("--batch must be at least 2: batch normalisation needs more than one view.")
+        raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
     if args.hours is not None and args.hours <= 0:
         raise ConfigError(f"--hours must be > 0, got {args.hours}.")
 

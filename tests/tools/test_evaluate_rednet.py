@@ -1,4 +1,4 @@
-"""The measuring tool on a handful of tiny views: figures, and the temperature that lands in the file."""
+"""The evaluation tool on a few tiny views: its results, and the temperature that it writes to the file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture
 def weights(tmp_path: Path) -> Path:
-    """A network that is far too sure of itself."""
+    """An overconfident network."""
     torch.manual_seed(0)
     model = RedNet(TINY)
     with torch.no_grad():
@@ -28,7 +28,7 @@ def weights(tmp_path: Path) -> Path:
     return tmp_path / "tiny.safetensors"
 
 
-def test_a_temperature_is_fitted_written_and_makes_scores_more_honest(tmp_path: Path, weights: Path) -> None:
+def test_a_temperature_is_fitted_written_and_improves_calibration(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
     card = tmp_path / "card.md"
@@ -45,10 +45,10 @@ def test_a_temperature_is_fitted_written_and_makes_scores_more_honest(tmp_path: 
     assert 0.0 <= measured.iou.goals <= 1.0
     text = card.read_text()
     assert f"temperature {metadata['temperature']:.2f}" in text
-    assert "| views measured | 8 |" in text
+    assert "| number of views | 8 |" in text
 
 
-def test_another_resolution_is_measured_and_written_with_the_temperature(tmp_path: Path, weights: Path) -> None:
+def test_another_resolution_is_evaluated_and_written_with_the_temperature(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
     views = (tmp_path / "one", tmp_path / "two")
@@ -58,12 +58,12 @@ def test_another_resolution_is_measured_and_written_with_the_temperature(tmp_pat
     assert load_rednet(weights)[1]["block_px"] == 2
 
 
-def test_views_stored_smaller_than_the_network_sees_are_refused(tmp_path: Path, weights: Path) -> None:
+def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path: Path, weights: Path) -> None:
     write_views(tmp_path / "one", 2)
     views = [
         view for shard in evaluate_rednet.list_shards(tmp_path / "one") for view in evaluate_rednet.read_shard(shard)
     ]
-    with pytest.raises(ConfigError, match="sees every 1 pixels, the views are stored every 2"):
+    with pytest.raises(ConfigError, match="needs blocks of 1 pixels, but the views are stored in blocks of 2"):
         evaluate_rednet.loader(views, 1, 2)
     with pytest.raises(ConfigError, match="one house"):
         evaluate_rednet.split_by_house([(views[0], 1)])
