@@ -1,70 +1,86 @@
-"""How well two notions of a collision agree in a run: the world's (a contact stopped the body) and the agent's (it
-moved less than 0.20 m).
+"""Compares two definitions of a collision in a run: a contact stopped the body, and the robot moved less than 0.20 m.
 
-python tools/check_collisions.py --run runs/mine --episodes 50
+    python tools/check_collisions.py --run runs/mine --episodes 50
 
-The run must have been made with --record. Forwards on which they differ are listed.
+The first is that of the world, the second that of the agent. The run must have been made with --record. The forward
+actions for which the two differ are listed.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from sim import cli
 from sim.interface import Action, ConfigError
-from sim.task.trajectory import ENDED, FOLDER, read_trajectory
+from sim.task.trajectory import ENDED, FOLDER, Trajectory, read_trajectory
 from stubborn.mapping.collision_marks import CollisionConfig
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Which run to look at."""
+    """Options of the command."""
 
     run: Path
     """Folder of a run made with --record."""
     episodes: int = 50
-    """The first so many lines of its results."""
+    """Number of episodes, the first ones of the results."""
     most: int = 40
-    """How many differing forwards are listed."""
+    """Largest number of listed actions."""
+
+
+@dataclass
+class Counts:
+    """Numbers of forward actions."""
+
+    forwards: int = 0
+    collided: int = 0
+    """Actions that a contact stopped."""
+    short: int = 0
+    """Actions that moved the robot less than the agent's threshold."""
+    differences: list[str] = field(default_factory=list)
+    """Descriptions of the actions that are only one of both."""
 
 
 def main(args: Args) -> int:
-    """Count, and list the rest."""
+    """Counts the actions of each kind and lists the differences."""
     results = args.run / "results.jsonl"
     if not results.is_file():
         raise ConfigError(f"--run '{args.run}' has no results.jsonl.")
     names = sorted(json.loads(line)["episode_id"] for line in results.read_text(encoding="utf-8").splitlines())
+    names = names[: args.episodes]
     below_m = CollisionConfig().failed_below_m
-    forwards = agreed = collided = short = listed = 0
-    for name in names[: args.episodes]:
-        t = read_trajectory(args.run / FOLDER / f"{name}.npz")
-        is_forward = t.actions == Action.MOVE_FORWARD
-        is_short = t.moved_m < below_m
-        differ = np.flatnonzero(is_forward & (is_short != t.collided))
-        forwards += int(is_forward.sum())
-        collided += int((is_forward & t.collided).sum())
-        short += int((is_forward & is_short).sum())
-        agreed += int(is_forward.sum()) - len(differ)
-        for i in differ.tolist():
-            if listed < args.most:
-                x, y, yaw, _ = t.poses[i]
-                print(
-                    f"{name} action {i}: moved {t.moved_m[i]:.3f} m, {ENDED[t.ended[i]]}, collided {t.collided[i]}, "
-                    f"at ({x:.2f}, {y:.2f}) m, {np.degrees(yaw):.0f} deg"
-                )
-                listed += 1
-    if forwards == 0:
-        raise ConfigError(f"--run '{args.run}': no episode has a forward.")
+    counts = Counts()
+    for name in names:
+        add_episode(counts, name, read_trajectory(args.run / FOLDER / f"{name}.npz"), below_m)
+    if counts.forwards == 0:
+        raise ConfigError(f"--run '{args.run}': no episode has a forward action.")
+    print("\n".join(counts.differences[: args.most]))
+    share = 1.0 - len(counts.differences) / counts.forwards
     print(
-        f"{min(len(names), args.episodes)} episodes, {forwards} forwards: {collided} collided, {short} moved less than "
-        f"{below_m:.2f} m; both agree in {100 * agreed / forwards:.2f} %."
+        f"{len(names)} episodes, {counts.forwards} forwards: {counts.collided} collided, {counts.short} moved less "
+        f"than {below_m:.2f} m; both agree in {100 * share:.2f} %."
     )
     return 0
+
+
+def add_episode(counts: Counts, name: str, trajectory: Trajectory, below_m: float) -> None:
+    """Counts the forward actions of one episode."""
+    is_forward = trajectory.actions == Action.MOVE_FORWARD
+    is_short = trajectory.moved_m < below_m
+    counts.forwards += int(is_forward.sum())
+    counts.collided += int((is_forward & trajectory.collided).sum())
+    counts.short += int((is_forward & is_short).sum())
+    for i in np.flatnonzero(is_forward & (is_short != trajectory.collided)).tolist():
+        x, y, yaw, _ = trajectory.poses[i]
+        counts.differences.append(
+            f"{name} action {i}: moved {trajectory.moved_m[i]:.3f} m, {ENDED[trajectory.ended[i]]}, collided "
+            f"{trajectory.collided[i]}, at ({x:.2f}, {y:.2f}) m, {np.degrees(yaw):.0f} deg"
+        )
 
 
 if __name__ == "__main__":

@@ -1,13 +1,13 @@
-"""Write the houses of a split, or of any seeds; prints houses a second (of one core) and rejected tries.
+"""Generates the houses of a split, or of any seeds; prints houses per second of one core and rejected tries.
 
-The shipped val and test houses as MJCF files, and the list of train houses with their checksums:
+The val and test houses are written as MJCF files, the train houses as a list with their checksums:
     python tools/generate_houses.py --split val --out assets/mjcf_houses/val --workers 2
     python tools/generate_houses.py --split train --out assets/mjcf_houses/train --workers 2
-Any other ones:
+Houses of other seeds:
     python tools/generate_houses.py --first-seed 0 --houses 5 --pool train --out /tmp/houses
 
-The houses of a split find their textures in the folder `textures` beside theirs; it is made if it is missing. The train
-houses themselves are kept in the cache of `sim.housegen.house_list`, from where episodes are made.
+The houses of a split use the folder `textures` beside their own; it is created if it is missing. The generated train
+houses are kept in the cache of `sim.housegen.house_list`, where tools/make_episodes.py reads them.
 """
 
 from __future__ import annotations
@@ -39,46 +39,46 @@ from sim.paths import assets_dir
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write houses: those of a split, or of any seeds."""
+    """Options of the command."""
 
     out: Path
-    """Folder for the XML files (of train: for the list); made if missing."""
+    """Folder for the XML files (for train: for the list); created if missing."""
     split: str | None = None
-    """Name of a shipped split (val, test, train); its table fixes seeds, shapes and sizes."""
+    """Name of a shipped split (val, test, train), whose recipes define seeds, kinds of plans and sizes."""
     houses: int | None = None
-    """How many: all of the split, or 1 seed, when not given."""
+    """Number of houses; by default all of the split, or 1."""
     workers: int = 1
-    """Processes."""
+    """Number of processes."""
     first_seed: int = 0
     """Without a split: the first of consecutive seeds."""
     pool: Pool = "train"
-    """Without a split: which styles and textures may appear."""
+    """Without a split: styles and textures that may appear."""
     kind: PlanKind | None = None
-    """Without a split: shape of the floor plan; drawn when not given."""
+    """Without a split: kind of floor plan; drawn when not given."""
     area_m2: float | None = None
     """Without a split: floor area; drawn when not given."""
     clutter: float | None = None
-    """Without a split: 0 bare to 1 full; drawn when not given."""
+    """Without a split: 0 without small objects to 1 with many; drawn when not given."""
     movable: bool = False
-    """Without a split: light furniture can be pushed."""
+    """Without a split: whether light furniture can be pushed."""
 
 
 @dataclass(frozen=True)
 class Made:
-    """A generated house as text, or why there is none."""
+    """A generated house as text, or the error."""
 
     name: str
     text: str = ""
     error: str = ""
-    story: str = ""
-    """Shape, size and number of tries."""
+    summary: str = ""
+    """Kind of plan, size and number of tries."""
     rejects: tuple[str, ...] = ()
     seconds: float = 0.0
-    """Of one core."""
+    """Processor time."""
 
 
 def main(args: Args) -> int:
-    """Write the houses; the exit status is 1 when a seed that was asked for gave none."""
+    """Writes the houses; returns 1 if a requested seed gave no house."""
     if args.workers < 1 or (args.houses is not None and args.houses < 1):
         raise ConfigError("--workers and --houses must be at least 1.")
     args.out.mkdir(parents=True, exist_ok=True)
@@ -89,26 +89,26 @@ def main(args: Args) -> int:
         made = list(_write_split(args, args.split))
     else:
         made = list(_write_seeds(args))
-    _report(made, time.perf_counter() - began_s)
+    _print_summary(made, time.perf_counter() - began_s)
     return int(args.split != "train" and any(house.error for house in made))
 
 
 def _write_split(args: Args, split: str) -> Iterator[Made]:
-    """The houses of val or test as files."""
+    """Writes the houses of val or test as files."""
     if split not in SPLITS:
         raise ConfigError(f"No split '{split}'. There is: {', '.join(SPLITS)}, train.")
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)
     for made in ordered_map(_make, SPLITS[split][: args.houses], workers=args.workers):
-        _tell(made)
+        _print_house(made)
         if made.text:
             write_atomically(args.out / f"{made.name}.xml", made.text.encode("utf-8"))
         yield made
 
 
 def _write_train(args: Args) -> Iterator[Made]:
-    """The list of train houses; those made on the way are kept in the cache."""
+    """Writes the list of train houses; the generated houses are kept in the cache."""
     wanted, listed = args.houses or TRAIN_HOUSES, []
     folder = cache_dir() / SPLIT_VERSION / "train"
     copy_textures(folder.parent / "textures")
@@ -119,7 +119,7 @@ def _write_train(args: Args) -> Iterator[Made]:
         if not batch:
             raise HouseError(f"Only {len(listed)} of {MAX_TRAIN_SEEDS} train seeds gave a house.")
         for made in ordered_map(_make, batch, workers=args.workers):
-            _tell(made)
+            _print_house(made)
             if made.text:
                 content = made.text.encode("utf-8")
                 write_atomically(folder / f"{made.name}.xml", content)
@@ -129,28 +129,31 @@ def _write_train(args: Args) -> Iterator[Made]:
 
 
 def _write_seeds(args: Args) -> Iterator[Made]:
-    """Houses of any seeds, that find the shipped textures from where they lie."""
+    """Writes houses of any seeds, which refer to the shipped textures by a relative path."""
     config = HouseConfig(
         pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
     )
     textures = os.path.relpath(assets_dir() / "textures", args.out.resolve())
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     for made in ordered_map(functools.partial(_make_seed, config, textures), seeds, workers=args.workers):
-        _tell(made)
+        _print_house(made)
         if made.text:
             (args.out / f"{made.name}.xml").write_text(made.text, encoding="utf-8")
         yield made
 
 
 def _make(recipe: Recipe) -> Made:
-    return _made(recipe.name, recipe.seed, recipe.config(), None)
+    """Generates the house of a recipe."""
+    return _generate(recipe.name, recipe.seed, recipe.config(), None)
 
 
 def _make_seed(config: HouseConfig, textures: str, seed: int) -> Made:
-    return _made(f"house_{seed:05d}", seed, config, textures)
+    """Generates the house of a seed."""
+    return _generate(f"house_{seed:05d}", seed, config, textures)
 
 
-def _made(name: str, seed: int, config: HouseConfig, textures: str | None) -> Made:
+def _generate(name: str, seed: int, config: HouseConfig, textures: str | None) -> Made:
+    """Generates one house, and measures the time."""
     began_s = time.process_time()
     try:
         house = generate_house(seed, config)
@@ -158,27 +161,28 @@ def _made(name: str, seed: int, config: HouseConfig, textures: str | None) -> Ma
         return Made(name, error=str(error), seconds=time.process_time() - began_s)
     seconds = time.process_time() - began_s
     plan = house.plan
-    story = f"{plan.kind}, {plan.area_m2:.0f} m2, {len(plan.rooms)} rooms, {house.geoms} geoms, {house.tries} tries"
-    return Made(name, house_text(house.spec, textures), "", story, house.rejects, seconds)
+    summary = f"{plan.kind}, {plan.area_m2:.0f} m2, {len(plan.rooms)} rooms, {house.geoms} geoms, {house.tries} tries"
+    return Made(name, house_text(house.spec, textures), "", summary, house.rejects, seconds)
 
 
-def _tell(made: Made) -> None:
-    """One house's line, as soon as it is made."""
+def _print_house(made: Made) -> None:
+    """Prints the line of one house."""
     if made.error:
         print(f"{made.name}: {made.error}", file=sys.stderr)
         return
-    print(f"{made.name}: {made.story}, {len(made.text) / 1000:.0f} KB, {made.seconds:.2f} s", flush=True)
+    print(f"{made.name}: {made.summary}, {len(made.text) / 1000:.0f} KB, {made.seconds:.2f} s", flush=True)
     for reason in made.rejects:
         print(f"    rejected: {reason}")
 
 
-def _report(made: list[Made], took_s: float) -> None:
+def _print_summary(made: list[Made], took_s: float) -> None:
+    """Prints the speed and the number of rejected tries."""
     good = [house for house in made if house.text]
     if good:
         seconds = [house.seconds for house in good]
         print(
             f"{len(good)} houses, median {statistics.median(seconds):.2f} s each on one core, "
-            f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in all; "
+            f"{len(good) / sum(seconds):.2f} houses/s of one core, {len(good) / took_s:.2f} houses/s in total; "
             f"{sum(len(house.rejects) for house in good)} tries rejected, {len(made) - len(good)} seeds without a house"
         )
 

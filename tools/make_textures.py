@@ -1,4 +1,4 @@
-"""Write the texture catalogue as PNG files.
+"""Writes the texture catalogue as PNG files.
 
 python tools/make_textures.py --out assets/mjcf_houses/textures
 """
@@ -20,11 +20,11 @@ class Args:
     """Options of the command."""
 
     out: Path = Path("assets/mjcf_houses/textures")
-    """Folder that receives one PNG file a texture."""
+    """Folder for the PNG files, one for each texture."""
 
 
 def main(args: Args) -> None:
-    """Write every texture and say how large they are in all."""
+    """Writes every texture and prints their number and total size."""
     args.out.mkdir(parents=True, exist_ok=True)
     total = 0
     for texture in TEXTURES.values():

@@ -1,8 +1,8 @@
-"""Write the trap scenes: an MJCF file and a sidecar each, and their episodes, laid out like any split.
+"""Writes the trap scenes and their episodes in the layout of a split: an MJCF file and a sidecar for each trap.
 
     python tools/make_traps.py --out assets/mjcf_houses/traps
 
-Three episodes a trap: from its sidecar's start, with three headings. The same code gives the same bytes.
+Each trap has three episodes: at the start of its sidecar, with three headings. The same code gives the same bytes.
 """
 
 from __future__ import annotations
@@ -18,29 +18,30 @@ from sim.episodes import habitat
 from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
-from sim.housegen.mjcf import ASSETS_DIR, TEXTURE_DIR
+from sim.housegen.mjcf import TEXTURE_DIR
 from sim.housegen.split_recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
 from sim.housegen.traps.trap import START_TURNS_RAD, Trap
 from sim.houses.load import load_house
 from sim.houses.sidecar import write_sidecar
 from sim.interface import wrap_angle
+from sim.paths import assets_dir
 from sim.task.objectnav import Task
 from sim.world.world import World
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """What to write and where."""
+    """Options of the command."""
 
-    out: Path = ASSETS_DIR / "traps"
-    """Folder for the scenes; its name is the split's."""
+    out: Path = Path("assets/mjcf_houses/traps")
+    """Folder for the scenes; its name is the name of the split."""
     version: str = SPLIT_VERSION
     """Version of the split."""
 
 
 def main(args: Args) -> int:
-    """Write all scenes and their episodes."""
+    """Writes all scenes and their episodes."""
     args.out.mkdir(parents=True, exist_ok=True)
     episodes: list[Episode] = []
     goals: dict[str, dict[str, list[habitat.Json]]] = {}
@@ -57,18 +58,18 @@ def main(args: Args) -> int:
 
 
 def write_scene(path: Path, trap: Trap) -> None:
-    """Write one scene and its sidecar; textures are found from where it lies."""
-    textures = os.path.relpath(ASSETS_DIR / "textures", path.parent.resolve())
+    """Writes one scene, which refers to the shipped textures by a relative path, and its sidecar."""
+    textures = os.path.relpath(assets_dir() / "textures", path.parent.resolve())
     xml = trap.site.spec.to_xml().replace(f'texturedir="{TEXTURE_DIR}"', f'texturedir="{textures}"', 1)
     path.write_text(xml, encoding="utf-8")
     write_sidecar(path, trap.sidecar)
 
 
 def draw_episodes(name: str, trap: Trap, task: Task) -> list[Episode]:
-    """One episode for each start heading.
+    """Returns one episode for each start heading.
 
     Raises:
-        HouseError: there is no way out of the trap.
+        HouseError: there is no path from the start to the goal.
     """
     found = []
     for i, yaw_rad in enumerate(START_TURNS_RAD):
@@ -76,13 +77,13 @@ def draw_episodes(name: str, trap: Trap, task: Task) -> list[Episode]:
         task.world.reset(start)
         distance_m = task.distance_from(trap.goal, start)
         if distance_m is None:
-            raise HouseError(f"Trap '{name}': there is no way from its start to '{trap.goal}'.")
+            raise HouseError(f"Trap '{name}': there is no path from its start to '{trap.goal}'.")
         found.append(Episode(f"{name}_{i}", name, trap.goal, start, distance_m))
     return found
 
 
 def in_turns(episodes: list[Episode]) -> Iterator[Episode]:
-    """The first episode of every trap, then the second of every trap, and so on."""
+    """Yields the first episode of every trap, then the second of every trap, and so on."""
     for i in range(len(START_TURNS_RAD)):
         yield from episodes[i :: len(START_TURNS_RAD)]
 

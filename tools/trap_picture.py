@@ -1,4 +1,4 @@
-"""Pictures of a trial: the trap from above, unseen things in colour, the robot's true path, and the agent's map."""
+"""Draws a trial: the trap from above with invisible geoms in colour, the robot's true path, and the agent's map."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ HEIGHT_PX = 480
 FOVY_DEG = 6.0
 MARGIN_M = 0.3
 PATH, STOPPED, START, END = (40, 90, 220), (225, 30, 30), (20, 150, 60), (20, 20, 20)
-UNSEEN = (0.2, 0.75, 0.95, 1.0)
-"""Colour of what no camera sees."""
+INVISIBLE = (0.2, 0.75, 0.95, 1.0)
+"""Colour of geoms that cameras do not render."""
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
-    """Top view and, if there is one, the map beside it, uint8 (h, w, 3)."""
+    """Returns the top view and, if there is a map, the map beside it, uint8 (h, w, 3)."""
     top = TopView(env.split.load_house(trial.trap).spec)
     top.path(trial.positions_m)
     for _, contact in trial.stops:
         top.dot(contact.position_m[:2], STOPPED, 3)
     top.dot(trial.positions_m[0], START, 6)
     top.dot(trial.positions_m[-1], END, 6)
-    words = f"{trial.episode_id}, {trial.agent}: {'out' if trial.escaped else 'held'}, {len(trial.motions)} steps"
-    cv2.putText(top.image, words, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, END, 1, cv2.LINE_AA)
+    outcome = "escaped" if trial.escaped else "stuck"
+    title = f"{trial.episode_id}, {trial.agent}: {outcome}, {len(trial.motions)} steps"
+    cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, END, 1, cv2.LINE_AA)
     if belief is None:
         return top.image
     width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
@@ -40,7 +41,7 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
 
 
 class TopView:
-    """A scene from above without its ceiling, and a pen that takes metres."""
+    """A picture of a scene from above without its ceiling, on which paths and points are drawn in metres."""
 
     def __init__(self, spec: mujoco.MjSpec) -> None:
         room = spec.sites[0]
@@ -48,23 +49,25 @@ class TopView:
         half_x, half_y = room.size[0] + MARGIN_M, room.size[1] + MARGIN_M
         self._px_m = HEIGHT_PX / (2.0 * half_y)
         self._width_px = 2 * round(half_x * self._px_m)
-        self.image: Picture = self._render(_opened(spec), half_y)
+        self.image: Picture = self._render(_without_ceiling(spec), half_y)
 
     def path(self, places_m: list[tuple[float, float]]) -> None:
-        """Draw where the robot's centre went."""
+        """Draws the path of the robot's centre."""
         points = np.array([self._pixel(place) for place in places_m], np.int32)
         cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, PATH, 2, cv2.LINE_AA)
 
     def dot(self, place_m: tuple[float, float], colour: tuple[int, int, int], radius_px: int) -> None:
-        """Draw a place."""
+        """Draws a point."""
         cv2.circle(self.image, self._pixel(place_m), radius_px, colour, -1, cv2.LINE_AA)
 
     def _pixel(self, place_m: tuple[float, float]) -> tuple[int, int]:
+        """Returns the pixel of a point."""
         x = 0.5 * self._width_px + (place_m[0] - self._middle_m[0]) * self._px_m
         y = 0.5 * HEIGHT_PX - (place_m[1] - self._middle_m[1]) * self._px_m
         return round(x), round(y)
 
     def _render(self, model: mujoco.MjModel, half_y_m: float) -> Picture:
+        """Renders a model from above."""
         vis = model.vis
         vis.global_.offwidth, vis.global_.offheight, vis.global_.fovy = self._width_px, HEIGHT_PX, FOVY_DEG
         model.stat.extent, vis.map.znear, vis.map.zfar = 10.0, 0.01, 10.0
@@ -86,8 +89,8 @@ class TopView:
             renderer.close()
 
 
-def _opened(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """The scene without ceiling, its invisible things in a colour of their own."""
+def _without_ceiling(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Returns the scene without ceiling, with invisible geoms in `INVISIBLE`."""
     spec = spec.copy()
     for body in list(spec.worldbody.bodies):
         if body.name.startswith("ceiling_"):
@@ -95,5 +98,5 @@ def _opened(spec: mujoco.MjSpec) -> mujoco.MjModel:
             continue
         for geom in body.geoms:
             if geom.group == INVISIBLE_GROUP:
-                geom.material, geom.rgba = "", UNSEEN
+                geom.material, geom.rgba = "", INVISIBLE
     return spec.compile()

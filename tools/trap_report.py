@@ -1,10 +1,9 @@
-"""Who gets out of which trap: a table (terminal, Markdown, CSV) and pictures of where each agent went.
+"""Reports which agent escapes from which trap: a table (terminal, Markdown, CSV) and pictures of the paths.
 
     python -m tools.trap_report --out runs/traps
 
-Each agent plays every trap from the start headings of the split. A run that was stopped goes on where it was. A
-picture has the trap from above with the robot's true path (blue) and where contacts stopped it (red), and the agent's
-map at the end.
+Each agent runs every trap from the start headings of the split. An interrupted run is resumed. A picture shows the trap
+from above with the robot's true path (blue) and the contacts that stopped it (red), and the agent's map at the end.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from __future__ import annotations
 import csv
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,7 @@ from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # run as a file, it does not find its sister files
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # needed to import tools.* when run as a file
 
 from tools.trap_picture import draw_trial
 from tools.trap_trial import Trial, run_trial
@@ -41,68 +40,79 @@ COLUMNS: tuple[str, ...] = (
     "trap", "episode_id", "agent", "escaped", "steps", "steps_in_trap", "collisions", "trapped", "spl",
     "forward_mean_m", "deepest_mm",
 )  # fmt: skip
-"""Of the CSV, a row an episode."""
+"""Columns of the CSV, which has one row for each episode."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Which agents, which traps, where to."""
+    """Options of the command."""
 
     out: Path
     """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
     split: str = "traps"
-    """The traps: a shipped split, or a folder laid out like one."""
+    """The traps: a shipped split, or a folder with the layout of one."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
-    """Who plays: oracle, or names of `stubborn.agents`."""
+    """Names of agents: oracle, or names of `stubborn.agents`."""
     traps: tuple[str, ...] = ()
-    """Only these; all if not given."""
+    """Names of traps; all if not given."""
     headings: int = 3
-    """So many start headings of each trap."""
+    """Number of start headings of each trap."""
     max_steps: int = 500
-    """Actions of an episode."""
+    """Largest number of actions of an episode."""
     pictures: bool = True
-    """Draw the first heading of each trap, and every episode that an agent did not get out of."""
+    """Draw the first heading of each trap, and every episode in which an agent did not escape."""
 
 
 def main(args: Args) -> int:
-    """Play what is missing, then write the table."""
+    """Runs the missing episodes, then writes the table."""
     console = display.make_console()
     args.out.mkdir(parents=True, exist_ok=True)
     results = args.out / "results.jsonl"
     rows = [json.loads(line) for line in results.read_text().splitlines()] if results.is_file() else []
     for name in args.agents:
-        env = ObjectNavEnv(
-            split=args.split, sensors=() if name == "oracle" else ("depth", "semantic"), max_steps=args.max_steps
-        )
-        try:
-            agent = make_agent(name, env)
-            for episode in wanted(env, args):
-                if any((row["agent"], row["episode_id"]) == (name, episode.episode_id) for row in rows):
-                    continue
-                trial = run_trial(env, agent, name, episode)
-                rows.append(row_of(trial))
-                with results.open("a") as file:
-                    file.write(json.dumps(rows[-1]) + "\n")
-                outcome = "out" if trial.escaped else "held"
-                console.print(f"{name} {episode.episode_id}: {outcome} after {len(trial.motions)} steps")
-                if args.pictures and (episode.episode_id.endswith("_0") or not trial.escaped):
-                    belief = draw.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
-                    picture = draw_trial(env, trial, belief)
-                    (args.out / "pictures").mkdir(exist_ok=True)
-                    cv2.imwrite(str(args.out / "pictures" / f"{episode.episode_id}_{name}.png"), picture[..., ::-1])
-        finally:
-            env.close()
+        done = {row["episode_id"] for row in rows if row["agent"] == name}
+        for trial in run_trials(args, name, done):
+            rows.append(row_of(trial))
+            with results.open("a") as file:
+                file.write(json.dumps(rows[-1]) + "\n")
+            outcome = "escaped" if trial.escaped else "stuck"
+            console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
     write_csv(args.out / "traps.csv", rows)
     (args.out / "traps.md").write_text(as_markdown(rows))
     console.print(as_table(rows))
     return 0
 
 
+def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
+    """Runs an agent in the episodes that are not done, and draws the pictures."""
+    sensors = () if name == "oracle" else ("depth", "semantic")
+    env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
+    try:
+        agent = make_agent(name, env)
+        for episode in wanted(env, args):
+            if episode.episode_id in done:
+                continue
+            trial = run_trial(env, agent, name, episode)
+            if args.pictures and (episode.episode_id.endswith("_0") or not trial.escaped):
+                write_picture(args.out / "pictures", env, agent, trial)
+            yield trial
+    finally:
+        env.close()
+
+
+def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
+    """Writes the picture of a trial."""
+    belief = draw.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+    folder.mkdir(exist_ok=True)
+    path = folder / f"{trial.episode_id}_{trial.agent}.png"
+    cv2.imwrite(str(path), draw_trial(env, trial, belief)[..., ::-1])
+
+
 def make_agent(name: str, env: ObjectNavEnv) -> Agent:
-    """The agent of that name with ground-truth segmentation.
+    """Returns the agent of a name, with ground-truth segmentation.
 
     Raises:
-        ConfigError: there is none.
+        ConfigError: there is no such agent.
     """
     if name == "oracle":
         return Oracle(env)
@@ -110,10 +120,10 @@ def make_agent(name: str, env: ObjectNavEnv) -> Agent:
 
 
 def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:
-    """The episodes to play, trap by trap.
+    """Returns the episodes to run, trap by trap.
 
     Raises:
-        ConfigError: a trap that there is not.
+        ConfigError: a name of a trap is unknown.
     """
     unknown = sorted(set(args.traps) - set(env.split.houses))
     if unknown:
@@ -126,7 +136,7 @@ def wanted(env: ObjectNavEnv, args: Args) -> list[Episode]:
 
 
 def row_of(trial: Trial) -> dict[str, Any]:
-    """One episode as a row of the CSV."""
+    """Returns one episode as a row of the CSV."""
     forwards_m = trial.forwards_m
     return {
         "trap": trial.trap,
@@ -144,7 +154,7 @@ def row_of(trial: Trial) -> dict[str, Any]:
 
 
 def write_csv(file: Path, rows: Sequence[dict[str, Any]]) -> None:
-    """All rows, an episode each."""
+    """Writes all rows to a CSV file."""
     with file.open("w", newline="") as stream:
         writer = csv.DictWriter(stream, COLUMNS)
         writer.writeheader()
@@ -152,7 +162,7 @@ def write_csv(file: Path, rows: Sequence[dict[str, Any]]) -> None:
 
 
 def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
-    """Header and lines of the table: traps against agents, and their shares, steps and collisions at the end."""
+    """Returns header and lines of the table: a line for each trap, then the totals; a column for each agent."""
     names = sorted({row["agent"] for row in rows})
     traps = list(dict.fromkeys(row["trap"] for row in rows))
     lines = []
@@ -160,25 +170,25 @@ def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:
         cells = [[row for row in rows if (row["trap"], row["agent"]) == (trap, name)] for name in names]
         lines.append([trap, *(_cell(cell) for cell in cells)])
     every = [[row for row in rows if row["agent"] == name] for name in names]
-    lines.append(["**out of**", *(f"**{sum(r['escaped'] for r in of)}/{len(of)}**" for of in every)])
+    lines.append(["**success**", *(f"**{sum(r['escaped'] for r in of)}/{len(of)}**" for of in every)])
     for label, key in (("steps in the trap, median", "steps_in_trap"), ("collisions, median", "collisions")):
         lines.append([label, *(f"{np.median([row[key] for row in of]):.0f}" for of in every)])
-    lines.append(["metres a forward, mean", *(f"{_forward_m(of):.2f}" for of in every)])
+    lines.append(["metres per forward, mean", *(f"{_forward_m(of):.2f}" for of in every)])
     lines.append(["deepest contact, mm", *(f"{max(row['deepest_mm'] for row in of):.1f}" for of in every)])
     return ["trap", *names], lines
 
 
 def as_markdown(rows: Sequence[dict[str, Any]]) -> str:
-    """The table for docs/traps.md."""
+    """Returns the table for docs/traps.md."""
     header, lines = grid(rows)
     rule = ["---", *("---:" for _ in header[1:])]
     return "".join("| " + " | ".join(line) + " |\n" for line in (header, rule, *lines))
 
 
 def as_table(rows: Sequence[dict[str, Any]]) -> Table:
-    """The table for the terminal."""
+    """Returns the table for the terminal."""
     header, lines = grid(rows)
-    table = Table(title="episodes out of the trap (steps in it, collisions: medians)")
+    table = Table(title="successes (steps in the trap, collisions: medians)")
     table.add_column(header[0])
     for name in header[1:]:
         table.add_column(name, justify="right")
@@ -188,6 +198,7 @@ def as_table(rows: Sequence[dict[str, Any]]) -> Table:
 
 
 def _cell(rows: Sequence[dict[str, Any]]) -> str:
+    """Returns successes out of episodes, with medians of steps in the trap and of collisions."""
     if not rows:
         return "-"
     steps = np.median([row["steps_in_trap"] for row in rows])
@@ -196,6 +207,7 @@ def _cell(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _forward_m(rows: Sequence[dict[str, Any]]) -> float:
+    """Returns the mean displacement of a forward action."""
     moved = [row["forward_mean_m"] for row in rows if row["forward_mean_m"] is not None]
     return float(np.mean(moved)) if moved else 0.0
 

@@ -1,4 +1,4 @@
-"""One agent in one trap, watched step by step: what `tools/trap_report.py` tells and `tests/traps` hold it to."""
+"""Runs one agent in one trap and records every step, for `tools/trap_report.py` and `tests/traps`."""
 
 from __future__ import annotations
 
@@ -18,47 +18,47 @@ from sim.robot.drive import Motion
 
 @dataclass
 class Trial:
-    """What one episode left. Places are the world's, metres."""
+    """The record of one episode; positions are in world coordinates, metres."""
 
     trap: str
     episode_id: str
     agent: str
     metrics: dict[str, Any] = field(default_factory=dict)
-    """The task's, at the end."""
+    """Metrics of the task at the end."""
     positions_m: list[tuple[float, float]] = field(default_factory=list)
-    """Of the robot's centre, the start first."""
+    """Positions of the robot's centre, the start first."""
     yaws_rad: list[float] = field(default_factory=list)
     motions: list[Motion] = field(default_factory=list)
     deepest_m: float = 0.0
-    """How deep the hull ever was in something, over all physics steps."""
+    """Largest penetration of the hull into anything, over all physics steps."""
     steps_in_trap: int = 0
     """Actions that began in the trap's zone."""
 
     @property
     def escaped(self) -> bool:
-        """Whether the goal was found: every trap lies on the way there."""
+        """Whether the goal was found: every trap is on the path to it."""
         return bool(self.metrics["success"])
 
     @property
     def forwards_m(self) -> list[float]:
-        """Displacement of each forward."""
+        """Displacement of each forward action."""
         return [motion.displacement_m for motion in self.motions if motion.action == Action.MOVE_FORWARD]
 
     @property
     def stops(self) -> list[tuple[int, Contact]]:
-        """Step and contact of everything that stopped a motion."""
+        """Step and contact of every contact that stopped a motion."""
         return [(i, contact) for i, motion in enumerate(self.motions) for contact in motion.contacts if contact.stopped]
 
 
 class DeepestContact:
-    """Watches every physics step for how deep the robot's hull is in something; a MuJoCo control callback."""
+    """A MuJoCo control callback that records the largest penetration of the robot's hull over all physics steps."""
 
     def __init__(self, hull_geoms: frozenset[int]) -> None:
         self._hull = hull_geoms
         self.depth_m = 0.0
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Called by MuJoCo in each step."""
+        """Updates `depth_m`; MuJoCo calls this in each step."""
         if data.ncon <= 2:
             return
         depths_m = data.contact.includemargin - data.contact.dist
@@ -68,10 +68,10 @@ class DeepestContact:
 
 
 def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, seed: int = 0) -> Trial:
-    """Let an agent play one episode of a trap to its end.
+    """Runs one episode of a trap to its end.
 
     Raises:
-        PhysicsError: something fell, tipped over or exploded.
+        PhysicsError: the robot fell or tipped over, or the simulation diverged.
     """
     trial = Trial(episode.house, episode.episode_id, name)
     seed = episode_seed(seed, episode.episode_id)
@@ -85,7 +85,7 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
     try:
         done = False
         while not done:
-            _note_pose(trial, env)
+            _record_pose(trial, env)
             trial.steps_in_trap += zone is not None and _inside(zone, trial.positions_m[-1])
             observation, _, terminated, truncated, info = env.step(Action(agent.act(observation)))
             assert env.motion is not None
@@ -93,17 +93,19 @@ def run_trial(env: ObjectNavEnv, agent: Agent, name: str, episode: Episode, *, s
             done = terminated or truncated
     finally:
         mujoco.set_mjcb_control(None)
-    _note_pose(trial, env)
+    _record_pose(trial, env)
     trial.deepest_m, trial.metrics = deepest.depth_m, info
     return trial
 
 
-def _note_pose(trial: Trial, env: ObjectNavEnv) -> None:
+def _record_pose(trial: Trial, env: ObjectNavEnv) -> None:
+    """Appends the pose of the robot to the record."""
     pose = env.scene.world.pose
     trial.positions_m.append((pose.x_m, pose.y_m))
     trial.yaws_rad.append(pose.yaw_rad)
 
 
 def _inside(zone: tuple[float, float, float, float], place_m: tuple[float, float]) -> bool:
+    """Returns whether a point lies in a zone x0, y0, x1, y1."""
     x0, y0, x1, y1 = zone
     return bool(np.all([x0 <= place_m[0] <= x1, y0 <= place_m[1] <= y1]))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from sim.gl import mujoco
 from sim.housegen.furniture.item import Geom, Item
@@ -15,7 +14,6 @@ from sim.housegen.movables import ROLLING_M, Movable, split_movable
 from sim.housegen.rectangles import Rect
 from sim.paths import assets_dir
 
-ASSETS_DIR = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses"
 TEXTURE_DIR = "../textures"
 """Folder of the textures, relative to the house file."""
 AMBIENT, HEADLIGHT = 0.36, 0.12

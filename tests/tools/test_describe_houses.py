@@ -1,4 +1,4 @@
-"""The page of the shipped houses says what there is."""
+"""Tests of the page that describes the shipped houses."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ def page(root: Path, measure: int) -> str:
     return (root / "README.md").read_text()
 
 
-def test_categories_checksums_and_what_cannot_be_reached_are_on_the_page(root: Path) -> None:
+def test_categories_and_unreachable_instances_are_on_the_page(root: Path) -> None:
     text = page(root, measure=0)
     assert "| sink | 2 | 1 |" in text
     assert "| bed | 2 | 2 |" in text
-    assert "no goals: val_01: sink_00." in text
+    assert "not goals: val_01: sink_00." in text
     assert "fast ms" not in text
 
 
-def test_the_page_is_the_same_each_time_unless_something_was_measured(root: Path) -> None:
+def test_the_page_without_measurements_is_deterministic(root: Path) -> None:
     assert page(root, measure=0) == page(root, measure=0)
 
 
-def test_what_a_frame_costs_is_on_the_page_when_it_was_measured(root: Path) -> None:
+def test_measured_rendering_times_are_on_the_page(root: Path) -> None:
     text = page(root, measure=2)
     (row,) = [line for line in text.splitlines() if line.startswith("| val_00 |")]
     fast_ms, good_ms, void = (float(cell) for cell in row.split("|")[-4:-1])

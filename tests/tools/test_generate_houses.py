@@ -1,4 +1,4 @@
-"""The tool that writes houses: the list of train houses leaves no seed out."""
+"""Tests of the tool that generates houses: no train seed is skipped."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.housegen.split_recipes import Recipe
 from tools import generate_houses
 
 
-def test_each_train_seed_is_tried_in_turn_also_after_some_gave_no_house(
+def test_each_train_seed_is_tried_in_order_even_if_some_give_no_house(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     tried: list[int] = []

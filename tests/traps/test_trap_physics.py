@@ -1,4 +1,4 @@
-"""Agents in traps: who gets out, and that what held them was there, where it was marked, and gave way to nothing."""
+"""Tests of agents in traps: which ones escape, and that collision marks agree with contacts."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ HEADINGS = range(len(START_TURNS_RAD))
 CASES = list(itertools.product(TRAPS, HEADINGS))
 AGENT_CASES = [(*case, agent) for case in CASES for agent in ABLATION]
 BLIND = ("glass_pane", "scan_artifact", "hanging_shelf", "dead_end_corridor", "wedged_spawn", "chair_in_doorway")
-"""Traps of one obstacle across the straight way."""
+"""Traps with one obstacle across the straight path."""
 FAILED_M = 0.20
-"""A forward that moved less is one that the agent marks."""
+"""The agent marks a forward action that moved less than this."""
 MARK_REACH_M = 0.05 + 0.0354
-"""From a contact to the centre of the nearest marked cell: one cell, and from a cell's corner to its centre."""
+"""Largest distance from a contact to the centre of the nearest marked cell: one cell, and half a cell's diagonal."""
 AHEAD_RAD = math.radians(40.0)
-"""The marks, squares ahead of the robot, reach this far round its hull; the paper has none for its flanks ..."""
+"""The marks, squares in front of the robot, cover its hull up to this bearing; the paper has none for its sides ..."""
 FLANK_REACH_M = 0.20
-"""... so that a graze, at 90 deg in the worst case, is this far from one."""
+"""... so that a contact at the side, at 90 deg in the worst case, is up to this far from a mark."""
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def play(env: ObjectNavEnv, trap: str, heading: int, name: str) -> tuple[Trial, 
 
 
 @pytest.mark.parametrize(("trap", "heading"), sample(CASES, 8))
-def test_the_oracle_gets_out_of_every_trap_without_touching_it(truth_env, trap, heading):
+def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, heading):
     episode = truth_env.split.episode(f"{trap}_{heading}")
     trial = run_trial(truth_env, make_agent("oracle", truth_env), "oracle", episode)
     assert trial.escaped
@@ -74,7 +74,7 @@ def test_the_oracle_gets_out_of_every_trap_without_touching_it(truth_env, trap, 
 
 
 @pytest.mark.parametrize(("trap", "heading", "name"), sample(AGENT_CASES, 3))
-def test_in_a_trap_nothing_gives_way_and_no_forward_goes_too_far(short_env, trap, heading, name):
+def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap, heading, name):
     trial, _ = play(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError
     assert trial.deepest_m < 0.003
     assert trial.metrics["collisions"] == sum(motion.collided for motion in trial.motions)
@@ -86,7 +86,7 @@ def test_in_a_trap_nothing_gives_way_and_no_forward_goes_too_far(short_env, trap
 
 
 @pytest.mark.parametrize("trap", sample(BLIND, 1))
-def test_the_full_agent_gets_out_where_the_one_without_collision_avoidance_stays(short_env, trap):
+def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_not(short_env, trap):
     full, _ = play(short_env, trap, 0, "stubborn-v")
     bare, _ = play(short_env, trap, 0, "stubborn-i")
     assert full.escaped
@@ -97,7 +97,7 @@ def test_the_full_agent_gets_out_where_the_one_without_collision_avoidance_stays
 
 
 @pytest.mark.parametrize(("trap", "heading"), sample([case for case in CASES if case[0] != "slippery_floor"], 2))
-def test_each_mark_has_a_contact_and_what_stood_ahead_lies_within_a_cell_of_it(short_env, trap, heading):
+def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
     trial, agent = play(short_env, trap, heading, "stubborn-v")
     marks_m = marked_places(agent.navmap)
     for i in failed_forwards(trial):
@@ -108,14 +108,14 @@ def test_each_mark_has_a_contact_and_what_stood_ahead_lies_within_a_cell_of_it(s
         assert gap_m <= reach_m, f"step {i}: {gap_m:.3f} m from mark to contact at {math.degrees(bearing_rad):.0f} deg"
 
 
-def test_on_wet_tiles_a_forward_falls_short_without_any_contact(agent_env):
+def test_on_wet_tiles_forward_actions_are_short_without_contact(agent_env):
     trial, _ = play(agent_env, "slippery_floor", 0, "stubborn-v")
     slips = [m for m in trial.motions if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]
     assert sum(not motion.contacts for motion in slips) > 5
 
 
 @pytest.mark.slow
-def test_the_full_agent_gets_out_of_most_traps_and_of_more_than_the_bare_one(agent_env):
+def test_the_full_agent_escapes_from_most_traps_and_from_more_than_the_bare_one(agent_env):
     out = {
         name: sum(play(agent_env, trap, heading, name)[0].escaped for trap, heading in CASES)
         for name in ("stubborn-v", "stubborn-i")
@@ -125,24 +125,24 @@ def test_the_full_agent_gets_out_of_most_traps_and_of_more_than_the_bare_one(age
 
 
 def failed_forwards(trial: Trial) -> list[int]:
-    """Steps of the forwards that the agent took for collisions; it never learns how its last action ended."""
+    """Returns the steps of forward actions that the agent took for collisions; the last action is not observed."""
     motions = trial.motions[:-1]
     return [i for i, m in enumerate(motions) if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]
 
 
 def mark_gaps(trial: Trial, step: int, start: Pose, marks_m: NDArray[np.float64]) -> list[tuple[float, float]]:
-    """Of each contact of a step: how far off the heading it was, radians, and how far from the nearest mark, metres."""
-    stand = Pose(*trial.positions_m[step + 1], trial.yaws_rad[step + 1])
+    """Returns for each contact of a step its bearing in radians and its distance from the nearest mark in metres."""
+    robot = Pose(*trial.positions_m[step + 1], trial.yaws_rad[step + 1])
     found = []
     for contact in trial.motions[step].contacts:
         place = Pose(*contact.position_m[:2], 0.0)
-        seen, mapped = place.relative_to(stand), place.relative_to(start)
+        seen, mapped = place.relative_to(robot), place.relative_to(start)
         gap_m = float(np.hypot(*(marks_m - (mapped.x_m, mapped.y_m)).T).min())
         found.append((abs(math.atan2(seen.y_m, seen.x_m)), gap_m))
     return found
 
 
 def marked_places(navmap: NavMap) -> NDArray[np.float64]:
-    """(n, 2) centres of the cells with a collision mark, in the agent's frame."""
+    """Returns (n, 2) centres of the cells with a collision mark, in the agent's frame."""
     x_m, y_m = navmap.frame.centres(*np.nonzero(navmap.pessimistic_marks)[:2])
     return np.stack([x_m, y_m], axis=1)

@@ -1,4 +1,4 @@
-"""The trap scenes as files: they keep the house format, are deterministic, and their sidecars hold."""
+"""Tests of the trap scenes: format, determinism, sidecars and episodes."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def test_there_are_at_least_twelve_traps_and_each_is_shipped_with_episodes():
         assert sum(episode.house == name for episode in split.episodes) == len(START_TURNS_RAD)
 
 
-def test_the_first_episodes_of_the_split_go_round_the_traps():
+def test_the_first_episodes_of_the_split_are_one_for_each_trap():
     split = load_split("traps")
     assert [episode.house for episode in split.episodes[: len(TRAPS)]] == list(TRAPS)
 
 
 @pytest.mark.parametrize("name", sample(list(TRAPS), 6))
-def test_a_shipped_trap_says_where_it_starts_what_it_seeks_and_why_it_holds(name):
+def test_a_shipped_trap_has_start_goal_zone_and_reason(name):
     sidecar = read_sidecar(SHIPPED / f"{name}.xml")
     assert sidecar.start is not None
     assert sidecar.goal is not None
@@ -53,7 +53,7 @@ def test_a_shipped_trap_says_where_it_starts_what_it_seeks_and_why_it_holds(name
 
 
 @pytest.mark.parametrize("name", sample(list(TRAPS), 3))
-def test_a_trap_is_written_with_the_same_bytes_each_time_and_is_a_house(name, tmp_path):
+def test_a_trap_is_written_with_the_same_bytes_each_time_and_loads(name, tmp_path):
     texts = []
     for folder in (tmp_path / "one", tmp_path / "two"):
         folder.mkdir()
@@ -67,7 +67,7 @@ def test_the_traps_together_stay_below_a_megabyte():
     assert sum(file.stat().st_size for file in SHIPPED.rglob("*") if file.is_file()) < 1_000_000
 
 
-def test_a_sidecar_comes_back_as_it_was_written(tmp_path):
+def test_writing_and_reading_a_sidecar_is_identity(tmp_path):
     sidecar = Sidecar(
         start=Pose(1.0, -2.0, 0.5, 3.0),
         goal="bed",
@@ -91,13 +91,13 @@ def test_a_sidecar_comes_back_as_it_was_written(tmp_path):
         ([1], "a.json"),
     ],
 )
-def test_a_sidecar_that_cannot_be_is_refused_by_name(content, told, tmp_path):
+def test_the_error_of_a_bad_sidecar_names_the_field(content, told, tmp_path):
     (tmp_path / "a.json").write_text(json.dumps(content))
     with pytest.raises(HouseError, match=told):
         read_sidecar(tmp_path / "a.xml")
 
 
-def test_the_sidecar_counts_in_the_hash_of_what_was_played(tmp_path: Path):
+def test_the_sidecar_is_part_of_the_hash(tmp_path: Path):
     house = tmp_path / "glass_pane.xml"
     write_scene(house, TRAPS["glass_pane"]())
     before = one_house(house).sha256
@@ -105,7 +105,7 @@ def test_the_sidecar_counts_in_the_hash_of_what_was_played(tmp_path: Path):
     assert one_house(house).sha256 != before
 
 
-def test_label_rules_named_like_the_house_are_no_sidecar(tmp_path: Path):
+def test_label_rules_named_like_the_house_are_not_a_sidecar(tmp_path: Path):
     house = tmp_path / "glass_pane.xml"
     write_scene(house, TRAPS["glass_pane"]())
     (tmp_path / "glass_pane.json").write_text('{"sofa.*": "bed"}')
@@ -113,7 +113,7 @@ def test_label_rules_named_like_the_house_are_no_sidecar(tmp_path: Path):
     assert split.sidecar("glass_pane") == EMPTY_SIDECAR
 
 
-def test_a_house_with_a_sidecar_starts_where_and_seeks_what_it_says():
+def test_a_house_with_a_sidecar_uses_its_start_and_goal():
     env = ObjectNavEnv(house=SHIPPED / "chair_legs.xml", sensors=())
     try:
         drawn = env.draw_episode(np.random.default_rng(3))
@@ -123,7 +123,7 @@ def test_a_house_with_a_sidecar_starts_where_and_seeks_what_it_says():
         env.close()
 
 
-def test_the_noise_of_a_sidecar_reaches_the_depth_image_and_no_other_scene_has_it():
+def test_the_noise_of_a_sidecar_affects_its_own_scene_only():
     env = ObjectNavEnv(split="traps", sensors=("depth", "semantic"))
     try:
         holes = {}

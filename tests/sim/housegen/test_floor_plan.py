@@ -1,4 +1,4 @@
-"""Laws of floor plans: rooms fill no place twice, and one can walk from each to all others."""
+"""Tests of floor plans: rooms do not overlap, and each is reachable from all others."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_rooms_do_not_overlap_and_keep_their_sizes(kind: PlanKind, seed: int) ->
 
 
 @pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_every_room_is_joined_to_every_other(kind: PlanKind, seed: int) -> None:
+def test_every_room_is_reachable_from_every_other(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     reached, todo = {0}, [0]
     while todo:
@@ -54,7 +54,7 @@ def test_every_room_is_joined_to_every_other(kind: PlanKind, seed: int) -> None:
 
 
 @pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_bathrooms_open_to_hallways_and_bedrooms_only(kind: PlanKind, seed: int) -> None:
+def test_bathrooms_are_connected_to_hallways_and_private_rooms_only(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     for join in plan.joins:
         kinds = {plan.rooms[join.a].kind, plan.rooms[join.b].kind}
@@ -82,7 +82,7 @@ def test_doors_are_wide_enough_and_lie_in_the_wall_that_two_rooms_share(kind: Pl
 
 
 @pytest.mark.parametrize(("kind", "seed"), sample(CASES, 30))
-def test_windows_look_outside(kind: PlanKind, seed: int) -> None:
+def test_windows_are_in_outer_walls(kind: PlanKind, seed: int) -> None:
     plan, _ = plan_of(kind, seed)
     try:
         openings = cut_openings(np.random.default_rng(seed), plan)
@@ -95,19 +95,19 @@ def test_windows_look_outside(kind: PlanKind, seed: int) -> None:
             assert any(lo <= hole.span[0] and hole.span[1] <= hi for lo, hi in spans)
 
 
-def test_shared_side_is_seen_the_same_from_both_rooms() -> None:
+def test_shared_side_is_symmetric() -> None:
     a, b = Rect(0, 0, 2, 3), Rect(2, 1, 5, 4)
     assert shared_side(a, b) == ("east", (1, 3))
     assert shared_side(b, a) == ("west", (1, 3))
     assert shared_side(a, Rect(2, 3, 5, 4)) is None  # they meet in a corner only
 
 
-def test_subtract_leaves_what_no_hole_covers() -> None:
+def test_subtract_returns_the_parts_outside_the_holes() -> None:
     assert subtract((0.0, 10.0), [(2.0, 3.0), (8.0, 12.0)]) == [(0.0, 2.0), (3.0, 8.0)]
     assert subtract((0.0, 1.0), [(-1.0, 2.0)]) == []
 
 
-def test_strips_lie_inside_and_outside_of_their_side() -> None:
+def test_strips_are_inside_or_outside_of_their_side() -> None:
     rect = Rect(0, 0, 4, 3)
     for side in SIDES:
         span = rect.span(side)

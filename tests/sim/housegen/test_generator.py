@@ -1,4 +1,4 @@
-"""Conformance of generated houses: the same for every seed, so a new rule of placement gets its tests for free."""
+"""Conformance tests of generated houses, the same for every seed."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MAX_XML_KB = 520
 
 
 @pytest.mark.parametrize("seed", sample(SEEDS, 5))
-def test_a_fresh_seed_gives_a_house_that_keeps_the_format_and_the_check(seed: int) -> None:
+def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -> None:
     house = generate_house(seed, HouseConfig(pool="heldout" if seed % 2 else "train"))
     model = house.spec.compile()
     labels = validate_house(House("fresh", house.spec), model)
@@ -50,7 +50,7 @@ def small(seed: int) -> GeneratedHouse:
     return generate_house(seed, HouseConfig(kind="studio", area_m2=55.0))
 
 
-def test_the_same_seed_gives_the_same_bytes_also_in_another_process() -> None:
+def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     xml = generate(3, kind="studio", area_m2=55.0).to_xml()
     code = "from sim.housegen import generate; print(generate(3, kind='studio', area_m2=55.0).to_xml(), end='')"
     other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
@@ -63,14 +63,14 @@ def test_seeds_and_pools_give_different_houses() -> None:
     assert generate(0, kind="studio", pool="heldout").to_xml() != generate(0, kind="studio", pool="train").to_xml()
 
 
-def test_a_wide_house_keeps_the_format_and_may_be_too_large_to_ship() -> None:
+def test_a_wide_house_is_in_the_format_and_may_be_too_large_to_ship() -> None:
     house = generate_house(4, HouseConfig(pool="wide", kind="large", area_m2=300.0))
     assert validate_house(House("wide", house.spec), house.spec.compile()).void_geoms == 0
     assert check_house(house.spec) == []
     assert len(house.spec.to_xml()) > MAX_BYTES
 
 
-def test_area_and_shape_are_as_asked() -> None:
+def test_area_and_kind_of_plan_are_as_requested() -> None:
     house = generate_house(1, HouseConfig(kind="corridor", area_m2=120.0))
     assert house.plan.kind == "corridor"
     assert house.plan.area_m2 == pytest.approx(120.0, rel=0.25)
@@ -81,7 +81,7 @@ def test_clutter_zero_leaves_no_small_objects() -> None:
     assert not labels.of_category("objects")
 
 
-def test_no_pixel_of_void_is_seen_from_inside() -> None:
+def test_no_view_from_inside_shows_void() -> None:
     model = small(5).spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -101,7 +101,7 @@ def test_no_pixel_of_void_is_seen_from_inside() -> None:
     renderer.close()
 
 
-def test_bad_requests_say_what_would_be_right() -> None:
+def test_errors_of_bad_requests_name_the_allowed_values() -> None:
     with pytest.raises(ConfigError, match="50-400 m2, got 12"):
         HouseConfig(area_m2=12.0)
     with pytest.raises(ConfigError, match="studio, flat"):
@@ -113,7 +113,7 @@ def test_bad_requests_say_what_would_be_right() -> None:
 
 
 @pytest.mark.parametrize("split", list(SPLITS))
-def test_recipes_have_their_own_seeds_and_fitting_sizes(split: str) -> None:
+def test_recipes_have_different_seeds_and_sizes_that_suit_their_kind(split: str) -> None:
     recipes = SPLITS[split]
     assert len({recipe.seed for recipe in recipes}) == len(recipes)
     assert len({recipe.name for recipe in recipes}) == len(recipes)
@@ -132,20 +132,20 @@ def test_all_goal_categories_appear_over_the_val_houses() -> None:
     assert min(counts.values()) >= math.ceil(len(SPLITS["val"]) / 4), counts
 
 
-def test_things_stand_inside_their_rooms() -> None:
+def test_items_are_inside_rooms() -> None:
     model = small(4).spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     rooms = read_rooms(model)
     labels = read_labels(model)
-    for thing in labels.instances:
-        if thing.category in ("wall", "floor", "ceiling", "door", "window"):
+    for instance in labels.instances:
+        if instance.category in ("wall", "floor", "ceiling", "door", "window"):
             continue
-        x, y, _ = np.mean(data.geom_xpos[list(thing.geom_ids)], axis=0)
-        assert any(room.contains(x, y) for room in rooms), thing.name
+        x, y, _ = np.mean(data.geom_xpos[list(instance.geom_ids)], axis=0)
+        assert any(room.contains(x, y) for room in rooms), instance.name
 
 
-def test_a_picture_high_over_a_bed_keeps_nothing_out_of_the_room() -> None:
+def test_a_picture_high_above_a_bed_blocks_no_other_position() -> None:
     rng = np.random.default_rng(0)
     layout = RoomLayout(0, "bedroom", Rect(0.0, 0.0, 5.0, 5.0), [], 2.6)
     bed = CATALOGUE.make_item("bed", rng, pool="train", width_m=1.8)

@@ -1,4 +1,4 @@
-"""Houses shipped as a list: made when first needed, the same as listed, kept, and refused where they differ."""
+"""Tests of house lists: houses are generated on first use, compared with their checksums, and cached."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EPISODES = (Episode("tiny_0000", "tiny_00", "bed", Pose(-1.25, 0.5, 2.0), 2.5),)
 
 
 class Maker:
-    """In place of the generator: a house of ten lines, and how often it was made."""
+    """A replacement of the generator that returns a small house and counts its calls."""
 
     def __init__(self) -> None:
         self.text = with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1, 0.25)).spec.to_xml()
@@ -44,7 +44,7 @@ def maker(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Maker:
 
 
 def listed_split(folder: Path, content: bytes, *, version: str = "1.2.0") -> Split:
-    """A split of one listed house whose file should hold `content`."""
+    """Returns a split of one listed house with the checksum of `content`."""
     folder.mkdir(exist_ok=True)
     write_house_list(folder, [(STUDIO, hashlib.sha256(content).hexdigest())], version=version)
     write_split(folder, EPISODES, {"tiny_00": {"bed": []}}, version=version)
@@ -56,7 +56,7 @@ def split(tmp_path: Path, maker: Maker) -> Split:
     return listed_split(tmp_path / "tiny", maker.text.encode())
 
 
-def test_a_listed_house_is_made_when_first_needed_and_then_read(split: Split, maker: Maker, tmp_path: Path) -> None:
+def test_a_listed_house_is_generated_on_first_use_and_then_read(split: Split, maker: Maker, tmp_path: Path) -> None:
     assert split.houses == ("tiny_00",)
     assert maker.made == 0
     assert split.load_house("tiny_00").name == "tiny_00"
@@ -65,21 +65,21 @@ def test_a_listed_house_is_made_when_first_needed_and_then_read(split: Split, ma
     assert maker.made == 1
 
 
-def test_a_broken_file_in_the_cache_is_made_anew(split: Split, maker: Maker) -> None:
+def test_a_broken_file_in_the_cache_is_generated_again(split: Split, maker: Maker) -> None:
     path = split.house_file("tiny_00")
     path.write_bytes(path.read_bytes()[:100])
     assert split.load_house("tiny_00").name == "tiny_00"
     assert maker.made == 2
 
 
-def test_many_who_need_a_house_at_once_all_get_it_whole(split: Split, maker: Maker) -> None:
+def test_concurrent_readers_get_complete_files(split: Split, maker: Maker) -> None:
     with ThreadPoolExecutor(8) as pool:
         contents = list(pool.map(lambda _: split.house_file("tiny_00").read_bytes(), range(24)))
     assert set(contents) == {maker.text.encode()}
     assert [file.name for file in split.house_file("tiny_00").parent.iterdir()] == ["tiny_00.xml"]
 
 
-def test_a_house_that_comes_out_different_is_refused_with_both_checksums(maker: Maker, tmp_path: Path) -> None:
+def test_a_house_that_differs_from_the_list_is_an_error_with_both_checksums(maker: Maker, tmp_path: Path) -> None:
     split = listed_split(tmp_path / "tiny", b"another house")
     assert split.house_list is not None
     with pytest.raises(HouseError) as refused:
@@ -93,7 +93,7 @@ def test_a_house_that_comes_out_different_is_refused_with_both_checksums(maker: 
         old.fetch("tiny_00")
 
 
-def test_a_cache_that_cannot_be_written_is_one_clear_sentence(
+def test_the_error_of_a_read_only_cache_names_the_variable(
     split: Split, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("no folder")
@@ -103,7 +103,7 @@ def test_a_cache_that_cannot_be_written_is_one_clear_sentence(
         blocked.load_house("tiny_00")
 
 
-def test_the_hash_covers_checksums_and_episodes_and_no_file_of_the_cache(split: Split, tmp_path: Path) -> None:
+def test_the_hash_covers_checksums_and_episodes_but_not_the_cache(split: Split, tmp_path: Path) -> None:
     before = split.sha256
     split.house_file("tiny_00")
     assert load_split(tmp_path / "tiny").sha256 == before
@@ -112,14 +112,14 @@ def test_the_hash_covers_checksums_and_episodes_and_no_file_of_the_cache(split: 
     assert len({before, changed, load_split(tmp_path / "tiny").sha256}) == 3
 
 
-def test_houses_and_episodes_of_two_versions_are_refused(split: Split, tmp_path: Path) -> None:
+def test_houses_and_episodes_of_different_versions_are_an_error(split: Split, tmp_path: Path) -> None:
     write_split(tmp_path / "tiny", EPISODES, {"tiny_00": {}}, version="1.3.0")
     with pytest.raises(ConfigError, match=r"episodes of version 1\.3\.0 but a list of houses of version 1\.2\.0"):
         load_split(tmp_path / "tiny")
 
 
 @pytest.mark.parametrize("content", ["{", "[]", '{"version": "1", "made_with": {}, "houses": [{"name": "x"}]}'])
-def test_a_broken_list_is_named(split: Split, tmp_path: Path, content: str) -> None:
+def test_the_error_of_a_broken_list_names_the_file(split: Split, tmp_path: Path, content: str) -> None:
     (tmp_path / "tiny" / "houses.json").write_text(content)
     with pytest.raises(ConfigError, match=r"houses\.json"):
         load_split(tmp_path / "tiny")
@@ -130,7 +130,7 @@ def test_a_recipe_to_json_and_back_is_identity() -> None:
         assert Recipe.from_json(json.loads(json.dumps(recipe.to_json()))) == recipe
 
 
-def test_the_cache_lies_where_the_user_says_else_where_xdg_says(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_folder_follows_the_variable_then_xdg(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, "/mine")
     monkeypatch.setenv("XDG_CACHE_HOME", "/xdg")
     assert cache_dir() == Path("/mine")
@@ -140,9 +140,7 @@ def test_the_cache_lies_where_the_user_says_else_where_xdg_says(monkeypatch: pyt
     assert cache_dir() == Path.home() / ".cache" / "stubborn-objectnav"
 
 
-def test_a_generated_house_is_found_with_its_textures_from_the_cache(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_generated_house_loads_its_textures_from_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "cache"))
     split = listed_split(tmp_path / "tiny", house_bytes(STUDIO))
     model = split.load_house("tiny_00").spec.copy().compile()
@@ -150,7 +148,7 @@ def test_a_generated_house_is_found_with_its_textures_from_the_cache(
     assert house_bytes(STUDIO) == split.house_file("tiny_00").read_bytes()
 
 
-def test_a_quarter_of_the_train_houses_is_large_and_a_third_has_things_to_push() -> None:
+def test_a_quarter_of_the_train_houses_is_large_and_a_third_has_movables() -> None:
     recipes = [train_recipe(seed) for seed in range(200)]
     assert sum(recipe.area_m2 > 250.0 for recipe in recipes) == 50
     assert 60 <= sum(recipe.movable for recipe in recipes) <= 70

@@ -1,4 +1,4 @@
-"""Furniture that can be pushed stands still until then, slides, stays upright and goes back to sleep."""
+"""Tests of movable furniture: it rests, slides when it is pushed, stays upright and sleeps again."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from tests.helpers.worlds import room, with_movable
 AREA_M2 = 80.0
 POOLS = ("train", "heldout")
 KINDS = ("chair", "stool", "plant", "gym_equipment")
-TOUCHED = {mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_SPHERE}
+EXACT_SHAPES = {mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CAPSULE, mujoco.mjtGeom.mjGEOM_SPHERE}
 
 
 @functools.cache
@@ -45,24 +45,24 @@ def item_of(category: str, pool: str, style: str) -> Item:
     return CATALOGUE.make_item(category, np.random.default_rng(3), pool=pool, style=style)  # type: ignore[arg-type]
 
 
-def loose_styles(*categories: str) -> list[tuple[str, str, str]]:
+def movable_styles(*categories: str) -> list[tuple[str, str, str]]:
     names = [(c, pool, style.name) for c in categories for pool in POOLS for style in CATALOGUE.styles(c, pool)]
     return [name for name in names if split_movable(item_of(*name))[1]]
 
 
-def alone(item: Item) -> World:
-    """The item on an empty floor."""
-    builder = HouseBuilder("alone")
+def world_with(item: Item) -> World:
+    """Returns the world of one item on an empty floor."""
+    builder = HouseBuilder("world_with")
     builder.add_ground(Rect(-4, -4, 4, 4))
     builder.add_movable(PlacedItem(item))
-    return World(House("alone", builder.spec))
+    return World(House("world_with", builder.spec))
 
 
 @functools.cache
 def seed_of_home() -> int:
-    """The first seed whose small flat has a chair and three more things that can be pushed."""
+    """Returns the first seed whose small flat has a movable chair and three more movables."""
     for seed in range(20):
-        names = loose_names(flat(seed).spec.compile())
+        names = movable_names(flat(seed).spec.compile())
         if len(names) >= 4 and any(name.startswith("chair_") for name in names):
             return seed
     raise AssertionError("no seed below 20 has chairs to push")
@@ -79,18 +79,18 @@ def home() -> House:
 
 @dataclasses.dataclass
 class Place:
-    """What the oracle acts in."""
+    """The environment of the oracle."""
 
     scene: Scene
 
 
-def loose(model: mujoco.MjModel) -> list[int]:
-    """Bodies with a free joint."""
+def movable_bodies(model: mujoco.MjModel) -> list[int]:
+    """Returns the bodies with a free joint."""
     return model.jnt_bodyid[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE].tolist()
 
 
-def loose_names(model: mujoco.MjModel) -> list[str]:
-    return [model.body(body).name for body in loose(model)]
+def movable_names(model: mujoco.MjModel) -> list[str]:
+    return [model.body(body).name for body in movable_bodies(model)]
 
 
 def asleep(world: World, body: int) -> bool:
@@ -105,7 +105,7 @@ def wait(world: World, seconds: float) -> None:
     mujoco.mj_step(world.model, world.data, nstep=round(seconds / world.model.opt.timestep))
 
 
-def somewhere_free(world: World) -> Pose:
+def free_pose(world: World) -> Pose:
     space = FreeSpace.from_world(world)
     cells = np.argwhere(space.largest_part())
     row, col = cells[len(cells) // 2]
@@ -114,7 +114,7 @@ def somewhere_free(world: World) -> Pose:
 
 
 def speeds_during(world: World, actions: int, body: int) -> Iterator[float]:
-    """Speed of a body at the end of each forward action."""
+    """Yields the speed of a body at the end of each forward action."""
     for _ in range(actions):
         world.move(Action.MOVE_FORWARD)
         velocity = np.zeros(6)
@@ -122,52 +122,52 @@ def speeds_during(world: World, actions: int, body: int) -> Iterator[float]:
         yield float(np.linalg.norm(velocity[3:]))
 
 
-def test_the_same_seed_gives_the_same_bytes_also_in_another_process() -> None:
+def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     arguments = f"{seed_of_home()}, kind='flat', area_m2={AREA_M2}, movable=True"
     code = f"from sim.housegen import generate; print(generate({arguments}).to_xml(), end='')"
     other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert home().spec.to_xml() == other
 
 
-def test_only_light_things_of_four_kinds_are_loose_and_only_when_asked() -> None:
-    assert {name.rpartition("_")[0] for name in loose_names(home().spec.compile())} <= set(KINDS)
-    assert not loose(generate(seed_of_home(), kind="flat", area_m2=AREA_M2).compile())
+def test_only_light_items_of_four_categories_are_movable_and_only_on_request() -> None:
+    assert {name.rpartition("_")[0] for name in movable_names(home().spec.compile())} <= set(KINDS)
+    assert not movable_bodies(generate(seed_of_home(), kind="flat", area_m2=AREA_M2).compile())
 
 
-@pytest.mark.parametrize("name", loose_styles(*KINDS), ids="-".join)
-def test_a_loose_thing_is_touched_by_exact_shapes_and_light_enough_to_be_pushed(name: tuple[str, str, str]) -> None:
-    world = alone(item_of(*name))
+@pytest.mark.parametrize("name", movable_styles(*KINDS), ids="-".join)
+def test_a_movable_has_exact_collision_shapes_and_is_light_enough(name: tuple[str, str, str]) -> None:
+    world = world_with(item_of(*name))
     model = world.model
-    for body in loose(model):
+    for body in movable_bodies(model):
         geoms = np.flatnonzero(model.geom_bodyid == body)
-        touched = geoms[model.geom_contype[geoms] != 0]
-        assert {mujoco.mjtGeom(kind) for kind in model.geom_type[touched]} <= TOUCHED
-        assert (model.geom_group[touched] >= 3).all()
-        assert (model.geom_group[np.setdiff1d(geoms, touched)] < 3).all()
-        assert (model.geom_priority[touched] == 1).all()
+        collision = geoms[model.geom_contype[geoms] != 0]
+        assert {mujoco.mjtGeom(kind) for kind in model.geom_type[collision]} <= EXACT_SHAPES
+        assert (model.geom_group[collision] >= 3).all()
+        assert (model.geom_group[np.setdiff1d(geoms, collision)] < 3).all()
+        assert (model.geom_priority[collision] == 1).all()
         assert 0.5 <= model.body_mass[body] <= 20.0
-        friction = float(model.geom_friction[touched[0], 0])
+        friction = float(model.geom_friction[collision[0], 0])
         assert friction * model.body_mass[body] * GRAVITY_M_S2 <= MAX_PUSH_N
         assert 0.0 < model.body_ipos[body, 2] < 0.6
 
 
-@pytest.mark.parametrize("name", loose_styles(*KINDS), ids="-".join)
-def test_a_loose_thing_stands_where_it_was_put_and_sleeps(name: tuple[str, str, str]) -> None:
-    world = alone(item_of(*name))
+@pytest.mark.parametrize("name", movable_styles(*KINDS), ids="-".join)
+def test_a_movable_stays_in_place_and_sleeps(name: tuple[str, str, str]) -> None:
+    world = world_with(item_of(*name))
     world.reset(Pose(3.0, 3.0, 0.0))
     before = world.model.qpos0.copy()
     wait(world, 1.0)
-    for body in loose(world.model):
+    for body in movable_bodies(world.model):
         at = world.model.jnt_qposadr[world.model.body_jntadr[body]]
         assert np.linalg.norm(world.data.qpos[at : at + 3] - before[at : at + 3]) < 0.002
         assert asleep(world, body)
 
 
-@pytest.mark.parametrize("name", sample(loose_styles("chair", "stool", "plant"), 10), ids="-".join)
+@pytest.mark.parametrize("name", sample(movable_styles("chair", "stool", "plant"), 10), ids="-".join)
 @pytest.mark.parametrize("side_deg", [0, 90, 180, 225])
-def test_a_pushed_thing_slides_upright_and_sleeps_again(name: tuple[str, str, str], side_deg: int) -> None:
-    world = alone(item_of(*name))
-    (body,) = loose(world.model)
+def test_a_pushed_movable_slides_upright_and_sleeps_again(name: tuple[str, str, str], side_deg: int) -> None:
+    world = world_with(item_of(*name))
+    (body,) = movable_bodies(world.model)
     yaw = math.radians(side_deg) + 0.1
     world.reset(Pose(-0.8 * math.cos(yaw), -0.8 * math.sin(yaw), yaw))
     wait(world, 0.5)
@@ -182,9 +182,9 @@ def test_a_pushed_thing_slides_upright_and_sleeps_again(name: tuple[str, str, st
     assert asleep(world, body)
 
 
-def test_a_ball_that_was_pushed_comes_to_rest() -> None:
-    world = alone(item_of("gym_equipment", "train", "mat_and_ball"))
-    ball = max(loose(world.model), key=lambda body: float(world.model.body_ipos[body, 2]))
+def test_a_pushed_ball_comes_to_rest() -> None:
+    world = world_with(item_of("gym_equipment", "train", "mat_and_ball"))
+    ball = max(movable_bodies(world.model), key=lambda body: float(world.model.body_ipos[body, 2]))
     x, y, _ = world.model.body_pos[ball]
     world.reset(Pose(float(x) - 0.8, float(y), 0.0))
     for _ in range(4):
@@ -194,22 +194,22 @@ def test_a_ball_that_was_pushed_comes_to_rest() -> None:
     assert asleep(world, ball)
 
 
-def test_everything_loose_in_a_house_rests_and_blocks_where_it_stands() -> None:
+def test_all_movables_of_a_house_rest_and_block_the_free_space() -> None:
     world = World(home())
-    bodies = loose(world.model)
+    bodies = movable_bodies(world.model)
     mujoco.mj_forward(world.model, world.data)
     space = FreeSpace.from_world(world)
     before = world.data.xpos[bodies].copy()
     assert not any(space.is_free(float(x), float(y)) for x, y, _ in world.data.xipos[bodies])
-    world.reset(somewhere_free(world))
+    world.reset(free_pose(world))
     wait(world, 1.0)
     assert np.linalg.norm(world.data.xpos[bodies] - before, axis=1).max() < 0.002
     assert all(asleep(world, body) for body in bodies)
 
 
-def test_a_pushed_chair_is_seen_and_blocks_where_it_went() -> None:
-    world = alone(item_of("chair", "train", "slat_back"))
-    (body,) = loose(world.model)
+def test_a_pushed_chair_is_rendered_and_blocks_at_its_new_place() -> None:
+    world = world_with(item_of("chair", "train", "slat_back"))
+    (body,) = movable_bodies(world.model)
     world.reset(Pose(-0.8, 0.0, 0.0))
     camera = Camera(world.model, world.labels, camera=CameraModel())
     chair = MPCAT40_ID["chair"]
@@ -226,7 +226,7 @@ def test_a_pushed_chair_is_seen_and_blocks_where_it_went() -> None:
     assert FreeSpace.from_world(world).is_free(-0.1, 0.0)
 
 
-def test_what_carries_something_or_is_heavy_stays_in_place() -> None:
+def test_items_that_carry_others_or_are_heavy_stay_static() -> None:
     chair, cushion = (
         item_of("chair", "train", "slat_back"),
         CATALOGUE.make_item("cushion", np.random.default_rng(0), pool="train"),
@@ -240,7 +240,7 @@ def test_what_carries_something_or_is_heavy_stays_in_place() -> None:
     assert split_movable(dataclasses.replace(chair, mass_kg=15.0))[1] == ()
 
 
-def test_the_check_finds_loose_things_that_do_not_stand() -> None:
+def test_the_check_finds_movables_that_do_not_rest() -> None:
     house = with_movable(room(5, 4), "stool_00", xy_m=(0.0, 0.0))
     assert check_house(house.spec) == []
     both = with_movable(house, "stool_01", xy_m=(0.395, 0.0))  # 5 mm into the other: they push each other away
@@ -249,7 +249,7 @@ def test_the_check_finds_loose_things_that_do_not_stand() -> None:
     assert all("is not stable: after 1 s" in fault for fault in faults)
 
 
-def test_the_oracle_reaches_a_goal_among_loose_things() -> None:
+def test_the_oracle_reaches_a_goal_among_movables() -> None:
     scene = Scene(home(), robot=RobotConfig(), camera=CameraModel(), profile="fast")
     episode = sample_episode(scene.task, "home", np.random.default_rng(0))
     scene.world.reset(episode.start)
@@ -267,6 +267,6 @@ def test_the_oracle_reaches_a_goal_among_loose_things() -> None:
 
 
 @pytest.mark.parametrize("split", [name for name in SPLITS if name in ("val", "test")])
-def test_a_third_of_the_shipped_houses_has_loose_things(split: str) -> None:
+def test_a_third_of_the_shipped_houses_has_movables(split: str) -> None:
     recipes = SPLITS[split]
     assert sum(recipe.movable for recipe in recipes) == pytest.approx(len(recipes) / 3, abs=1)
