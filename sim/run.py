@@ -26,6 +26,9 @@ from sim.evaluation.workers import RunnerSpec
 from sim.houses.load import load_house
 from sim.paths import code_hash
 
+Args = RunOptions
+"""The options of this command, under the name that every command has."""
+
 
 def main(options: RunOptions) -> int:
     """Runs the episodes that the options ask for; returns the exit status."""

@@ -9,11 +9,14 @@ import re
 import shutil
 import subprocess
 import sys
+import types
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
 from sim.housegen.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
@@ -21,10 +24,14 @@ from sim.houses.load import load_house
 from sim.interface import CameraModel, RobotModel
 from stubborn import agent
 from stubborn.exploration import corners
+from stubborn.exploration.explorer import Ground, run_explorer
 from stubborn.mapping import collision_marks, mapper
+from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning import planner
+from stubborn.planning.avoidance import visited_ground
+from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target import seeker
+from stubborn.target import distances
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
@@ -32,7 +39,7 @@ from tests.sim.housegen import test_furniture as furniture_laws
 from tools.site_hooks import fetched_from_elsewhere
 
 DOCS = ROOT / "docs"
-CONFIGURED = (agent, collision_marks, corners, mapper, planner, seeker)
+CONFIGURED = (agent, collision_marks, corners, mapper, planner, distances)
 """Modules with the configs that the page of differences names."""
 SNIPPET = re.compile(r'--8<-- "([^"]+)"')
 PYTHON_BLOCKS = [
@@ -141,13 +148,31 @@ def test_a_python_block_runs(block: Block, tmp_path: Path) -> None:
     assert ended.returncode == 0, ended.stderr
 
 
+def _names_on_the_page_of_agents() -> dict[str, Any]:
+    names: dict[str, Any] = {"__name__": "page"}
+    sys.modules["page"] = types.ModuleType("page")  # dataclasses look their module up
+    for block in PYTHON_BLOCKS:
+        if block.page == "docs/agents.md":
+            exec(block.text, names)
+    return names
+
+
 def test_the_variant_on_the_page_of_agents_is_an_agent_with_its_own_config() -> None:
-    (block,) = (block for block in PYTHON_BLOCKS if block.page == "docs/agents.md")
-    names: dict[str, Any] = {}
-    exec(block.text, names)
-    variant = names["make"](camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
+    spec = _names_on_the_page_of_agents()["BOLD"]
+    variant = spec.make(camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter(), config=spec.config)
     assert (variant.config.planning.dilation_m, variant.config.collisions.wide_m) == (0.10, 0.35)
     assert variant.config.untrap == agent.AgentConfig().untrap
+
+
+def test_the_explorer_on_the_page_of_agents_leads_to_the_farthest_reachable_cell() -> None:
+    explorer = _names_on_the_page_of_agents()["FARTHEST"].make(None)
+    frame = GridFrame.around_start(101, 0.05)
+    navmap = NavMap.empty(frame)
+    layers, planner = (CollisionLayer.NONE,), Planner(PlanningConfig(), visited_ground)
+    whole = frame.part(slice(None), slice(None))
+    route = run_explorer(explorer, Ground(navmap, whole, Pose(0.0, 0.0, 0.0), layers, planner))
+    assert isinstance(route, Route)
+    assert route.length_m > 3.0  # a corner of the map is 3.5 m away
 
 
 def test_the_example_agent_is_thirty_lines() -> None:

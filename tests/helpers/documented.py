@@ -117,8 +117,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
     f"{PYTHON} -m sim.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
-    f"{_RUN} --agent examples.my_agent:make --video": (
-        f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
+    f"{_RUN} --agent examples.my_agent:AGENT --video": (
+        f"{_RUN} --agent examples.my_agent:AGENT --video {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --semantics noisy --noise realsense": (
         f"{_RUN} --semantics noisy --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",
@@ -138,14 +138,21 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
     ),
     # docs/agents.md
-    f"{_RUN} --agent examples.my_agent:make --episodes 5": (
-        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --out {{tmp}}/run",
+    f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 --episodes 5": (
+        f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 --episodes 5": (
+        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 --episodes 1"
+        f" {_SMALL} --out {{tmp}}/run",
+    ),
+    f"{_RUN} --explorer thorough --episodes 5": (
+        f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --episodes 100 --workers 2 --out runs/before": (
         f"{_RUN} {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/before",
     ),
-    f"{_RUN} --agent examples.my_agent:make --episodes 100 --workers 2 --out runs/after": (
-        f"{_RUN} --agent examples.my_agent:make {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
+    f"{_RUN} --explorer thorough --episodes 100 --workers 2 --out runs/after": (
+        f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
     ),
     f"{PYTHON} tools/compare_runs.py runs/before runs/after": (
         f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",

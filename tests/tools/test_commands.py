@@ -90,7 +90,7 @@ def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> Non
 
 def test_every_block_of_commands_says_that_it_is_one() -> None:
     """So that none escapes: a block of shell is marked sh, and no block goes without a mark."""
-    known = {"sh", "python", "xml", "json", "text"}
+    known = {"sh", "python", "xml", "json", "toml", "text"}
     odd = [
         f"{block.page}:{block.line}: {block.language or 'no language'}"
         for page in documented.pages()
