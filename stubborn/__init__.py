@@ -1,1 +1,1 @@
-"""The mind: the Stubborn agent (Luo et al. 2022), its ablations and baselines. Knows NumPy, never MuJoCo."""
+"""The Stubborn agent (Luo et al. 2022), its ablations and baselines. Nothing here imports MuJoCo."""

@@ -110,6 +110,7 @@ class StubbornAgent:
             verifier or AcceptAll(),
             layers=self.policies.approach,
             distances=StopDistances.of(config.target, success, segmenter.spec),
+            candidate_score=config.mapping.candidate_score,
         )
         self.untrap = Untrap(self.policies.untrap_after)
         self.reset(GOAL_CATEGORIES[0], 0)

@@ -31,7 +31,7 @@ class MappingConfig:
     obstacle_max_height_m: float | None = None
     """Higher surfaces are overhead; None takes the robot's height (0.88 m)."""
     score_max_height_m: float = 2.2
-    """Object layers take points up to this height: pictures, towels and wall screens hang high."""
+    """Object layers take points up to this height: pictures, towels and wall screens are mounted high."""
     eye_level_halfwidth_m: float = 0.06
     """Surfaces this near the camera's height can hide an object behind them."""
     obstacle_stride_px: int = 2

@@ -30,8 +30,6 @@ class TargetConfig:
     outline_margin_m: float = 0.25
     """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
     may include a part of what is beside the target."""
-    candidate_score: float = 0.5
-    """A cell with a higher target score is a candidate."""
     last_resort_step: int = 420
     """From this step on the agent stops at a last resort."""
     rejection_margin_m: float = 0.25

@@ -59,9 +59,14 @@ class TargetSeeker:
         *,
         layers: tuple[CollisionLayer, ...],
         distances: StopDistances,
+        candidate_score: float,
     ) -> None:
-        """`layers` are the collision layers to plan on, in order of preference."""
+        """`layers` are the collision layers to plan on, in order of preference.
+
+        A cell with a target score higher than `candidate_score` is a candidate.
+        """
         self.config = config
+        self.candidate_score = candidate_score
         self.planner = planner
         self.verifier = verifier
         self.distances = distances
@@ -78,7 +83,7 @@ class TargetSeeker:
 
     def candidates(self, view: NavMap) -> NDArray[np.bool_]:
         """Returns the cells that score as the target and were neither rejected nor set aside."""
-        return (view.score_max > self.config.candidate_score) & ~view.rejected & ~view.set_aside
+        return (view.score_max > self.candidate_score) & ~view.rejected & ~view.set_aside
 
     def acceptable(self, navmap: NavMap) -> NDArray[np.bool_]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
@@ -88,7 +93,7 @@ class TargetSeeker:
         """
         whole = self._known(navmap)
         view = navmap.view(whole)
-        shown = view.score_max > self.config.candidate_score
+        shown = view.score_max > self.candidate_score
         count, labels = cv2.connectedComponents(shown.view(np.uint8), connectivity=8)
         parts, cells = np.asarray(labels, np.intp), np.flatnonzero(shown)
         best_last = cells[np.argsort(view.score_sum[shown], kind="stable")]
@@ -143,7 +148,7 @@ class TargetSeeker:
         whole = self._known(navmap)
         view = navmap.view(whole)
         row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
-        instance = connected(view.score_max > self.config.candidate_score, row, col, connectivity=8)
+        instance = connected(view.score_max > self.candidate_score, row, col, connectivity=8)
         # The cells at its edge, which are nearest, also show what is beside it: the cell seen best represents it.
         features = features_of(view, int(np.argmax(np.where(instance, view.score_sum, -1.0))))
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())

@@ -1,5 +1,6 @@
 """What holds for every agent that `stubborn.agents.make` knows, and for the example."""
 
+import dataclasses
 import subprocess
 import sys
 from typing import Any
@@ -17,7 +18,7 @@ from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.classifiers import Features
 from stubborn.target.verification import AcceptAll
-from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
 PLAN = """
 ####################
@@ -198,11 +199,62 @@ def test_options_are_fields_of_the_config():
     assert not agent.config.avoidance.visited_is_free
 
 
+@pytest.mark.parametrize("name", agents.EXPLORERS)
+def test_an_explorer_is_chosen_by_name_or_config(name: str):
+    config = agents.EXPLORERS[name]
+    for explorer in (name, config):
+        agent = build("stubborn", explorer=explorer)
+        assert isinstance(agent, StubbornAgent)
+        assert agent.config.explorer == config
+        assert type(agent.explorer) is type(config.make(SMALL_CAMERA))
+
+
+@pytest.mark.parametrize("name", agents.NAMES)
+def test_a_specification_describes_its_agent(name: str):
+    spec = agents.SPECS[name]
+    assert spec.description
+    assert "semantic" not in spec.sensors
+    agent = build(name)
+    assert getattr(agent, "config") == spec.config  # noqa: B009 - no attribute of the protocol
+    assert (spec.painter is not None) == isinstance(agent, StubbornAgent)
+    if spec.painter is not None:
+        assert spec.painter(agent).paint(120).shape == (120, 120, 3)
+
+
+def plain(value: Any) -> bool:
+    """Whether a value is made of JSON's types and frozen dataclasses."""
+    if dataclasses.is_dataclass(value):
+        assert getattr(value, "__dataclass_params__").frozen  # noqa: B009 - not in typeshed
+        return all(plain(getattr(value, field.name)) for field in dataclasses.fields(value))
+    if isinstance(value, tuple):
+        return all(plain(item) for item in value)
+    return value is None or isinstance(value, (bool, int, float, str))
+
+
+@pytest.mark.parametrize("name", agents.NAMES)
+def test_a_configuration_is_a_frozen_tree_of_plain_values(name: str):
+    assert plain(agents.SPECS[name].config)
+
+
+def test_a_larger_success_distance_lets_the_agent_stop_farther_away():
+    ends_m = []
+    for distance_m in (1.0, 2.0):
+        agent = build("stubborn", success=SuccessRule(distance_m=distance_m))
+        ground = GridWorld([Box((4.0, 5.0), (-1.0, 1.0), (0.0, 0.6), "bed")], (0.0, 0.0, 0.0), camera=SMALL_CAMERA)
+        trace = run_episode(ground, agent, "bed", max_steps=50)
+        assert trace.stopped
+        assert trace.goal_distance_m < distance_m
+        ends_m.append(trace.goal_distance_m)
+    assert ends_m[1] > ends_m[0] + 0.5
+
+
 def test_an_unknown_name_or_option_is_refused_with_what_there_is():
     with pytest.raises(ConfigError, match=r"No agent 'stuborn'\. Did you mean 'stubborn'\? There is: stubborn, "):
         build("stuborn")
     with pytest.raises(ConfigError, match=r"no option 'speed'\. It has: cell_m, "):
         build("stubborn", speed=2)
+    with pytest.raises(ConfigError, match=r"No explorer 'fronteer'\. Did you mean 'frontier'\?"):
+        build("stubborn", explorer="fronteer")
     with pytest.raises(ConfigError, match="window_cells <= map_cells, got 20 and 10"):
         AgentConfig(window_cells=20, map_cells=10)
 

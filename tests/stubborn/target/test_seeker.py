@@ -48,7 +48,7 @@ class Doubtful:
 
 def made(config: TargetConfig, verifier: Verifier, segmenter: SegmenterSpec) -> TargetSeeker:
     distances = StopDistances.of(config, SuccessRule(), segmenter)
-    seek = TargetSeeker(config, PLANNER, verifier, layers=BOTH_LAYERS, distances=distances)
+    seek = TargetSeeker(config, PLANNER, verifier, layers=BOTH_LAYERS, distances=distances, candidate_score=0.5)
     seek.reset("sofa")
     return seek
 
