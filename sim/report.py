@@ -1,9 +1,9 @@
-"""The report of a run, or of two side by side, as one HTML page.
+"""Writes the report of a run, or of two runs side by side, as one HTML page.
 
     python -m sim.report runs/mine                 # writes runs/mine/report.html
     python -m sim.report runs/before runs/after    # writes runs/after/report_against_before.html
 
-A run made with `--record` gets a picture of each episode. Nothing is played again; the page needs no network.
+For a run with `--record` it has a picture of each episode. No episode is run again; the page needs no network.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ class Args:
     run: tyro.conf.Positional[Path]
     """Folder of a run."""
     other: tyro.conf.Positional[Path | None] = None
-    """Folder of another run of the same episodes, to be compared with the first."""
+    """Folder of another run of the same episodes, which is compared with the first."""
     out: Path | None = None
     """The page (RUN/report.html, or OTHER/report_against_RUN.html)."""
 
 
 def main(args: Args) -> int:
-    """Read, draw, write; returns the exit status."""
+    """Reads the runs and writes the page; returns the exit status."""
     runs = [read_run(args.run), *([read_run(args.other)] if args.other is not None else [])]
     out = args.out or _default_out(args)
     if out.is_dir():
-        raise ConfigError(f"--out '{out}' is a folder; name the page, for example {out / 'report.html'}.")
+        raise ConfigError(f"--out '{out}' is a folder; give the name of the page, for example {out / 'report.html'}.")
     paths = [str(path) for path in (args.run, args.other) if path is not None]
     console = display.make_console()
     console.print(
-        f"{max(len(run.lines) for run in runs)} episodes; a house takes a second, a goal in it a fraction of one."
+        f"{max(len(run.lines) for run in runs)} episodes; each house takes about a second, each goal in it a tenth."
     )
     page = build_page(runs, out_folder=out.parent, command=shlex.join(["python", "-m", "sim.report", *paths]))
     part = out.with_name(f"{out.name}.part-{os.getpid()}")
@@ -54,8 +54,8 @@ def main(args: Args) -> int:
         part.replace(out)
     except OSError as error:
         raise ConfigError(f"Cannot write the report '{out}': {error.strerror}.") from None
-    told = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
-    console.print(told, highlight=False, markup=False, soft_wrap=True)
+    message = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
+    console.print(message, highlight=False, markup=False, soft_wrap=True)
     return 0
 
 

@@ -1,12 +1,12 @@
-"""How fast everything is, each figure against a baseline that is measured in the same run.
+"""Measures the speed of all parts, each figure against a baseline that is measured in the same run.
 
 python tools/bench.py                                             # all parts, half an hour at most
 python tools/bench.py --parts a,b,d                               # rendering, the agent's step
 python tools/bench.py --out runs/bench.json --markdown docs/performance.md
-python tools/bench.py --quick                                     # does it run? its figures mean nothing
+python tools/bench.py --quick                                     # does everything run? the figures mean nothing
 
-Absolute figures hang on the machine and on what else it does; ratios much less, and before each part and at the end
-three fixed pieces of work are timed, that say how steady the machine was. See docs/performance.md.
+Absolute figures depend on the machine and on its load, ratios much less. Before each part and at the end, three fixed
+pieces of work are timed; they show how steady the machine was. See docs/performance.md.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # run as a file, it does not find its sister files
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
 
 import cv2
 from rich.console import Console
@@ -44,27 +44,27 @@ PARTS: Mapping[str, Callable[[Setting], list[Figure]]] = {
     "i": growth.growth,
 }
 MAX_DRIFT = 1.15
-"""A calibration that changes by more between two parts is told."""
+"""A calibration that changes by a larger factor between two parts gives a warning."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Measure, tell, write down."""
+    """Measure parts, print the figures and write them to files."""
 
     parts: str = ",".join(PARTS)
     """Letters with commas between: a, b rendering; c the environment's step; d the agent's; e episodes; f views;
     g houses; h workers; i growth."""
     quick: bool = False
-    """As little as shows that everything runs."""
+    """Measure as little as possible, to test that everything runs."""
     out: Path | None = None
-    """A JSON file for all of it."""
+    """A JSON file for all figures."""
     markdown: Path | None = None
-    """A page that gets the table between its two marks."""
+    """A page into which the table is written, between its two marks."""
 
 
 def main(args: Args) -> int:
-    """Measure the parts; returns 1 where a goal is missed (never with --quick)."""
-    os.environ["LP_NUM_THREADS"] = "1"  # for both sides; llvmpipe reads it when it starts
+    """Measures the parts; returns 1 if a goal is missed (never with --quick)."""
+    os.environ["LP_NUM_THREADS"] = "1"  # for figures and baselines; llvmpipe reads it when it starts
     wanted = parse_parts(args.parts)
     console = display.make_console()
     cv2.setNumThreads(1)
@@ -89,10 +89,10 @@ def main(args: Args) -> int:
 
 
 def parse_parts(text: str) -> list[str]:
-    """The letters of `--parts`, in their order.
+    """Returns the letters of `--parts` in alphabetical order.
 
     Raises:
-        ConfigError: one that there is not, or none.
+        ConfigError: an unknown letter, or none.
     """
     wanted = [part.strip() for part in text.split(",") if part.strip()]
     unknown = [part for part in wanted if part not in PARTS]
@@ -102,7 +102,7 @@ def parse_parts(text: str) -> list[str]:
 
 
 def measured(part: str, setting: Setting, console: Console) -> list[Figure]:
-    """The figures of a part; says how long it took."""
+    """Returns the figures of a part and prints its duration."""
     began_s = time.perf_counter()
     figures = PARTS[part](setting)
     console.print(f"({part}) measured in {time.perf_counter() - began_s:.0f} s", highlight=False)
@@ -110,26 +110,26 @@ def measured(part: str, setting: Setting, console: Console) -> list[Figure]:
 
 
 def drifts(calibrations: Mapping[str, Calibration]) -> list[str]:
-    """Sentences about fixed work that did not take the same time throughout: somebody else was there."""
-    told = []
-    for name in ("render_ms", "step_ms", "march_ms"):
+    """Returns warnings about fixed work whose duration changed: other processes were running."""
+    warnings = []
+    for name in ("render_ms", "step_ms", "fast_marching_ms"):
         values = [getattr(calibration, name) for calibration in calibrations.values()]
         if max(values) > MAX_DRIFT * min(values):
-            told.append(
-                f"The machine was not quiet: the fixed {name.removesuffix('_ms')} took {min(values):.2f} to "
-                f"{max(values):.2f} ms in the course of this run."
+            warnings.append(
+                f"The machine was not quiet: the fixed {name.removesuffix('_ms').replace('_', ' ')} took "
+                f"{min(values):.2f} to {max(values):.2f} ms in the course of this run."
             )
-    return told
+    return warnings
 
 
 def command_of(args: Args) -> str:
-    """What has to be said to measure the same."""
+    """Returns the command that measures the same parts."""
     parts = "" if parse_parts(args.parts) == list(PARTS) else f" --parts {args.parts}"
     return "python tools/bench.py" + parts + (" --quick" if args.quick else "")
 
 
 def entry(argv: Sequence[str] | None = None) -> int:
-    """The command line."""
+    """Runs the command line; returns its exit status."""
     return cli.run(Args, main, argv)
 
 

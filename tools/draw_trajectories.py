@@ -1,12 +1,12 @@
-"""Pictures of recorded episodes: the floor plan with the robot's way, and how far the goal was at each step.
+"""Draws recorded episodes: the floor plan with the robot's path, and the distance to the goal over the steps.
 
     python tools/draw_trajectories.py runs/mine                          # the failed ones
     python tools/draw_trajectories.py runs/mine --episodes val_0007 val_0012
 
-In the plan: free space white, what the robot's disc cannot enter grey, the goal's instances green, places where a STOP
-succeeds light green; the way from blue to red, contacts that stopped it black, the start a ring, the end a disc, where
-the goal was first seen (0.8 % of a frame) a yellow ring. Below: distance to the goal over the steps, yellow where the
-goal was in view. Made from the trajectory files and the houses; nothing is played again.
+In the plan: free space white, blocked space grey, the goal's instances green, the area where a STOP succeeds light
+green; the path from blue to red, contacts that stopped the robot black, the start a ring, the end a disc, and a yellow
+ring where the goal was first seen (0.8 % of a frame). Below: the distance to the goal over the steps, yellow where the
+goal was in view. The pictures are made from trajectory files and houses; no episode is run again.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from sim.world.world import World
 
 Picture = NDArray[np.uint8]
 PX_M = 60.0
-"""Pixels of a metre."""
+"""Pixels per metre."""
 CHART_PX = 140
 MIN_WIDTH_PX = 640
 BLOCKED, FREE, SUCCEEDS, INSTANCE = (150, 150, 150), (255, 255, 255), (214, 240, 205), (60, 160, 70)
@@ -50,13 +50,13 @@ class Args:
     run: tyro.conf.Positional[Path]
     """Folder of the run."""
     episodes: tuple[str, ...] = ()
-    """Which; all that failed if not given."""
+    """Ids of the episodes; all failed ones if not given."""
     out: Path | None = None
     """Folder for the pictures (<run>/pictures)."""
 
 
 def main(args: Args) -> int:
-    """Draw; returns the exit status, 1 when none of the episodes has a trajectory."""
+    """Draws the episodes; returns the exit status, 1 if none of them has a trajectory."""
     console = display.make_console()
     run = read_run(args.run)
     wanted = args.episodes or tuple(i for i, line in run.lines.items() if not line["success"])
@@ -65,8 +65,8 @@ def main(args: Args) -> int:
         raise ConfigError(f"'{args.run}' has no episode '{unknown[0]}'.")
     missing = [i for i in wanted if not trajectory_file(run.path, i).is_file()]
     if missing:
-        why = "written with --record; an episode that broke has none"
-        _tell(console, f"No trajectory, not drawn: {' '.join(missing)} ({why})")
+        why = "written with --record; an episode with an error has none"
+        _print(console, f"No trajectory, not drawn: {' '.join(missing)} ({why})")
     split, out = split_of(run), args.out or args.run / "pictures"
     out.mkdir(parents=True, exist_ok=True)
     truth: GroundTruth | None = None
@@ -78,16 +78,16 @@ def main(args: Args) -> int:
         words = in_words(episode_id, line["goal"], trajectory)
         file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
         cv2.imwrite(str(file), draw(truth, line["goal"], trajectory, words)[..., ::-1])
-        _tell(console, f"{words} -> {file}")
+        _print(console, f"{words} -> {file}")
     return int(bool(wanted) and len(missing) == len(wanted))
 
 
-def _tell(console: Console, words: str) -> None:
+def _print(console: Console, words: str) -> None:
     console.print(words, highlight=False, markup=False, soft_wrap=True)
 
 
 def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
-    """One line: what was looked for, how it ended, and what the rules of `sim.task.failures` go by."""
+    """Returns one line: goal, outcome, and the facts that the rules of `sim.task.failures` use."""
     seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
     facts = [f"{trajectory.num_steps} steps", f"{float(trajectory.moved_m.sum()):.1f} m"]
     facts += [f"{int(trajectory.collided.sum())} collisions"]
@@ -105,7 +105,7 @@ def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
 
 
 def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str) -> Picture:
-    """Plan and chart with a line of words above, uint8 (h, w, 3)."""
+    """Returns plan and chart with a line of text above, uint8 (h, w, 3)."""
     plan = draw_plan(truth, goal, trajectory)
     width = max(plan.shape[1], MIN_WIDTH_PX)
     parts = [_heading(words, width), _widened(plan, width), draw_chart(trajectory, width)]
@@ -113,7 +113,7 @@ def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str) -> P
 
 
 def draw_plan(truth: GroundTruth, goal: str, trajectory: Trajectory) -> Picture:
-    """The storey of the start from above, x to the right and y up."""
+    """Returns the storey of the start from above, x to the right and y up."""
     floor_z_m = float(trajectory.poses[0, 3])
     space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
     cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
@@ -122,29 +122,29 @@ def draw_plan(truth: GroundTruth, goal: str, trajectory: Trajectory) -> Picture:
     size = (round(cells.shape[1] * scale), round(cells.shape[0] * scale))
     image = np.asarray(cv2.resize(cells, size, interpolation=cv2.INTER_NEAREST)[::-1], np.uint8).copy()
 
-    def pixels(places_m: NDArray[np.floating]) -> NDArray[np.int32]:
-        return to_pixels(space.frame, places_m, image.shape[0])
+    def pixels(points_m: NDArray[np.floating]) -> NDArray[np.int32]:
+        return to_pixels(space.frame, points_m, image.shape[0])
 
     for footprint in target.region.footprints:
         for part in footprint.parts:
             cv2.fillConvexPoly(image, pixels(part.vertices_m), INSTANCE, cv2.LINE_AA)
-    way = pixels(trajectory.positions_m)
-    for i in range(len(way) - 1):
-        age = i / max(1, len(way) - 2)
+    path = pixels(trajectory.positions_m)
+    for i in range(len(path) - 1):
+        age = i / max(1, len(path) - 2)
         colour = (round(40 + 190 * age), 70, round(220 - 190 * age))
-        cv2.line(image, way[i].tolist(), way[i + 1].tolist(), colour, 2, cv2.LINE_AA)
+        cv2.line(image, path[i].tolist(), path[i + 1].tolist(), colour, 2, cv2.LINE_AA)
     for contact in pixels(trajectory.contacts[:, 1:]):
         cv2.circle(image, contact.tolist(), 2, CONTACT, -1, cv2.LINE_AA)
     seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
     if len(seen):
-        cv2.circle(image, way[seen[0]].tolist(), 11, SEEN, 3, cv2.LINE_AA)
-    cv2.circle(image, way[0].tolist(), 8, INK, 2, cv2.LINE_AA)
-    cv2.circle(image, way[-1].tolist(), 6, INK, -1, cv2.LINE_AA)
+        cv2.circle(image, path[seen[0]].tolist(), 11, SEEN, 3, cv2.LINE_AA)
+    cv2.circle(image, path[0].tolist(), 8, INK, 2, cv2.LINE_AA)
+    cv2.circle(image, path[-1].tolist(), 6, INK, -1, cv2.LINE_AA)
     return image
 
 
 def draw_chart(trajectory: Trajectory, width_px: int) -> Picture:
-    """Distance to the goal, from 0 at the bottom, over the steps; yellow where the goal is in view."""
+    """Returns a chart of the distance to the goal, from 0 at the bottom, over the steps; yellow: goal in view."""
     image = np.full((CHART_PX, width_px, 3), 245, np.uint8)
     known = np.isfinite(trajectory.distance_m)
     top_m = max(1.0, float(trajectory.distance_m[known].max())) if known.any() else 1.0
@@ -158,14 +158,14 @@ def draw_chart(trajectory: Trajectory, width_px: int) -> Picture:
     for step in np.flatnonzero(known[:-1] & known[1:]):
         begin, end = ((int(x[i]), round(float(y[i]))) for i in (step, step + 1))
         cv2.line(image, begin, end, (40, 70, 200), 2, cv2.LINE_AA)
-    words = f"{top_m:.1f} m to go at the top" if known.any() else "no way to the goal"
+    words = f"{top_m:.1f} m to go at the top" if known.any() else "no path to the goal"
     _write(image, f"{words}; {trajectory.num_steps} steps; collisions as ticks", 14)
     return image
 
 
-def to_pixels(frame: GridFrame, places_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
-    """(n, 2) column and row in the picture of places (n, 2) in the world."""
-    from_corner_m = np.asarray(places_m, np.float64) - np.asarray(frame.origin_xy_m)
+def to_pixels(frame: GridFrame, points_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
+    """Returns (n, 2) column and row in the picture of points (n, 2) in the world."""
+    from_corner_m = np.asarray(points_m, np.float64) - np.asarray(frame.origin_xy_m)
     return (
         np.stack([PX_M * from_corner_m[:, 0], height_px - PX_M * from_corner_m[:, 1]], axis=1).round().astype(np.int32)
     )

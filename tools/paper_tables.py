@@ -221,8 +221,8 @@ def _share_of_failures(cause: str, lines: Sequence[Line]) -> Cell:
 
 def _failed_by(cause: str, first: Sequence[Line], second: Sequence[Line]) -> Cell:
     """Returns the difference, second minus first, of the share of all episodes that failed by this cause."""
-    values = ([float(line["failure"] == cause) for line in lines] for lines in (first, second))
-    return Cell(paired_difference(*values, houses_of(first)), percent=True, difference=True)
+    a, b = ([line["failure"] == cause for line in lines] for lines in (first, second))
+    return Cell(paired_difference(a, b, houses_of(first)), percent=True, difference=True)
 
 
 def _by_goal(lines: Lines) -> list[tuple[str, Lines]]:

@@ -20,6 +20,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import tyro
 from rich.console import Console
@@ -143,7 +144,7 @@ def require_same_conditions(runs: Sequence[Run]) -> None:
             )
 
 
-def _conditions(of: Run, other: Run) -> dict[str, object]:
+def _conditions(of: Run, other: Run) -> dict[str, Any]:
     """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})

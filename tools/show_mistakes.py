@@ -1,12 +1,12 @@
-"""What the network saw where an episode was lost: at the STOP or, without one, where the goal was plainest.
+"""Shows what the network saw in failed episodes: at the STOP or, without one, in the frame with most of the goal.
 
     python -m sim.run --episodes 100 --record --out runs/mine
     python tools/show_mistakes.py runs/mine --out runs/false.png
     python tools/show_mistakes.py runs/mine --cause missed_detection --out runs/missed.png
 
-A row an episode: the picture, the true categories, the network's, and its score of the goal (white 0, red 1). Nothing
-is played again: the house is drawn from the recorded pose, without sensor noise, and what the robot has pushed stands
-where it stood at the start.
+One row per episode: the camera image, the true categories, those of the network, and its score of the goal (white 0,
+red 1). No episode is run again: the house is rendered from the recorded pose, without sensor noise and with movable
+objects at their start positions.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from sim import cli
 from sim.analysis.comparison import read_run
 from sim.analysis.report.drawings import split_of
+from sim.composition.segmenters import weights_file
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, ConfigError
-from sim.segmenters import weights_file
 from sim.sensors.camera import Camera
 from sim.task.failures import CAUSES
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
@@ -42,27 +42,27 @@ CAPTION_PX = 22
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Draw mistakes of a run with `--semantics rednet --record`."""
+    """Draw failures of a run with `--semantics rednet --record`."""
 
     run: tyro.conf.Positional[Path]
     """Folder of the run."""
     out: Path
     """The PNG file."""
     cause: str = "false_detection"
-    """Which failures (sim/task/failures.py): seen at the STOP, or, where there was none, where the goal was largest."""
+    """Cause of the failures to draw (sim/task/failures.py)."""
     count: int = 10
-    """At most so many, the first ones."""
+    """Largest number of failures; the first ones are drawn."""
 
 
 def main(args: Args) -> int:
-    """Draw the sheet, and say of each row what it shows; returns the exit status, 1 where there is no such failure."""
+    """Draws the sheet and prints a sentence per row; returns the exit status, 1 if there is no such failure."""
     if args.cause not in CAUSES:
         raise ConfigError(f"--cause must be one of {', '.join(CAUSES)}, got '{args.cause}'.")
     if args.count < 1:
         raise ConfigError(f"--count must be at least 1, got {args.count}.")
     run = read_run(args.run)
     if run.config.get("semantics") != "rednet":
-        raise ConfigError(f"'{args.run}' was played with --semantics {run.config.get('semantics')}, not with rednet.")
+        raise ConfigError(f"'{args.run}' was run with --semantics {run.config.get('semantics')}, not with rednet.")
     weights = run.config.get("weights")
     network = RedNetSegmenter.from_file(weights_file(Path(weights) if weights else None))
     split = split_of(run)
@@ -78,7 +78,7 @@ def main(args: Args) -> int:
     for line in sorted(picked, key=lambda line: line["house"]):
         trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
         step = decisive_step(trajectory)
-        images = photographed(World(split.load_house(line["house"])), trajectory.poses[step])
+        images = render_at(World(split.load_house(line["house"])), trajectory.poses[step])
         row, words = draw(images, network, line["goal"])
         about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
         print(about)
@@ -90,14 +90,14 @@ def main(args: Args) -> int:
 
 
 def decisive_step(trajectory: Trajectory) -> int:
-    """Number of the frame to look at: that of the STOP, or, without one, the one that showed most of the goal."""
+    """Returns the number of the frame to show: that of the STOP, or else the frame with most of the goal."""
     if trajectory.end_reason == "stop":
         return trajectory.num_steps
     return int(np.nanargmax(trajectory.goal_share))
 
 
-def photographed(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dict[str, NDArray]:
-    """Colour, depth and categories from (x, y, yaw, floor height)."""
+def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dict[str, NDArray]:
+    """Returns colour, depth and categories from the pose (x, y, yaw, floor height)."""
     x_m, y_m, yaw_rad, floor_z_m = (float(value) for value in pose)
     camera = Camera(world.model, world.labels)
     images = camera.render(world.data, Pose(x_m, y_m, yaw_rad, floor_z_m), ("rgb", "depth", "semantic"))
@@ -106,10 +106,10 @@ def photographed(world: World, pose: Sequence[float] | NDArray[np.floating]) -> 
 
 
 def draw(images: dict[str, NDArray], network: RedNetSegmenter, goal: str) -> tuple[Picture, str]:
-    """One row of panels, and in words what truly is where the network sees the goal."""
+    """Returns one row of panels, and a text with the true categories where the network sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
     guess = (network.logits(images["rgb"], images["depth"]).argmax(dim=0).numpy() + 1).astype(np.uint8)
-    score = network.scores(images, goal).target  # pyright: ignore[reportArgumentType] - what it reads of an observation
+    score = network.scores(images, goal).target  # pyright: ignore[reportArgumentType] - it reads only these images
     labels = [
         with_legend(np.asarray(cv2.resize(of, size, interpolation=cv2.INTER_NEAREST), np.uint8))
         for of in (images["semantic"], guess)
@@ -121,7 +121,7 @@ def draw(images: dict[str, NDArray], network: RedNetSegmenter, goal: str) -> tup
 
 
 def in_words(semantic: NDArray[np.uint8], score: NDArray[np.float32]) -> str:
-    """What truly is where the goal is scored above 0.5, the most first; else how high it is scored."""
+    """Returns the true categories where the score of the goal is above 0.5, the largest first, or the highest score."""
     every = semantic.shape[0] // score.shape[0]
     true = semantic[every // 2 :: every, every // 2 :: every][score > 0.5]
     if true.size == 0:

@@ -26,8 +26,8 @@ class Metric:
 
     def difference(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
         """Returns the mean of second minus first; both hold the same episodes in the same order."""
-        values = ([line_value(line, self.key) for line in lines] for lines in (first, second))
-        return Cell(paired_difference(*values, houses_of(first)), self.percent, self.digits, difference=True)
+        a, b = ([line_value(line, self.key) for line in lines] for lines in (first, second))
+        return Cell(paired_difference(a, b, houses_of(first)), self.percent, self.digits, difference=True)
 
 
 def line_value(line: Line, key: str) -> Value:

@@ -91,8 +91,9 @@ def bootstrap_interval(
         seed: of the resamples.
         resamples: number of resamples.
     """
-    order = np.lexsort((values, houses))
-    _, starts, sizes = np.unique(np.asarray(houses)[order], return_index=True, return_counts=True)
+    names = np.asarray(houses)
+    order = np.lexsort((values, names))
+    _, starts, sizes = np.unique(names[order], return_index=True, return_counts=True)
     clusters = np.split(np.asarray(values, np.float64)[order], starts[1:])
     rng = np.random.default_rng(seed)
     drawn = rng.integers(len(clusters), size=(resamples, len(clusters)), dtype=np.int32)

@@ -28,7 +28,7 @@ FIGURE = Figure(
     part="a", what="a frame", value=2.0, unit="ms", against="another", baseline=10.0, ratio=5.0, count=3,
     goal=Goal(of="ratio", sign=">=", bound=4.0),
 )  # fmt: skip
-CALM = Calibration(render_ms=10.0, step_ms=1.0, march_ms=8.0)
+CALM = Calibration(render_ms=10.0, step_ms=1.0, fast_marching_ms=8.0)
 
 
 def test_works_take_turns_and_the_least_counts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -117,8 +117,8 @@ def test_the_paper_s_map_is_the_one_that_others_are_compared_with() -> None:
     assert MAP_CELLS[1] == AgentConfig().map_cells
 
 
-def test_a_machine_that_is_not_quiet_is_told() -> None:
-    busy = Calibration(render_ms=13.0, step_ms=1.0, march_ms=8.1)
+def test_a_machine_that_is_not_quiet_gives_a_warning() -> None:
+    busy = Calibration(render_ms=13.0, step_ms=1.0, fast_marching_ms=8.1)
     assert bench.drifts({"a": CALM, "end": CALM}) == []
     assert bench.drifts({"a": CALM, "b": busy, "end": CALM}) == [
         "The machine was not quiet: the fixed render took 10.00 to 13.00 ms in the course of this run."

@@ -1,4 +1,4 @@
-"""Pictures of recorded episodes show what the trajectory says, where it says it."""
+"""Pictures of recorded episodes agree with the trajectory."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_x_goes_right_and_y_up_at_the_scale_of_the_picture() -> None:
     assert (up - corner).tolist() == [0, -draw_trajectories.PX_M]
 
 
-def test_each_failed_episode_gets_a_picture_with_the_end_of_its_way(
+def test_each_failed_episode_gets_a_picture_with_the_end_of_its_path(
     played: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert draw_trajectories.main(draw_trajectories.Args(run=played / "run")) == 0
@@ -84,6 +84,6 @@ def test_a_house_that_has_changed_since_is_refused(played: Path) -> None:
         file.write_text(before)
 
 
-def test_an_episode_that_was_not_played_is_told(played: Path) -> None:
+def test_an_unknown_episode_is_refused(played: Path) -> None:
     with pytest.raises(ConfigError, match="no episode 'nowhere'"):
         draw_trajectories.main(draw_trajectories.Args(run=played / "run", episodes=("nowhere",)))

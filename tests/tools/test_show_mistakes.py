@@ -1,4 +1,4 @@
-"""Sheets of what the network saw where episodes were lost."""
+"""Sheets of what the network saw in failed episodes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(played: Path, capsys: py
     assert sheet.shape == (2 * height_px, 4 * show_mistakes.PANEL_PX, 3)
     trajectory = read_trajectory(trajectory_file(played / "run", "lounge_0000"))
     house = read_run(played / "run").config["house"]
-    images = show_mistakes.photographed(
+    images = show_mistakes.render_at(
         show_mistakes.World(show_mistakes.split_of(read_run(played / "run")).load_house(Path(house).stem)),
         trajectory.poses[-1],
     )
@@ -65,7 +65,7 @@ def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(played: Path)
     assert show_mistakes.decisive_step(replace(longer, end_reason="max_steps")) == 2
 
 
-def test_words_name_what_truly_is_where_the_goal_is_seen() -> None:
+def test_words_name_the_true_categories_where_the_goal_is_seen() -> None:
     semantic = np.full((8, 8), MPCAT40_ID["chair"], np.uint8)
     semantic[:, 6:] = MPCAT40_ID["wall"]
     score = np.zeros((4, 4), np.float32)
@@ -74,7 +74,7 @@ def test_words_name_what_truly_is_where_the_goal_is_seen() -> None:
     assert show_mistakes.in_words(semantic, score) == "taken for it: chair 75%, wall 25%"
 
 
-def test_runs_of_other_eyes_and_without_such_failures_are_told(
+def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
     played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="missed_detection")) == 1

@@ -1,1 +1,1 @@
-"""The parts of `tools/bench.py`: each measures something against a baseline of the same run."""
+"""The parts of `tools/bench.py`; each measures figures against a baseline of the same run."""

@@ -1,4 +1,4 @@
-"""Three fixed pieces of work that say how fast, and how busy, a machine is: they never change with our code."""
+"""Times three fixed pieces of work, which do not depend on our code: they show how fast and how busy a machine is."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ _SCENE = """
 
 @dataclass(frozen=True)
 class Calibration:
-    """Least milliseconds of each piece."""
+    """The smallest milliseconds of each piece."""
 
     render_ms: float
     """640 x 480, 100 boxes and a plane, `mujoco.Renderer` at its default quality."""
     step_ms: float
     """200 `mj_step` of a box that falls onto a plane."""
-    march_ms: float
+    fast_marching_ms: float
     """`skfmm.distance` from the middle of 240 x 240 cells with walls."""
 
 
 class Calibrator:
-    """Keeps what is fixed, so that it can be measured again and again."""
+    """Holds the fixed work, so that it can be timed repeatedly."""
 
     def __init__(self) -> None:
         boxes = "".join(
@@ -56,21 +56,21 @@ class Calibrator:
         self._field = np.ma.MaskedArray(field, walls)
 
     def measure(self, tries: int) -> Calibration:
-        """The least of some tries of each."""
+        """Returns the smallest time of several tries of each piece."""
         render = min(self.render_ms() for _ in range(tries))
         step = min(timed(self._step) for _ in range(tries))
-        return Calibration(render, step, min(self.march_ms() for _ in range(tries)))
+        return Calibration(render, step, min(self.fast_marching_ms() for _ in range(tries)))
 
     def render_ms(self) -> float:
-        """The fixed render, once, now."""
+        """Times the fixed render once."""
         return timed(self._render)
 
-    def march_ms(self) -> float:
-        """The fixed march, once, now."""
+    def fast_marching_ms(self) -> float:
+        """Times the fixed fast marching once."""
         return timed(lambda: skfmm.distance(self._field, dx=0.05))
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Frees the renderer."""
         self._renderer.close()
 
     def _render(self) -> None:

@@ -1,4 +1,4 @@
-"""What a benchmark says: a figure, its baseline, their ratio, and whether that is enough; and how both are timed."""
+"""A figure of a benchmark with its baseline, ratio and goal, and functions that time work."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _COMPARE = {">=": operator.ge, "<=": operator.le}
 
 @dataclass(frozen=True, kw_only=True)
 class Goal:
-    """What a figure has to reach."""
+    """A bound that a figure should reach."""
 
     of: Literal["ratio", "value"]
     sign: Literal[">=", "<="]
@@ -39,35 +39,35 @@ class Figure:
     value: float
     unit: str
     against: str
-    """What the baseline is."""
+    """Description of the baseline."""
     baseline: float
     """In the same unit."""
     ratio: float
-    """What is told: baseline / value for a speed-up, value / baseline for a share or a growth."""
+    """baseline / value for a speed-up, value / baseline for a share or a growth."""
     goal: Goal | None = None
     count: int = 0
-    """How many measurements stand behind each of the two."""
+    """Number of measurements of each of the two."""
 
     @property
     def met(self) -> bool | None:
-        """Whether the goal is reached; None where there is none."""
+        """True if the goal is reached; None without a goal."""
         if self.goal is None:
             return None
         return bool(_COMPARE[self.goal.sign](getattr(self, self.goal.of), self.goal.bound))
 
     def to_json(self) -> dict[str, Any]:
-        """The figure as JSON has it."""
+        """Returns the figure as JSON types."""
         kept = {key: value for key, value in vars(self).items() if key != "goal"}
         return kept | {"goal": str(self.goal) if self.goal else None, "met": self.met}
 
 
 def speedup(ours: NDArray[np.float64], theirs: NDArray[np.float64]) -> float:
-    """How many times faster ours is: the median over cases of the ratio in each."""
+    """Returns how many times faster ours is: the median over cases of the ratio."""
     return float(np.median(theirs / ours))
 
 
 def timed(work: Callable[[], object]) -> float:
-    """Milliseconds that something takes."""
+    """Returns the milliseconds that a call takes."""
     began_s = time.perf_counter()
     work()
     return 1e3 * (time.perf_counter() - began_s)
@@ -76,9 +76,9 @@ def timed(work: Callable[[], object]) -> float:
 def interleaved(
     works: Mapping[str, Callable[[CaseT], object]], cases: Sequence[CaseT], *, repeats: int
 ) -> dict[str, NDArray[np.float64]]:
-    """Milliseconds of each work in each case, (cases,): the least of some tries, for what else runs only adds.
+    """Returns the milliseconds of each work in each case, (cases,): the smallest of several tries.
 
-    The works take turns in every try, and each is done once before it counts.
+    The works take turns in every try, and each is run once before it is timed.
     """
     ms = {name: np.full(len(cases), np.inf) for name in works}
     for i, case in enumerate(cases):
@@ -92,7 +92,7 @@ def interleaved(
 
 @contextlib.contextmanager
 def stopwatch(parts: Mapping[str, Sequence[tuple[type, str]]]) -> Iterator[dict[str, float]]:
-    """Milliseconds spent in methods of some classes while this lasts, by name of the part; set to 0 at will."""
+    """A context in which the milliseconds spent in methods of some classes are summed, by name of the part."""
     ms = dict.fromkeys(parts, 0.0)
     originals: list[tuple[type, str, Any]] = []
     for part, methods in parts.items():

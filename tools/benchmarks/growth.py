@@ -1,4 +1,4 @@
-"""Part (i): how a step, and the memory of a worker, grow with what is given to them."""
+"""Part (i): growth of step time and worker memory with house area, geoms, episode length and map size."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, load_split
-from sim.evaluation.executors import ProcessCrew
+from sim.evaluation.executors import ProcessPool
 from sim.evaluation.rollout import play_episode
-from sim.evaluation.workers import PlayerSpec, play_with
+from sim.evaluation.workers import RunnerSpec, run_in_pool
 from sim.gl import mujoco
 from sim.housegen.generator import HouseConfig
-from sim.housegen.recipes import copy_textures
+from sim.housegen.house_list import copy_textures
 from tools.benchmarks.figures import Figure, Goal
 from tools.benchmarks.making import write_house
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
@@ -26,12 +26,12 @@ AREAS_M2 = (50.0, 100.0, 200.0, 400.0)
 GEOMS = (100, 500, 1000, 2000)
 MAP_CELLS = (720, 1440, 2880)
 _TURN_STEPS = 10
-"""Steps of one size before it is the next one's turn."""
+"""Number of steps of one size before the next size has its turn."""
 _SEEDS = (3, 4)
 
 
 def growth(setting: Setting) -> list[Figure]:
-    """(i) All of it."""
+    """(i) Returns all figures of growth."""
     return [
         *by_area(setting),
         *by_geoms(setting),
@@ -42,7 +42,7 @@ def growth(setting: Setting) -> list[Figure]:
 
 
 def by_area(setting: Setting) -> list[Figure]:
-    """Step time against house area: generated houses of 50 to 400 m2."""
+    """Measures step time against house area, in generated houses of 50 to 400 m2."""
     with tempfile.TemporaryDirectory() as folder:
         copy_textures(Path(folder) / "textures")
         rigs = {}
@@ -57,7 +57,7 @@ def by_area(setting: Setting) -> list[Figure]:
 
 
 def by_geoms(setting: Setting) -> list[Figure]:
-    """Step time against the number of geoms, all in one hall."""
+    """Measures step time against the number of geoms in one hall."""
     with tempfile.TemporaryDirectory() as folder:
         rigs = {}
         for count in GEOMS:
@@ -69,7 +69,7 @@ def by_geoms(setting: Setting) -> list[Figure]:
 
 
 def by_episode_length(setting: Setting) -> list[Figure]:
-    """Step time at the end of long episodes against that at their beginning."""
+    """Measures step time at the end of long episodes against that at their beginning."""
     env = ObjectNavEnv(split="val", sensors=SENSORS)
     rig = Rig(env, stubborn_agent(env), env.split.episodes, stops=False)
     length = 500 if setting.amount.growth_steps > 50 else 2 * setting.amount.growth_steps
@@ -83,11 +83,11 @@ def by_episode_length(setting: Setting) -> list[Figure]:
 
 
 def by_map(setting: Setting) -> list[Figure]:
-    """Step time of the agent against the edge of its map."""
+    """Measures step time of the agent against the size of its map."""
     env = ObjectNavEnv(split="val", sensors=SENSORS)
     episode = env.split.episodes[:1]
     ms: dict[int, np.ndarray] = {}
-    for cells in MAP_CELLS:  # the same steps of the same episode, so they cannot take turns in one environment
+    for cells in MAP_CELLS:  # the same steps of the same episode, so that they cannot take turns in one environment
         rig = Rig(env, stubborn_agent(env, map_cells=cells), episode, stops=False)
         ms[cells] = np.array([rig.step()[0] for _ in range(setting.amount.growth_steps)])
     env.close()
@@ -100,11 +100,11 @@ def by_map(setting: Setting) -> list[Figure]:
 
 
 def worker_memory(setting: Setting) -> list[Figure]:
-    """Resident memory of a worker after so many episodes against after its first ones."""
+    """Measures the resident memory of a worker after many episodes against that after its first ones."""
     first = load_split("val").episodes[: setting.amount.memory_episodes]
     episodes = sorted(first, key=lambda episode: episode.house)
-    spec = PlayerSpec("tools.benchmarks.growth:MemoryPlayer", None)
-    lines = list(play_with(ProcessCrew(spec), episodes, size=1, on_death=_never))
+    spec = RunnerSpec("tools.benchmarks.growth:MemoryRunner", None)
+    lines = list(run_in_pool(ProcessPool(spec), episodes, max_workers=1, on_death=_raise))
     settled = lines[min(len(lines) - 1, len(lines) // 5)]["resident_mb"]
     last, peak = lines[-1]["resident_mb"], lines[-1]["peak_mb"]
     goal, flat = Goal(of="value", sign="<=", bound=700.0), Goal(of="ratio", sign="<=", bound=1.1)
@@ -115,34 +115,34 @@ def worker_memory(setting: Setting) -> list[Figure]:
     ]
 
 
-class MemoryPlayer:
-    """Plays, and says how much memory its process has; see `sim.evaluation.workers.Player`."""
+class MemoryRunner:
+    """Runs episodes and returns the memory of its process; see `sim.evaluation.workers.Runner`."""
 
     def __init__(self, _: None) -> None:
         self._env = ObjectNavEnv(split="val", sensors=SENSORS, max_steps=100)
         self._agent = stubborn_agent(self._env)
         self._begun_mb = memory_mb()["VmRSS"]
 
-    def play(self, episode: Episode) -> dict[str, Any]:
-        """Megabytes resident now, at most so far, and before the first episode."""
+    def run(self, episode: Episode) -> dict[str, Any]:
+        """Returns resident megabytes: now, the maximum so far, and before the first episode."""
         play_episode(self._env, self._agent, episode, seed=0)
         memory = memory_mb()
         return {"resident_mb": memory["VmRSS"], "peak_mb": memory["VmHWM"], "begun_mb": self._begun_mb}
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Frees the renderer."""
         self._env.close()
 
 
 def memory_mb() -> dict[str, float]:
-    """What Linux says of this process, in megabytes: `VmRSS` now, `VmHWM` at most."""
+    """Returns the resident memory of this process in megabytes: `VmRSS` now, `VmHWM` the maximum."""
     lines = (line.partition(":") for line in Path("/proc/self/status").read_text().splitlines())
-    said = {name: rest.split()[0] for name, _, rest in lines if name in ("VmRSS", "VmHWM")}
-    return {name: 1024e-6 * int(kilobytes) for name, kilobytes in said.items()}
+    found = {name: rest.split()[0] for name, _, rest in lines if name in ("VmRSS", "VmHWM")}
+    return {name: 1024e-6 * int(kilobytes) for name, kilobytes in found.items()}
 
 
 def hall(geoms: int) -> mujoco.MjSpec:
-    """A hall of 12 x 12 m with so many geoms: walls, floor, a bed, and small things along the walls."""
+    """Returns a hall of 12 x 12 m with so many geoms: walls, floor, a bed, and small boxes along the walls."""
     spec, half_m = mujoco.MjSpec(), 6.0
     world = spec.worldbody
     world.add_light(pos=(0, 0, 2.4), dir=(0, 0, -1))
@@ -170,10 +170,10 @@ def _rig_in(file: Path) -> Rig:
 
 
 def _steps_in_turn(rigs: Mapping[Any, Rig], steps: int) -> dict[Any, np.ndarray]:
-    """Milliseconds of agent and environment together, (steps,) of each rig, a few steps of each in turn."""
+    """Returns milliseconds of agent and environment together, (steps,) per rig; the rigs take turns."""
     ms: dict[Any, list[float]] = {size: [] for size in rigs}
     for rig in rigs.values():
-        for _ in range(2):  # what is compiled or charted at first
+        for _ in range(2):  # compiles code and builds grids
             rig.step()
     while any(len(taken) < steps for taken in ms.values()):
         for size, rig in rigs.items():
@@ -198,5 +198,5 @@ def _memory(what: str, value: float, baseline: float, against: str, goal: Goal |
     )  # fmt: skip
 
 
-def _never(episode: Episode) -> Any:
+def _raise(episode: Episode) -> Any:
     raise RuntimeError(f"The worker died twice in episode '{episode.episode_id}'.")

@@ -1,4 +1,4 @@
-"""Parts (f) and (g): views to disk, houses from seeds."""
+"""Parts (f) and (g): writing views to disk, and making houses from seeds."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tools.benchmarks.stages import Setting
 
 
 def views_to_disk(setting: Setting) -> list[Figure]:
-    """(f) Views as `tools/generate_views.py` writes them, against only drawing the same views."""
+    """(f) Measures writing views as `tools/generate_views.py` does, against only rendering them."""
     count, split = setting.amount.views, load_split("val")
     figures = []
     with tempfile.TemporaryDirectory() as folder:
@@ -37,7 +37,7 @@ def views_to_disk(setting: Setting) -> list[Figure]:
             def views(scene: Scene = scene) -> Iterator[View]:
                 return sample_views(scene, np.random.default_rng(0), count, stem="v", record={})
 
-            for _ in views():  # charts the house, starts the renderer
+            for _ in views():  # builds the grid of the house and starts the renderer
                 break
             drawn_ms = written_ms = math.inf
             for _ in range(2):
@@ -54,7 +54,7 @@ def views_to_disk(setting: Setting) -> list[Figure]:
 
 
 def new_houses(setting: Setting) -> list[Figure]:
-    """(g) A house from its seed, checked and written, against reading and compiling the same house."""
+    """(g) Measures making, checking and writing a house, against reading and compiling the same house."""
     made_ms, read_ms = [], []
     with tempfile.TemporaryDirectory() as folder:
         copy_textures(Path(folder) / "textures")
@@ -70,7 +70,7 @@ def new_houses(setting: Setting) -> list[Figure]:
 
 
 def write_house(file: Path, seed: int, config: HouseConfig) -> House:
-    """Generate a house into a file whose folder has the textures."""
+    """Generates a house and writes it to a file whose folder has the textures."""
     spec = generate_house(seed, config).spec
     file.write_text(house_text(spec, "textures"), encoding="utf-8")
     return House(file.stem, spec)

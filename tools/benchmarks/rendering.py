@@ -1,4 +1,4 @@
-"""Parts (a) and (b): our camera against `mujoco.Renderer`, over the same poses of the same houses."""
+"""Parts (a) and (b): our camera against `mujoco.Renderer`, from the same poses in the same houses."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ DEFAULT, ONE_SHADOW, FAST = QUALITIES = (
     "default quality but one lamp's shadow",
     "the settings of fast",
 )
-"""Of the baseline. In the first each lamp of the house throws shadows, as MuJoCo has it."""
+"""Qualities of the baseline. In the first, each lamp of the house casts shadows, which is MuJoCo's default."""
 
 
 class PlainRenderer:
-    """`mujoco.Renderer` as its documentation uses it, from our robot's eye: one pass for each image.
+    """`mujoco.Renderer` used as in its documentation, from our robot's camera: one pass per image.
 
     Args:
-        world: house and robot; its model is not touched.
+        world: house and robot; its model is not changed.
         quality: one of `QUALITIES`.
     """
 
@@ -65,7 +65,7 @@ class PlainRenderer:
         mujoco.mj_forward(model, self._data)
 
     def render(self, pose: Pose, sensors: Sequence[str]) -> dict[str, np.ndarray]:
-        """One image for each of `rgb`, `depth` and `semantic` (here ids of geoms)."""
+        """Returns one image for each of `rgb`, `depth` and `semantic` (here geom ids)."""
         ahead = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
         self._eye.lookat[:] = pose.x_m + ahead[0], pose.y_m + ahead[1], self._camera.height_m
         self._eye.azimuth = math.degrees(pose.yaw_rad)
@@ -82,17 +82,17 @@ class PlainRenderer:
         return images
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Frees the renderer."""
         self._renderer.close()
 
 
 def three_images(setting: Setting) -> list[Figure]:
-    """(a) rgb + depth + semantic."""
+    """(a) Measures rgb + depth + semantic."""
     return _against_plain(setting, "a", ("rgb", "depth", "semantic"), {DEFAULT: 8.0, ONE_SHADOW: 8.0, FAST: 1.8})
 
 
 def two_images(setting: Setting) -> list[Figure]:
-    """(b) depth + semantic."""
+    """(b) Measures depth + semantic."""
     return _against_plain(setting, "b", ("depth", "semantic"), {DEFAULT: 4.0})
 
 

@@ -1,4 +1,4 @@
-"""The figures as a table on the terminal, as JSON, and as Markdown inside a page."""
+"""Writes the figures as a table for the terminal, as JSON, and as Markdown inside a page."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ COLUMNS = ("part", "what", "measured", "baseline", "ratio", "goal", "")
 
 
 def machine() -> dict[str, Any]:
-    """Processor, system, versions, and what else the machine was doing."""
+    """Returns processor, system, load and versions."""
     packages = ("mujoco", "numpy", "opencv-python-headless", "scikit-fmm", "numba")
     return {
         "processor": _processor(),
@@ -40,7 +40,7 @@ def machine() -> dict[str, Any]:
 
 
 def rows(figures: Sequence[Figure]) -> list[tuple[str, ...]]:
-    """The cells of each figure, by `COLUMNS`."""
+    """Returns the cells of each figure in the order of `COLUMNS`."""
     verdict = {True: "yes", False: "no", None: ""}
     return [
         (
@@ -57,7 +57,7 @@ def rows(figures: Sequence[Figure]) -> list[tuple[str, ...]]:
 
 
 def to_table(figures: Sequence[Figure]) -> Table:
-    """For the terminal."""
+    """Returns the table for the terminal."""
     table = Table(title="Benchmarks", title_justify="left")
     for column in COLUMNS:
         table.add_column(column, justify="right" if column in ("measured", "ratio") else "left")
@@ -67,15 +67,15 @@ def to_table(figures: Sequence[Figure]) -> Table:
 
 
 def calibration_line(calibration: Calibration) -> str:
-    """What the fixed pieces of work take here."""
+    """Returns a sentence with the times of the fixed pieces of work."""
     return (
         f"Calibration: the fixed render {calibration.render_ms:.2f} ms, 200 fixed mj_step "
-        f"{calibration.step_ms:.2f} ms, the fixed march {calibration.march_ms:.2f} ms."
+        f"{calibration.step_ms:.2f} ms, the fixed fast marching {calibration.fast_marching_ms:.2f} ms."
     )
 
 
 def to_json(figures: Sequence[Figure], about: Mapping[str, Any], calibrations: Mapping[str, Calibration]) -> str:
-    """Everything: machine, calibration before each part and after the last, figures."""
+    """Returns machine, calibrations before each part and after the last, and figures as JSON."""
     content = {
         "machine": about,
         "calibration": {when: asdict(calibration) for when, calibration in calibrations.items()},
@@ -85,7 +85,7 @@ def to_json(figures: Sequence[Figure], about: Mapping[str, Any], calibrations: M
 
 
 def to_markdown(figures: Sequence[Figure], about: Mapping[str, Any], calibration: Calibration, command: str) -> str:
-    """The table with what has to be known beside it."""
+    """Returns the table with its notes."""
     head = [f"| {' | '.join(COLUMNS)} |", "|---|---|--:|---|--:|---|---|"]
     body = [f"| {' | '.join(row)} |" for row in rows(figures)]
     versions = ", ".join(f"{name} {number}" for name, number in about["versions"].items())
@@ -99,7 +99,7 @@ def to_markdown(figures: Sequence[Figure], about: Mapping[str, Any], calibration
 
 
 def write_between_marks(page: Path, text: str) -> None:
-    """Put a text between the two marks of a page.
+    """Writes a text between the two marks of a page.
 
     Raises:
         ConfigError: there is no such page, or it has no marks.

@@ -13,7 +13,7 @@ import numpy as np
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
 from sim.evaluation.executors import Processes
-from sim.evaluation.workers import PlayerSpec
+from sim.evaluation.workers import RunnerSpec
 from tools.benchmarks.figures import Figure, Goal
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
@@ -22,14 +22,14 @@ ROUNDS = 2
 
 @dataclass(frozen=True)
 class Piece:
-    """So many steps in a house; see `sim.evaluation.workers.Item`."""
+    """A number of steps in a house; see `sim.evaluation.workers.WorkItem`."""
 
     episode_id: str
     house: str
 
 
-class PiecePlayer:
-    """Plays pieces of equal work; see `sim.evaluation.workers.Player`."""
+class PieceRunner:
+    """Runs pieces of equal work; see `sim.evaluation.workers.Runner`."""
 
     def __init__(self, steps: int) -> None:
         cv2.setNumThreads(1)
@@ -38,11 +38,11 @@ class PiecePlayer:
         self._agent = stubborn_agent(self._env)
         self._rigs: dict[str, Rig] = {}
 
-    def play(self, piece: Piece) -> dict[str, Any]:
-        """So many steps of the house's episodes: who played them, and for how long its processor worked."""
+    def run(self, piece: Piece) -> dict[str, Any]:
+        """Runs steps of the episodes of a house and returns the process id and its processor time."""
         if piece.house not in self._rigs:
-            here = [episode for episode in self._env.split.episodes if episode.house == piece.house]
-            self._rigs = {piece.house: Rig(self._env, self._agent, here, stops=False)}
+            episodes = [episode for episode in self._env.split.episodes if episode.house == piece.house]
+            self._rigs = {piece.house: Rig(self._env, self._agent, episodes, stops=False)}
             self._rigs[piece.house].step()
         began_s = time.process_time()
         for _ in range(self._steps):
@@ -50,12 +50,12 @@ class PiecePlayer:
         return {"episode_id": piece.episode_id, "pid": os.getpid(), "cpu_s": time.process_time() - began_s}
 
     def close(self) -> None:
-        """Free the renderer."""
+        """Frees the renderer."""
         self._env.close()
 
 
 def two_workers(setting: Setting) -> list[Figure]:
-    """(h) Steps a second of two workers against one, while all have something to do; and of their processors."""
+    """(h) Measures steps per second of two workers against one, while all are busy."""
     amount = setting.amount
     (house, *_), count = load_split("val").houses, amount.pieces
     pieces = [Piece(str(number), house) for number in range(count)]
@@ -74,23 +74,23 @@ def two_workers(setting: Setting) -> list[Figure]:
 
 
 def _steps_a_second(pieces: list[Piece], workers: int, steps: int) -> tuple[float, float]:
-    """Steps a second, from when every worker has ended a piece to when the first has nothing to do.
+    """Returns steps per second, from when every worker has ended a piece to when the first is idle.
 
-    And steps a second of processor time, which other processes of the machine hardly change.
+    The second value is per second of processor time, which depends little on other processes of the machine.
     """
-    spec = PlayerSpec("tools.benchmarks.scaling:PiecePlayer", steps)
+    spec = RunnerSpec("tools.benchmarks.scaling:PieceRunner", steps)
     ended: list[tuple[float, int]] = []
     cpu_s, began_s = 0.0, time.perf_counter()
-    for line in Processes(workers).run(spec, pieces, on_death=_never):
+    for line in Processes(workers).run(spec, pieces, on_death=_raise):
         ended.append((time.perf_counter(), line["pid"]))
         cpu_s += line["cpu_s"]
     of_processors = steps * len(ended) / cpu_s
     first = next(i for i in range(len(ended)) if len({pid for _, pid in ended[: i + 1]}) == workers)
     last = len(ended) - workers
-    if last <= first:  # too few to say
+    if last <= first:  # too few pieces to measure that interval
         return steps * len(ended) / (ended[-1][0] - began_s), of_processors
     return steps * (last - first) / (ended[last][0] - ended[first][0]), of_processors
 
 
-def _never(piece: Piece) -> Any:
+def _raise(piece: Piece) -> Any:
     raise RuntimeError(f"A worker died twice in house '{piece.house}'.")

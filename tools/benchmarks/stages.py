@@ -1,4 +1,4 @@
-"""What several parts need: how much to measure, poses in houses, an agent that plays step by step."""
+"""Shared by the parts: amounts of work, poses in houses, and an agent that runs step by step."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from sim.composition.segmenters import make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.geometry.pose import Pose
 from sim.interface import Action, Agent
-from sim.segmenters import make_segmenter
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from stubborn import agents
@@ -23,24 +23,24 @@ from stubborn.target.verification import verifier_for
 from tools.benchmarks.calibration import Calibrator
 
 SENSORS = ("depth", "semantic")
-"""What an agent with ground-truth segmentation asks for."""
+"""Image sensors of an agent with ground-truth segmentation."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Amount:
-    """How much is measured."""
+    """Amounts of work to measure."""
 
     houses: int = 8
     poses: int = 10
     """In each house."""
     repeats: int = 2
     steps: int = 1500
-    """Of agents, for the splits of a step."""
+    """Agent steps that are split into their parts."""
     episodes: int = 20
     views: int = 60
     made_houses: int = 6
     pieces: int = 24
-    """Of equal work, shared by workers."""
+    """Pieces of equal work, shared by workers."""
     piece_steps: int = 60
     growth_steps: int = 80
     """At each size."""
@@ -51,20 +51,20 @@ QUICK = Amount(
     houses=1, poses=2, repeats=1, steps=6, episodes=1, views=2, made_houses=1, pieces=4, piece_steps=3, growth_steps=4,
     memory_episodes=2,
 )  # fmt: skip
-"""Enough to see that it runs; the figures mean nothing."""
+"""Enough to test that everything runs; the figures mean nothing."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """What each part is given."""
+    """The input of each part."""
 
     amount: Amount
     calibrator: Calibrator
-    """Fixed work, to do in between."""
+    """Fixed work that is timed between measurements."""
 
 
 def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]:
-    """Random places of the robot's disc with random headings."""
+    """Returns random free poses of the robot."""
     space = FreeSpace.from_world(world)
     cells = np.argwhere(space.largest_part())
     places = space.frame.to_metres(cells[rng.integers(len(cells), size=count)])
@@ -72,14 +72,14 @@ def free_poses(world: World, count: int, rng: np.random.Generator) -> list[Pose]
 
 
 def stubborn_agent(env: ObjectNavEnv, *, semantics: str = "gt", **options: Any) -> Agent:
-    """The agent of the paper with this kind of segmentation and what it is verified by."""
+    """Returns the agent of the paper with this kind of segmentation and its verifier."""
     segmenter = make_segmenter(semantics, env)
     options.setdefault("verifier", verifier_for(semantics, segmenter.spec))
     return agents.make("stubborn", camera=env.camera_model, robot=env.robot_model, segmenter=segmenter, **options)
 
 
 class Rig:
-    """An agent that plays episodes one after the other, one step at a call."""
+    """An agent that runs episodes one after the other, one step per call."""
 
     def __init__(self, env: ObjectNavEnv, agent: Agent, episodes: Sequence[Episode], *, stops: bool = True) -> None:
         """`stops` False: a STOP is replaced by a turn, so that episodes last until their steps are used up."""
@@ -88,10 +88,10 @@ class Rig:
         self._stops = stops
         self._observation: Any = None
         self.over = True
-        """Whether the next step begins an episode."""
+        """True: the next step begins an episode."""
 
     def step(self) -> tuple[float, float]:
-        """One step; milliseconds of the agent and of the environment. Resets are not timed."""
+        """Runs one step and returns the milliseconds of agent and environment; resets are not timed."""
         if self.over:
             self._begin()
         began_s = time.perf_counter()

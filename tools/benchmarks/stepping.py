@@ -1,4 +1,4 @@
-"""Parts (c), (d) and (e): a step of the environment, a step of the agent, whole episodes."""
+"""Parts (c), (d) and (e): time of an environment step, of an agent step, and of whole episodes."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import time
 
 import numpy as np
 
+from sim.composition.segmenters import KINDS
 from sim.env.objectnav import ObjectNavEnv
 from sim.evaluation.rollout import play_episode
-from sim.segmenters import SEMANTICS
 from sim.sensors.camera import Camera
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -19,9 +19,9 @@ from tools.benchmarks.figures import Figure, Goal, stopwatch
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
 STEP_GOALS_MS = {"gt": 10.0, "rednet": 75.0}
-"""A step of the agent at the median, by where segmentation comes from."""
+"""Largest median time of an agent step, by source of segmentation."""
 FIXED_EVERY = 20
-"""Steps between two pieces of fixed work."""
+"""Number of steps between two pieces of fixed work."""
 _WORLD = {
     "physics": [(World, "move")],
     "rendering": [(Camera, "render")],
@@ -34,7 +34,7 @@ _AGENT = {
 
 
 def environment_step(setting: Setting) -> list[Figure]:
-    """(c) What of a step of the environment is physics, rendering and task, with the agent that plays by default."""
+    """(c) Measures a step of the environment and its parts: physics, rendering and task."""
     whole, parts, render = _split_steps(setting, of_agent=False)
     return [
         _against("c", "a step of the environment", whole, render, "the fixed render"),
@@ -43,26 +43,28 @@ def environment_step(setting: Setting) -> list[Figure]:
 
 
 def agent_step(setting: Setting) -> list[Figure]:
-    """(d) What of a step of the agent is mapping, planning and detection, with ground truth and with the network."""
+    """(d) Measures a step of the agent and its parts, with ground truth and with the network."""
     figures: list[Figure] = []
     for semantics, bound_ms in STEP_GOALS_MS.items():
-        whole, parts, march = _split_steps(setting, of_agent=True, semantics=semantics)
+        whole, parts, fixed_ms = _split_steps(setting, of_agent=True, semantics=semantics)
         parts["planning"] = whole - sum(parts.values())
         goal = Goal(of="value", sign="<=", bound=bound_ms)
-        figures.append(_against("d", f"a step of the agent, {semantics}", whole, march, "the fixed march", goal))
+        figures.append(
+            _against("d", f"a step of the agent, {semantics}", whole, fixed_ms, "the fixed fast marching", goal)
+        )
         for name, ms in sorted(parts.items()):
             figures.append(_share("d", f"of it {name}, {semantics}", ms, whole, "the whole step"))
     return figures
 
 
 def whole_episodes(setting: Setting) -> list[Figure]:
-    """(e) Episodes and steps a process plays, houses loaded on the way."""
+    """(e) Measures episodes and steps per second of one process, including the loading of houses."""
     env = ObjectNavEnv(split="val", sensors=SENSORS)
     agent, steps, playing_s, cpu_s, fixed_ms = stubborn_agent(env), 0, 0.0, 0.0, []
     episodes = sorted(env.split.episodes[: setting.amount.episodes], key=lambda episode: episode.house)
     began_s = time.perf_counter()
     for episode in episodes:
-        env.reset(seed=0, options={"episode": episode})  # compiles and charts a new house
+        env.reset(seed=0, options={"episode": episode})  # compiles a new house and builds its grid
         cpu_began_s = time.process_time()
         line = play_episode(env, agent, episode, seed=0)
         cpu_s += time.process_time() - cpu_began_s
@@ -86,13 +88,15 @@ def whole_episodes(setting: Setting) -> list[Figure]:
 def _split_steps(
     setting: Setting, *, of_agent: bool, semantics: str = "gt"
 ) -> tuple[np.ndarray, dict[str, np.ndarray], float]:
-    """Milliseconds of each step, and of its parts, over the first episodes of val; and of the fixed work in between.
+    """Returns milliseconds of each step and of its parts over the first episodes of val, and of the fixed work.
 
-    That is the march for the agent and the render for the environment, its median like the step's.
+    The fixed work is fast marching for the agent and a render for the environment; the value is its median.
     """
-    fixed = setting.calibrator.march_ms if of_agent else setting.calibrator.render_ms
+    fixed = setting.calibrator.fast_marching_ms if of_agent else setting.calibrator.render_ms
     fixed_ms: list[float] = []
-    env = ObjectNavEnv(split="val", sensors=("depth", *SEMANTICS[semantics]))
+    env = ObjectNavEnv(
+        split="val", sensors=("depth", *KINDS[semantics].spec.sensors), truth=KINDS[semantics].spec.truth
+    )
     rig = Rig(env, stubborn_agent(env, semantics=semantics), env.split.episodes)
     whole: list[float] = []
     with stopwatch(_AGENT if of_agent else _WORLD) as ms:
@@ -122,7 +126,7 @@ def _against(part: str, what: str, ms: np.ndarray, baseline: float, against: str
 
 
 def _share(part: str, what: str, ms: np.ndarray, whole: np.ndarray, against: str) -> Figure:
-    """A part of a step; means, which add up."""
+    """Returns the figure of a part of a step; it compares means, because they add up."""
     return Figure(
         part=part, what=what, value=float(ms.mean()), unit="ms", against=against, baseline=float(whole.mean()),
         ratio=float(ms.mean() / whole.mean()), count=len(ms),

@@ -93,7 +93,7 @@ def causes(runs: Runs) -> list[Group]:
         shares = [_proportion(values, houses) for values in failed]
         difference = None
         if len(runs) == 2:
-            difference = Cell(paired_difference(*failed, houses), percent=True, difference=True)
+            difference = Cell(paired_difference(failed[0], failed[1], houses), percent=True, difference=True)
         found.append(Group(cause, shares, difference, MEANING.get(cause, _OTHER.get(cause, ""))))
     return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
 

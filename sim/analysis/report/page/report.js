@@ -125,13 +125,13 @@
     }
     const picture = makePicture(episode, path);
     const chart = makeChart(path);
-    const told = html("output", {});
+    const status = html("output", {});
     const slider = html("input", { type: "range", min: 0, max: path.n, value: path.n, "aria-label": "Step of the episode" });
     const show = (step) => {
       slider.value = step;
       picture.show(step);
       chart.show(step);
-      told.textContent = tell(path, step);
+      status.textContent = describeStep(path, step);
     };
     slider.addEventListener("input", () => show(Number(slider.value)));
     const marks = html("ol", { class: "marks" });
@@ -141,7 +141,7 @@
       button.addEventListener("click", () => show(until === null ? step : until));
       marks.append(html("li", {}, button));
     });
-    const scrub = html("div", { class: "scrub" }, chart.svg, slider, told);
+    const scrub = html("div", { class: "scrub" }, chart.svg, slider, status);
     side.append(html("div", {}, picture.svg, makeLegend(episode, path)), html("div", {}, why, marks, scrub, links));
     show(path.n);
     return side;
@@ -153,7 +153,7 @@
     return { ...path, x, y, a: sum(path.a), n: path.actions.length, stops: new Set(path.stopped) };
   }
 
-  function tell(path, step) {
+  function describeStep(path, step) {
     const parts = [`Step ${step} of ${path.n}`];
     if (step > 0) {
       const hit = path.stops.has(step - 1) ? ", stopped by a contact" : "";
