@@ -5,6 +5,11 @@ Hinkley 1997, section 3.8) draws houses with replacement and, within each drawn 
 replacement as the house has. The mean is over all drawn episodes. The interval is the 2.5 % and 97.5 % percentiles of
 the means. It describes other houses of the same kind, not only these.
 
+It is conservative: the mean of a drawn house varies with its episodes twice, in the data and in the second stage. In
+simulations with 20 houses of 10 episodes, intervals were 1.4 times as wide as those over episodes and contained the
+true mean in 98 % of the samples where houses are alike, and in 95 % where they differ much (those over episodes: 92 %
+and 80 %).
+
 With one house there is no sample of houses. Its episodes are resampled alone, and the interval describes other
 episodes in this house only; `Estimate.houses` is then 1, and tables mark the interval with an asterisk. With two to
 about ten houses the interval tends to be too narrow.

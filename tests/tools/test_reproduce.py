@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -157,6 +159,11 @@ def test_tables_are_made_again_from_the_folders_without_running_anything(
     monkeypatch.setattr(run, "run_missing", lambda *_: pytest.fail("an episode was run"))
     assert reproduce.main(replace(args, minutes=0.0)) == 0
     assert page.read_bytes() == before
+
+
+def test_the_tool_runs_as_a_script_from_any_folder(tmp_path: Path) -> None:
+    command = [sys.executable, str(Path(reproduce.__file__)), "--help"]
+    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
 
 def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
