@@ -19,9 +19,9 @@ from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Pool
 from sim.housegen.furniture.shapes import MAX_VERTICES
 from sim.housegen.furniture.transforms import euler_from_matrix, matrix_from_euler
-from sim.housegen.mjcf import ASSETS_DIR
 from sim.housegen.textures import TEXTURES
 from sim.interface import GOAL_CATEGORIES, MPCAT40
+from sim.paths import assets_dir
 
 STYLES = [style for category in CATALOGUE.categories for style in CATALOGUE.styles(category)]
 SEEDS = (0, 1, 2)
@@ -267,7 +267,7 @@ def test_the_hint_looks_replaces_drawn_looks():
 
 def test_committed_textures_equal_the_generated_ones():
     for texture in TEXTURES.values():
-        path = ASSETS_DIR / "textures" / materials.texture_file(texture.name)
+        path = assets_dir() / "textures" / materials.texture_file(texture.name)
         stored = cv2.imread(str(path))
         assert stored is not None, f"{path} is missing: run tools/make_textures.py"
         # FFTs differ in the last bit between machines, which may move a pixel by one grey level.
