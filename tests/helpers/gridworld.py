@@ -1,4 +1,4 @@
-"""A kinematic world of boxes with an exact depth camera: fast ground for tests of agents, without physics.
+"""A kinematic world of boxes with an exact depth camera, for fast tests of agents without physics.
 
 Boxes stand on the floor or hang over it; the robot is a disc that moves in centimetres until it would touch one. Depth
 and semantic images are ray casts, exact to float precision: depth is the distance along the optical axis.
@@ -38,7 +38,7 @@ class Box:
     z: tuple[float, float] = (0.0, 2.5)
     category: str = "wall"
     seen: bool = True
-    """False: glass, it blocks but does not show."""
+    """False: glass; it blocks, but the camera does not see it."""
 
 
 LEGEND: Mapping[str, Box] = {
@@ -51,11 +51,11 @@ LEGEND: Mapping[str, Box] = {
     "p": Box((0, 0), (0, 0), (1.3, 1.7), "picture"),
     "g": Box((0, 0), (0, 0), (0.0, 1.0), "objects", seen=False),
 }
-"""What each letter of a plan stands for; x and y come from its place."""
+"""The meaning of each letter of a plan; x and y come from its place."""
 
 
 def boxes_from_plan(plan: str, cell_m: float) -> list[Box]:
-    """Boxes of an ASCII plan: the top line has the largest y, the first letter x = 0; runs in a line are one box."""
+    """Returns the boxes of an ASCII plan: the top line has the largest y, the first letter x = 0; runs in a line are one box."""
     lines = [line for line in plan.strip("\n").splitlines()]
     boxes = []
     for i, line in enumerate(lines):
@@ -73,7 +73,7 @@ def boxes_from_plan(plan: str, cell_m: float) -> list[Box]:
 
 
 class GridWorld:
-    """Boxes, a robot and a camera; observations are those of the contract, the start pose being the origin."""
+    """Boxes, a robot and a camera; the observations are those of `sim.interface`, with the start pose as origin."""
 
     def __init__(
         self,
@@ -125,7 +125,7 @@ class GridWorld:
         }
 
     def render(self) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """Depth as the contract has it (0 near, maximum far) and mpcat40 ids."""
+        """Returns depth as in `sim.interface` (0 near, maximum far) and mpcat40 ids."""
         camera = self.camera
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         ray_x, ray_y = cos - sin * self._left, sin + cos * self._left  # per metre of depth
@@ -160,7 +160,7 @@ class GridWorld:
         semantic[:, cols] = np.where(nearer, MPCAT40_ID[box.category], semantic[:, cols])
 
     def distance_to(self, category: str) -> float:
-        """From the robot's centre to the nearest box of a category, in plan."""
+        """Returns the distance in plan from the robot's centre to the nearest box of a category."""
         gaps = [
             math.hypot(max(b.x[0] - self.x, self.x - b.x[1], 0.0), max(b.y[0] - self.y, self.y - b.y[1], 0.0))
             for b in self.boxes
@@ -171,7 +171,7 @@ class GridWorld:
 
 @dataclass
 class Trace:
-    """What one episode left."""
+    """The actions, poses and outcome of one episode."""
 
     actions: list[Action]
     poses: list[tuple[float, float, float]]
@@ -181,7 +181,7 @@ class Trace:
 
 
 def run_episode(world: GridWorld, agent: Agent, goal: str, *, seed: int = 0, max_steps: int = 500) -> Trace:
-    """Drive an agent until it stops or the steps are spent."""
+    """Runs an agent until it stops or the steps are used up."""
     agent.reset(goal, seed)
     trace = Trace([], [(world.x, world.y, world.yaw)], False, math.inf, 0)
     for _ in range(max_steps):

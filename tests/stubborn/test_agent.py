@@ -54,7 +54,7 @@ def test_it_finds_each_kind_of_object_and_stops_within_a_metre(goal: str):
     assert trace.goal_distance_m < 1.0
 
 
-def test_it_does_not_stop_in_front_of_the_wall_that_the_target_stands_behind():
+def test_it_does_not_stop_in_front_of_the_wall_that_hides_the_target():
     plan = """
 ##################
 #       #        #

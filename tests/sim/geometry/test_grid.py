@@ -74,4 +74,4 @@ def test_a_grid_without_size_is_refused_with_what_was_given():
     with pytest.raises(ConfigError, match=r"cell_m must be > 0 m, got 0"):
         GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 2), cell_m=0)
     with pytest.raises(ConfigError, match="0 x 2"):
-        GridFrame(origin_xy_m=(0.0, 0.0), shape=(0, 2))
+        GridFrame(origin_xy_m=(0.0, 0.0), shape=(0, 2), cell_m=0.05)

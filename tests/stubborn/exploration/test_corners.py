@@ -37,7 +37,7 @@ def test_it_is_stubborn_while_there_is_a_path():
 
 
 @pytest.mark.parametrize("closed", [(0,), (0, 1), (0, 1, 2)])
-def test_an_infeasible_corner_gives_way_to_the_next_clockwise_at_once(closed: tuple[int, ...]):
+def test_an_infeasible_corner_is_replaced_by_the_next_clockwise_at_once(closed: tuple[int, ...]):
     explore, navmap = explorer(), empty()
     for corner in closed:
         close_quarter(navmap.seen_obstacle, corner)
@@ -55,7 +55,7 @@ def test_after_the_last_corner_comes_the_first():
 def test_a_path_longer_than_the_limit_is_infeasible():
     explore, navmap = explorer(longest_path_m=6.6), empty()
     assert route_of(explore, ground(navmap)) is not None
-    assert explore.corner == 0  # 6.3 m off: 4.8 m each way, less the radius of the corner
+    assert explore.corner == 0  # 6.3 m away: 4.8 m along x and y, less the radius of the corner
     middle = FRAME.shape[0] // 2
     navmap.seen_obstacle[middle - 60 : middle + 90, middle + 20] = True
     route_of(explore, ground(navmap))

@@ -94,7 +94,7 @@ def test_no_return_and_the_end_of_the_range_put_nothing_on_the_map():
     ("z", "obstacle", "eye_level"),
     [((0.0, 0.08), False, False), ((0.0, 0.14), True, False), ((0.95, 1.4), False, False), ((0.5, 1.2), True, True)],
 )
-def test_what_stands_between_step_and_robot_height_is_an_obstacle(z: tuple, obstacle: bool, eye_level: bool):
+def test_a_surface_between_step_and_robot_height_is_an_obstacle(z: tuple, obstacle: bool, eye_level: bool):
     world = GridWorld([Box((2.0, 2.2), (-0.5, 0.5), z)], (0.0, 0.0, 0.0), camera=CAMERA)
     navmap = mapped(world.render()[0], Pose(0.0, 0.0, 0.0))
     assert navmap.seen_obstacle.any() == obstacle

@@ -22,7 +22,7 @@ POSES = (Pose(0.0, 0.0, 0.0), Pose(0.13, -0.27, math.radians(37.0)))
 
 
 def frame_at(pose: Pose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
-    """Depth of a wall across the view at x = `distance_m`, which stands higher than the layers look."""
+    """Depth of a wall across the view at x = `distance_m` that is higher than the range of the layers."""
     world = GridWorld(
         [Box((distance_m, distance_m + 0.1), (-9.0, 9.0), (0.0, 3.0))],
         (pose.x_m, pose.y_m, pose.yaw_rad),

@@ -65,7 +65,7 @@ def test_noise_puts_no_obstacle_into_free_air_of_a_room_seen_from_within(preset:
 
 
 @pytest.mark.parametrize("preset", ["none", "realsense", "harsh"])
-def test_walls_stand_without_gaps_under_noise(preset: str):
+def test_walls_have_no_gaps_under_noise(preset: str):
     navmap, _ = look_around(ROOM, preset, frames=24)
     x_m, y_m = FRAME.mesh()
     for t_m in np.linspace(-2.4, 2.4, 50):

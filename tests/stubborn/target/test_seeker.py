@@ -364,7 +364,7 @@ def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
     assert late.near_enough
 
 
-def test_pessimistic_marks_that_close_the_way_to_a_target_give_way_to_optimistic_ones():
+def test_where_pessimistic_marks_close_the_path_to_a_target_the_optimistic_ones_count():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in (30, 31, 32):
