@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.helpers import sampling
+from tests.helpers import sampling, typechecking
 
 os.environ.setdefault("STUBBORN_CACHE_DIR", str(Path(tempfile.gettempdir()) / "stubborn-test-houses"))  # not the user's
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # PyTorch's threads and the workers of xdist would fight for the cores
+typechecking.install()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float64, Int64
 
 MIN_CROSSING_M = 0.001
 """A segment crosses a polygon when the part inside is longer than this; touching the boundary is not enough."""
@@ -26,23 +26,25 @@ _MIN_EDGE_M = 1e-7
 class Polytope(NamedTuple):
     """A convex polytope in the world."""
 
-    vertices_m: NDArray[np.float64]  # (n, 3)
-    edges: NDArray[np.int64]  # (m, 2) indices of vertices
+    vertices_m: Float64[np.ndarray, "n 3"]
+    edges: Int64[np.ndarray, "m 2"]
+    """Indices of vertices."""
 
 
 @dataclass(frozen=True, eq=False)
 class ConvexPolygon:
     """A convex polygon in plan: vertices counter-clockwise, and the half planes `normals @ p <= offsets`."""
 
-    vertices_m: NDArray[np.float64]  # (k, 2)
-    normals: NDArray[np.float64]  # (k, 2) outward, of length 1
-    offsets_m: NDArray[np.float64]  # (k,)
+    vertices_m: Float64[np.ndarray, "k 2"]
+    normals: Float64[np.ndarray, "k 2"]
+    """Outward, of length 1."""
+    offsets_m: Float64[np.ndarray, " k"]
     bounds_m: tuple[float, float, float, float]
     """Smallest x and y, largest x and y."""
 
     @classmethod
-    def around(cls, points_m: NDArray[np.float64]) -> ConvexPolygon | None:
-        """Returns the convex hull of points (n, 2); None when it has no area."""
+    def around(cls, points_m: Float64[np.ndarray, "n 2"]) -> ConvexPolygon | None:
+        """Returns the convex hull of points; None when it has no area."""
         if len(points_m) < 3:
             return None
         middle = points_m[0]
@@ -50,8 +52,8 @@ class ConvexPolygon:
         return cls.of_corners(hull + middle)
 
     @classmethod
-    def of_corners(cls, corners_m: NDArray[np.float64]) -> ConvexPolygon | None:
-        """Returns the polygon with these corners (k, 2), in either orientation; None when it has no area."""
+    def of_corners(cls, corners_m: Float64[np.ndarray, "k 2"]) -> ConvexPolygon | None:
+        """Returns the polygon with these corners, in either orientation; None when it has no area."""
         along = np.concatenate((corners_m[1:], corners_m[:1])) - corners_m
         about = corners_m - corners_m[0]
         area_m2 = 0.5 * float(about[:, 0] @ along[:, 1] - about[:, 1] @ along[:, 0])
@@ -66,12 +68,12 @@ class ConvexPolygon:
         low, high = corners_m.min(axis=0).tolist(), corners_m.max(axis=0).tolist()
         return cls(corners_m, normals, np.einsum("ij,ij->i", normals, corners_m), (*low, *high))
 
-    def contains(self, xy_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns (n,) True for those of the points (n, 2) that lie in the polygon or on its edge."""
+    def contains(self, xy_m: Float64[np.ndarray, "n 2"]) -> Bool[np.ndarray, " n"]:
+        """Returns True for the points that lie in the polygon or on its edge."""
         return np.all(xy_m @ self.normals.T <= self.offsets_m + 1e-9, axis=1)
 
-    def distance(self, xy_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Returns the distances (n,) in metres from the points (n, 2) to the polygon; 0 inside."""
+    def distance(self, xy_m: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
+        """Returns the distances in metres from the points to the polygon; 0 inside."""
         along = np.roll(self.vertices_m, -1, axis=0) - self.vertices_m
         nearest_sq = np.full(len(xy_m), np.inf)
         for start, edge in zip(self.vertices_m, along, strict=True):
@@ -82,8 +84,10 @@ class ConvexPolygon:
         nearest_sq[self.contains(xy_m)] = 0.0
         return np.sqrt(nearest_sq)
 
-    def crossed_by(self, start_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Returns (n,) True for the segments from (n, 2) to (n, 2) that cross the polygon (Cyrus-Beck clipping)."""
+    def crossed_by(
+        self, start_m: Float64[np.ndarray, "n 2"], end_m: Float64[np.ndarray, "n 2"]
+    ) -> Bool[np.ndarray, " n"]:
+        """Returns True for the segments from start to end that cross the polygon (Cyrus-Beck clipping)."""
         step = end_m - start_m
         entry, leave = np.zeros(len(step)), np.ones(len(step))
         for normal, offset in zip(self.normals, self.offsets_m, strict=True):
@@ -113,9 +117,9 @@ def plan_polygon(body: Polytope, low_m: float = -math.inf, high_m: float = math.
 
 
 def lines_blocked(
-    start_m: NDArray[np.float64], end_m: NDArray[np.float64], polygons: Iterable[ConvexPolygon]
-) -> NDArray[np.bool_]:
-    """Returns (n,) True for the segments from (n, 2) to (n, 2) that cross at least one polygon."""
+    start_m: Float64[np.ndarray, "n 2"], end_m: Float64[np.ndarray, "n 2"], polygons: Iterable[ConvexPolygon]
+) -> Bool[np.ndarray, " n"]:
+    """Returns True for the segments from start to end that cross at least one polygon."""
     blocked = np.zeros(len(start_m), dtype=np.bool_)
     low, high = np.minimum(start_m, end_m), np.maximum(start_m, end_m)
     for polygon in polygons:

@@ -17,21 +17,23 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float, Float32
 
 from sim.geometry.fast_marching_kernels import advance_first_order, advance_second_order
 
 
-def distances(sources: NDArray[np.bool_], passable: NDArray[np.bool_], cell_m: float) -> NDArray[np.float32]:
+def distances(
+    sources: Bool[np.ndarray, "rows cols"], passable: Bool[np.ndarray, "rows cols"], cell_m: float
+) -> Float32[np.ndarray, "rows cols"]:
     """Returns the length of the shortest path from every passable cell to the nearest source cell, in metres.
 
     Args:
-        sources: (rows, cols) True where the distance is 0; source cells that are not passable do not count.
-        passable: (rows, cols) True where a path may lead.
+        sources: True where the distance is 0; source cells that are not passable do not count.
+        passable: True where a path may lead.
         cell_m: edge of a cell in metres.
 
     Returns:
-        (rows, cols) metres between cell centres; infinite where there is no path.
+        Metres between cell centres; infinite where there is no path.
     """
     rows, cols = sources.shape
     framed = np.zeros((rows + 4, cols + 4), np.bool_)  # the stencil reaches two cells past the border
@@ -43,28 +45,28 @@ def distances(sources: NDArray[np.bool_], passable: NDArray[np.bool_], cell_m: f
 
 
 def travel_times(
-    goal: NDArray[np.bool_],
-    passable: NDArray[np.bool_],
-    speed: NDArray[np.floating],
+    goal: Bool[np.ndarray, "rows cols"],
+    passable: Bool[np.ndarray, "rows cols"],
+    speed: Float[np.ndarray, "rows cols"],
     cell_m: float,
     limit_m: float = math.inf,
     *,
     until: tuple[int, int] | None = None,
     beyond_m: float = math.inf,
-) -> NDArray[np.float32]:
+) -> Float32[np.ndarray, "rows cols"]:
     """Returns the travel time from every passable cell to the nearest goal cell, in seconds at one metre a second.
 
     Args:
-        goal: (rows, cols) True where the time is 0; goal cells that are not passable do not count.
-        passable: (rows, cols) True where a path may lead.
-        speed: (rows, cols) speed in (0, 1], relative to one metre a second.
+        goal: True where the time is 0; goal cells that are not passable do not count.
+        passable: True where a path may lead.
+        speed: in (0, 1], relative to one metre a second.
         cell_m: edge of a cell in metres.
         limit_m: times above this are not computed.
         until: (row, col) of a cell; times above that cell's time plus `beyond_m` are not computed.
         beyond_m: see `until`.
 
     Returns:
-        (rows, cols) seconds; infinite where there is no path, and where the time was not computed.
+        Seconds; infinite where there is no path, and where the time was not computed.
     """
     rows, cols = goal.shape
     cost = np.full((rows + 2, cols + 2), np.inf, np.float32)  # seconds to cross a cell; the frame is impassable

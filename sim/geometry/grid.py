@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from jaxtyping import Bool, Float64, Int64
+from numpy.typing import ArrayLike
 
 from sim.errors import ConfigError
 
@@ -47,47 +48,51 @@ class GridFrame:
             math.floor((x_m - self.origin_xy_m[0]) / self.cell_m),
         )
 
-    def cells(self, x_m: ArrayLike, y_m: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def cells(self, x_m: ArrayLike, y_m: ArrayLike) -> tuple[Int64[np.ndarray, "*y"], Int64[np.ndarray, "*x"]]:
         """Returns the rows and columns of points; points outside give indices outside the shape."""
         cols = np.floor((np.asarray(x_m) - self.origin_xy_m[0]) / self.cell_m).astype(np.intp)
         rows = np.floor((np.asarray(y_m) - self.origin_xy_m[1]) / self.cell_m).astype(np.intp)
-        return rows, cols
+        return np.asarray(rows), np.asarray(cols)  # also of a single point, which NumPy makes a scalar
 
-    def centres(self, rows: ArrayLike, cols: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def centres(
+        self, rows: ArrayLike, cols: ArrayLike
+    ) -> tuple[Float64[np.ndarray, "*cols"], Float64[np.ndarray, "*rows"]]:
         """Returns the x and y of cell centres."""
         x_m = self.origin_xy_m[0] + (np.asarray(cols) + 0.5) * self.cell_m
         y_m = self.origin_xy_m[1] + (np.asarray(rows) + 0.5) * self.cell_m
-        return x_m, y_m
+        return np.asarray(x_m), np.asarray(y_m)
 
-    def contains(self, rows: ArrayLike, cols: ArrayLike) -> NDArray[np.bool_]:
+    def contains(self, rows: ArrayLike, cols: ArrayLike) -> Bool[np.ndarray, "*shape"]:
         """Returns True where the index is on this grid."""
         rows, cols = np.asarray(rows), np.asarray(cols)
-        return (rows >= 0) & (rows < self.shape[0]) & (cols >= 0) & (cols < self.shape[1])
+        return np.asarray((rows >= 0) & (rows < self.shape[0]) & (cols >= 0) & (cols < self.shape[1]))
 
     # Coordinates stacked along the last axis.
 
-    def to_cells(self, xy_m: ArrayLike) -> NDArray[np.int64]:
-        """Returns (..., 2) row and column of the cells that hold points (..., 2); they may be off the grid."""
+    def to_cells(self, xy_m: ArrayLike) -> Int64[np.ndarray, "*n 2"]:
+        """Returns the row and column of the cells that hold points (..., 2); they may be off the grid."""
         xy = np.asarray(xy_m, dtype=np.float64)
         return np.floor((xy - self.origin_xy_m) / self.cell_m).astype(np.int64)[..., ::-1]
 
-    def to_metres(self, cells: ArrayLike) -> NDArray[np.float64]:
-        """Returns (..., 2) x and y of the centres of cells (..., 2)."""
+    def to_metres(self, cells: ArrayLike) -> Float64[np.ndarray, "*n 2"]:
+        """Returns the x and y of the centres of cells (..., 2)."""
         xy = np.asarray(cells, dtype=np.float64)[..., ::-1]
         return (xy + 0.5) * self.cell_m + np.asarray(self.origin_xy_m)
 
-    def inside(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Returns (...,) True where cells (..., 2) are on the grid."""
+    def inside(self, cells: Int64[np.ndarray, "*n 2"]) -> Bool[np.ndarray, "*n"]:
+        """Returns True where cells are on the grid."""
         return np.all((cells >= 0) & (cells < self.shape), axis=-1)
 
     # Rectangles of cells.
 
-    def axes(self, index: tuple[slice, slice] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def axes(
+        self, index: tuple[slice, slice] | None = None
+    ) -> tuple[Float64[np.ndarray, " cols"], Float64[np.ndarray, " rows"]]:
         """Returns the x of each column's and the y of each row's centre, of a rectangle or of the whole grid."""
         rows, cols = index or (slice(0, self.shape[0]), slice(0, self.shape[1]))
         return self.centres(np.arange(rows.start, rows.stop), np.arange(cols.start, cols.stop))
 
-    def mesh(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def mesh(self) -> tuple[Float64[np.ndarray, "1 cols"], Float64[np.ndarray, "rows 1"]]:
         """Returns the x (1, cols) and y (rows, 1) of all cell centres, ready to broadcast."""
         x_m, y_m = self.axes()
         return x_m[None, :], y_m[:, None]
@@ -151,7 +156,7 @@ class Window:
 
 def cells_near_segment(
     frame: GridFrame, start_xy_m: tuple[float, float], end_xy_m: tuple[float, float], radius_m: float
-) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
+) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
     """Returns the cells whose centre is within `radius_m` of a segment: the area that a disc sweeps along it.
 
     The result is the index of a small rectangle of `frame` and the mask inside it.
