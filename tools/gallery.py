@@ -21,10 +21,11 @@ from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Geom, Item, Look, Pool
-from sim.housegen.mjcf import ASSETS_DIR, HouseBuilder, Lamp, PlacedItem
+from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
 from sim.interface import CameraModel, ConfigError
+from sim.paths import assets_dir
 from sim.world.freespace import FreeSpace
 
 Picture = NDArray[np.uint8]
@@ -232,7 +233,7 @@ def _save(path: Path, picture: Picture) -> None:
 
 
 if __name__ == "__main__":
-    if not (ASSETS_DIR / "textures").is_dir():
+    if not (assets_dir() / "textures").is_dir():
         sys.exit("gallery: assets/mjcf_houses/textures is missing. Run tools/make_textures.py first.")
     try:
         main(tyro.cli(Args))
