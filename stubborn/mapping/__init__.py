@@ -1,1 +1,4 @@
-"""Map layers from observations: obstacles, collision marks, object scores."""
+"""Map layers from observations: obstacles, collision marks, object scores.
+
+Imports `stubborn.navmap` and `stubborn.raster`.
+"""

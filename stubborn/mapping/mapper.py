@@ -1,9 +1,4 @@
-"""Map layers from images: depth points become obstacles, scores become object layers (paper: Mapping Module).
-
-A pixel (u, v) with depth d lies d ahead of the camera, d (c_u - u) / f to its left and d (c_v - v) / f above it. The
-camera is level, so a column of the image is a vertical plane and the ground position of a pixel needs its depth and
-its column only.
-"""
+"""Map layers from images: depth points become obstacles, scores become object layers (paper: Mapping Module)."""
 
 from __future__ import annotations
 
@@ -19,6 +14,7 @@ from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
+from stubborn.mapping.projection import GroundPoints, Rays, sight_window_cells
 from stubborn.navmap import NavMap
 
 
@@ -52,60 +48,6 @@ class MappingConfig:
             raise ConfigError(
                 f"MappingConfig strides must be >= 1 px, got {self.obstacle_stride_px} and {self.score_stride_px}."
             )
-
-
-@dataclass(frozen=True)
-class GroundPoints:
-    """Depth pixels of one frame seen from above; pixels without a distance are left out."""
-
-    valid: NDArray[np.bool_]
-    """(h, w) True where depth is a distance; the other fields hold these pixels only, in row-major order."""
-    rows: NDArray[np.int32]
-    """Row of each point on the window's grid."""
-    cols: NDArray[np.int32]
-    """Column of each point on the window's grid."""
-    height_m: NDArray[np.float32]
-    """Height of each point above the floor."""
-
-
-class Rays:
-    """The directions of every `stride_px`-th pixel, from pixel `first_px` on, in rows and columns."""
-
-    def __init__(self, camera: CameraModel, first_px: int, stride_px: int, top_m: float = math.inf) -> None:
-        """Rows of the image that cannot show points below `top_m` are left out."""
-        self.camera = camera
-        u_px = np.arange(first_px, camera.width_px, stride_px)
-        v_px = np.arange(first_px, camera.height_px, stride_px)
-        self.left = ((0.5 * camera.width_px - (u_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
-        up = ((0.5 * camera.height_px - (v_px + 0.5)) / camera.focal_px).astype(np.float32)  # per metre of depth
-        lowest_m = camera.height_m + np.minimum(up * camera.min_depth_m, up * camera.max_depth_m)
-        skipped = int(np.count_nonzero(lowest_m > top_m))  # rows run from top to bottom
-        self.up = up[skipped:]
-        self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
-
-    def sample(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns those pixels of a full-size depth image, (height_px, width_px) metres, as a new array."""
-        return np.ascontiguousarray(depth[self.pick])
-
-    def project(
-        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: Pose, window: Window
-    ) -> GroundPoints:
-        """Returns cells of `window` and heights of the confirmed points of a sampled depth image.
-
-        The window must contain everything in range: see `sight_window_cells`.
-        """
-        valid = confirmed & (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
-        cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
-        frame = window.frame
-        x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
-        y_cells = np.float32((camera_pose.y_m - frame.origin_xy_m[1]) / frame.cell_m)
-        x_slope = ((cos - sin * self.left) / frame.cell_m).astype(np.float32)
-        y_slope = ((sin + cos * self.left) / frame.cell_m).astype(np.float32)
-        # Positive throughout the window, so truncation is floor.
-        cols = (d * x_slope + x_cells)[valid].astype(np.int32)
-        rows = (d * y_slope + y_cells)[valid].astype(np.int32)
-        height_m = (d * self.up[:, None] + np.float32(self.camera.height_m))[valid]
-        return GroundPoints(valid, rows, cols, height_m)
 
 
 @dataclass(frozen=True)
@@ -207,14 +149,7 @@ class Mapper:
             return NOTHING_SIGHTED
         sure = confirmed & (scores.target[score_pick] > self.config.candidate_score)
         self._drop_candidates(navmap.view(window), d, sure, rays, camera_pose)
-        rows, cols = np.divmod(np.unique(flat[found]), window.frame.shape[1])
-        x_m, y_m = window.frame.centres(rows, cols)
-        to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
-        distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
-        rows, cols = rows + window.rows.start, cols + window.cols.start
-        navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
-        navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
-        return Sighting(rows, cols, distance_m)
+        return _note_sighting(navmap, window, np.unique(flat[found]), pose)
 
     def _confirm(
         self, target: NDArray[np.float32], d: NDArray[np.float32]
@@ -241,6 +176,8 @@ class Mapper:
         that includes a part of an object in front of the target has the same effect: the agent stops too early.
         """
         found = (target > self.config.candidate_score).view(np.uint8)
+        if rim_px == 0:
+            return found.view(np.bool_)
         rim = -(-rim_px * target.shape[1] // self.camera.width_px)
         kernel = np.ones((2 * rim + 1, 2 * rim + 1), np.uint8)
         return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
@@ -283,10 +220,16 @@ class Mapper:
         return self._score_rays[block_px], (pick, pick)
 
 
-def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
-    """Returns the edge, in cells, of a square around the camera that contains every point within its range."""
-    farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
-    return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
+def _note_sighting(navmap: NavMap, window: Window, flat: NDArray[np.int32], pose: Pose) -> Sighting:
+    """Returns the target points in some row-major cells of a window, and notes the side from which they were seen."""
+    rows, cols = np.divmod(flat, window.frame.shape[1])
+    x_m, y_m = window.frame.centres(rows, cols)
+    to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
+    distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
+    rows, cols = rows + window.rows.start, cols + window.cols.start
+    navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
+    navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
+    return Sighting(rows, cols, distance_m)
 
 
 def _cells(points: GroundPoints, which: NDArray[np.bool_], window: Window) -> NDArray[np.int32]:

@@ -55,7 +55,10 @@ LEGEND: Mapping[str, Box] = {
 
 
 def boxes_from_plan(plan: str, cell_m: float) -> list[Box]:
-    """Returns the boxes of an ASCII plan: the top line has the largest y, the first letter x = 0; runs in a line are one box."""
+    """Returns the boxes of an ASCII plan, one for each run of equal letters in a line.
+
+    The top line has the largest y, the first letter x = 0.
+    """
     lines = [line for line in plan.strip("\n").splitlines()]
     boxes = []
     for i, line in enumerate(lines):
