@@ -83,9 +83,9 @@ def find_explorer(name: str) -> ExplorerConfig:
             f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
         )
     found = _import_attribute(name, module_name, attribute)
-    if not dataclasses.is_dataclass(found) or isinstance(found, type) or not callable(getattr(found, "make", None)):
+    if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
-    return cast(ExplorerConfig, found)
+    return found
 
 
 def build_agent(
@@ -123,6 +123,7 @@ def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
-    if not hasattr(module, attribute):
-        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.")
-    return getattr(module, attribute)
+    try:
+        return vars(module)[attribute]
+    except KeyError:
+        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None

@@ -84,8 +84,7 @@ def configuration_of(options: RunOptions, spec: AgentSpec | None = None) -> RunC
         noise=get_noise(options.noise),
         task=TaskConfig(),
     )
-    settings = {} if options.config_file is None else read_settings(options.config_file)
-    tree = with_fields(tree, settings | parse_assignments(options.config))
+    tree = with_fields(tree, _settings(options))
     missing = [name for name in _sensors(spec, options.semantics) if name not in tree.sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
@@ -112,6 +111,7 @@ def record_of(options: RunOptions, config: RunConfig, split: dict[str, Any]) -> 
     """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
     flat = {name: value for name, value in as_json(options).items() if name not in NOT_RECORDED}
     return flat | {
+        "settings": as_json(_settings(options)),
         "config": as_json(config),
         "files_sha256": _checksums(options, config),
         "split_identity": split,
@@ -128,6 +128,12 @@ def versions() -> dict[str, str]:
 def truth_images(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
     """Returns the true images that the segmentation of an agent reads in the environment."""
     return KINDS[semantics].spec.truth if spec.uses_segmentation else ()
+
+
+def _settings(options: RunOptions) -> dict[str, Any]:
+    """Returns path and value of each field that the settings file or `--config` sets."""
+    settings = {} if options.config_file is None else read_settings(options.config_file)
+    return settings | parse_assignments(options.config)
 
 
 def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:

@@ -1,1 +1,4 @@
-"""Baselines that the Stubborn agent is compared with."""
+"""Baselines that the Stubborn agent is compared with.
+
+Imports the agent and its parts.
+"""

@@ -1,1 +1,4 @@
-"""Explorers: they choose where to look for the goal while there is no candidate."""
+"""Explorers: they choose where to look for the goal while there is no candidate.
+
+Imports planning.
+"""

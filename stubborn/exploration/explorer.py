@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +47,7 @@ class Explorer(Protocol):
         ...
 
 
+@runtime_checkable
 class ExplorerConfig(Protocol):
     """A frozen dataclass with the parameters of an explorer."""
 

@@ -1,1 +1,4 @@
-"""Routes over the map, the next action, and the measures against collisions."""
+"""Routes over the map, the next action, and the measures against collisions.
+
+Imports mapping.
+"""

@@ -1,1 +1,4 @@
-"""Segmenters: from an observation to scores of the goal category."""
+"""Segmenters: from an observation to scores of the goal category.
+
+Imports nothing else of `stubborn`; PyTorch only in the network's modules.
+"""

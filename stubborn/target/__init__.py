@@ -1,1 +1,4 @@
-"""Candidates of the goal: approach, verification, acceptance or rejection."""
+"""Candidates of the goal: approach, verification, acceptance or rejection.
+
+Imports exploration, planning and mapping.
+"""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -24,8 +25,14 @@ from sim.analysis.report.words import explain, outcome
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS
 
-NO_DEFAULT = ("agent", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg", "episodes")
-DEFAULTS: Mapping[str, Any] = {"semantics": "gt", "seed": 0, "profile": "fast", "noise": "none", "workers": 1}
+NO_DEFAULT = (
+    "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg",
+    "episodes",
+)  # fmt: skip
+"""Options of `sim.run` that the command of a run names if they have a value."""
+DEFAULTS: Mapping[str, Any] = {
+    "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1,
+}  # fmt: skip
 """Options of `sim.run` that the command of a run names if their value differs from this one."""
 
 
@@ -182,7 +189,13 @@ def command_of(config: Mapping[str, Any]) -> str:
         if value is None or value == DEFAULTS.get(key) or (key == "split" and config.get("house")):
             continue
         words += [f"--{key.replace('_', '-')}", str(value)]
+    if config.get("settings"):
+        words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
     return shlex.join([*words, "--record"])
+
+
+def _setting(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:

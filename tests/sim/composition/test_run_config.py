@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 import pytest
 
+from sim import cli
+from sim.analysis.report.build import command_of
 from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.configuration import as_json, field_paths, with_fields
@@ -85,3 +88,12 @@ def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest
     capsys.readouterr()
     assert entry([*options, "--config", "task.max_steps=4", *settings[2:]]) == 2
     assert "config.task.max_steps = 3, this run has 4" in capsys.readouterr().err
+
+
+def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -> None:
+    settings = ("task.max_steps=3", "camera.width_px=160", "camera.height_px=120", "agent.cell_m=0.1")
+    options = RunOptions(semantics="gt", explorer="frontier", seed=3, config=settings)
+    command = command_of(record_of(options, configuration_of(options), SPLIT))
+    parsed = cli.parse(RunOptions, shlex.split(command)[3:])
+    assert configuration_of(parsed) == configuration_of(options)
+    assert (parsed.seed, parsed.explorer, parsed.semantics) == (3, "frontier", "gt")

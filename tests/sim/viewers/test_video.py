@@ -23,7 +23,7 @@ from sim.viewers import overlay
 from sim.viewers.topview import TopView
 from sim.viewers.video import END_FRAMES, FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
-from stubborn.draw import BeliefPainter
+from stubborn.draw import AgentMapPainter
 from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
 
@@ -206,9 +206,9 @@ def crowded_moment() -> Moment:
     return Moment(step=500, observation={}, images=images, action=Action.TURN_RIGHT)
 
 
-@pytest.mark.parametrize("painter", [BeliefPainter, TopView])
+@pytest.mark.parametrize("painter", [AgentMapPainter, TopView])
 def test_no_text_leaves_the_frame_or_lies_on_another(
-    painter: type[BeliefPainter] | type[TopView], written: list[tuple[str, Box]]
+    painter: type[AgentMapPainter] | type[TopView], written: list[tuple[str, Box]]
 ) -> None:
     panel = overlay.MapPanel(
         image=np.zeros((overlay.MAP_PX, overlay.MAP_PX, 3), np.uint8),
