@@ -104,7 +104,7 @@ class CameraModel:
 
 @dataclass(frozen=True, kw_only=True)
 class RobotModel:
-    """What an agent may know about the body it drives."""
+    """The properties of the robot that an agent may know."""
 
     radius_m: float = 0.18
     height_m: float = 0.88
@@ -142,7 +142,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""What an agent sees at one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
+"""The observation of one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -174,25 +174,25 @@ class Scores(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class SegmenterSpec:
-    """What a segmenter declares about itself."""
+    """The declaration of a segmenter: its inputs and how exact it is."""
 
     sensors: tuple[str, ...] = ("rgb",)
     """Image sensors that `scores` reads in the observation, besides `depth`."""
     truth: tuple[str, ...] = ()
     """Ground-truth images that it reads in the environment and that the agent does not get (`semantic`, `geom`)."""
     exact_outlines: bool = False
-    """Whether the outlines of its scores are exact to the pixel. With inexact outlines an agent must not trust the
+    """True: the outlines of its scores are exact to the pixel. With inexact outlines an agent must not trust the
     rim of a target."""
     needs_verification: bool = True
     """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
 
 
 class Segmenter(Protocol):
-    """Where segmentation comes from: ground truth, a simulated detector, a network."""
+    """A source of segmentation: ground truth, a simulated detector, a network."""
 
     @property
     def spec(self) -> SegmenterSpec:
-        """What it reads and how exact it is."""
+        """Returns its declaration."""
         ...
 
     def scores(self, observation: Observation, goal: str) -> Scores:
@@ -201,7 +201,7 @@ class Segmenter(Protocol):
 
 
 class Agent(Protocol):
-    """What `sim` runs: any object with these two methods, built by an `AgentFactory`."""
+    """An agent: any object with these two methods, built by an `AgentFactory`."""
 
     def reset(self, goal: str, seed: int) -> None:
         """Start a new episode; nothing of the last one may remain."""
@@ -229,7 +229,7 @@ AgentFactory = Callable[..., Agent]
 
 @dataclass(frozen=True, kw_only=True)
 class AgentSpec:
-    """What an agent declares: how it is built, and what it needs. `--agent package.module:NAME` takes one."""
+    """The declaration of an agent: how it is built, and what it needs. `--agent package.module:NAME` takes one."""
 
     make: AgentFactory
     description: str = ""

@@ -1,4 +1,4 @@
-"""What leaves the repository: the wheel, and the directions of import."""
+"""The wheel holds the shipped files, and the agent can be imported without MuJoCo."""
 
 from __future__ import annotations
 

@@ -43,9 +43,9 @@ AGENT_ROOMS = (
 )
 """The rooms of `stubborn`, lowest first."""
 KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry")
-"""What `stubborn` may import of `sim`."""
+"""Modules of `sim` that `stubborn` may import."""
 COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop")
-"""What may import both `sim` and `stubborn`."""
+"""Modules that may import both `sim` and `stubborn`."""
 
 
 def module_files() -> dict[str, Path]:

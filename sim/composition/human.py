@@ -156,4 +156,4 @@ HUMAN = AgentSpec(
     uses_segmentation=False,
     uses_ground_truth=True,
 )
-"""What a person gets to see: all images, the true segmentation included."""
+"""The declaration of a person, who sees all images, the true segmentation included."""

@@ -52,7 +52,7 @@ class RunOptions:
     workers: int = 1
     """Number of processes, on this machine or over the cluster."""
     executor: str = "local"
-    """Where episodes run: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
+    """Executor of the episodes: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     shard: str | None = None

@@ -101,7 +101,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
         ),
     }
 )
-"""What `--semantics` takes."""
+"""The kinds of segmentation by the name that `--semantics` takes."""
 
 
 def detector_config(semantics: str, weights: Path | None) -> Any:
