@@ -198,6 +198,4 @@ def _frame_around(extent: list[ConvexPolygon]) -> GridFrame:
     low = np.floor(bounds[:, :2].min(axis=0) / CELL_M)
     high = np.ceil(bounds[:, 2:].max(axis=0) / CELL_M)
     cols, rows = (high - low).astype(int).tolist()
-    return GridFrame(
-        origin_xy_m=(float(low[0] * CELL_M), float(low[1] * CELL_M)), shape=(rows, cols), cell_m=CELL_M
-    )
+    return GridFrame(origin_xy_m=(float(low[0] * CELL_M), float(low[1] * CELL_M)), shape=(rows, cols), cell_m=CELL_M)

@@ -123,9 +123,7 @@ def test_a_gap_of_one_pixel_is_a_gap() -> None:
 
 
 def test_an_object_that_is_wider_or_higher_than_a_wall_is_rendered() -> None:
-    narrow = with_wall(
-        open_floor(), half_m=(0.05, 1.0, 1.25)
-    )  # hides y < 1.46 m at the chair's front
+    narrow = with_wall(open_floor(), half_m=(0.05, 1.0, 1.25))  # hides y < 1.46 m at the chair's front
     assert "chair_00" in rendered(with_chair(narrow, y_m=1.3))
     assert "chair_00" not in rendered(with_chair(narrow, y_m=1.15))
     low = with_wall(open_floor(), half_m=(0.05, 2.0, 0.6))  # 0.32 m over the eye at 2 m
