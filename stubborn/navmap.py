@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int8, Int16, UInt16
 
 from sim.geometry.grid import GridFrame, Window
 
@@ -34,43 +34,43 @@ class CollisionLayer(enum.Enum):
 
 @dataclass
 class NavMap:
-    """The agent's map; every layer is (rows, cols) on `frame`. The paper's channel is in brackets.
+    """The agent's map; every layer is on the grid `frame`. The paper's channel is in brackets.
 
     Unknown ground counts as free. The ground that was ever in view is where `frames_in_view` is not 0.
     """
 
     frame: GridFrame
-    seen_obstacle: NDArray[np.bool_]
+    seen_obstacle: Bool[np.ndarray, "rows cols"]
     """True: depth saw a surface between step height and robot height [1]."""
-    obstacle_evidence: NDArray[np.int8]
+    obstacle_evidence: Int8[np.ndarray, "rows cols"]
     """Evidence for an obstacle, from depth; `seen_obstacle` is True where it suffices."""
-    seen_at_eye_level: NDArray[np.bool_]
+    seen_at_eye_level: Bool[np.ndarray, "rows cols"]
     """True: depth saw a surface at the camera's height, so a wall or an object as tall."""
-    pessimistic_marks: NDArray[np.bool_]
+    pessimistic_marks: Bool[np.ndarray, "rows cols"]
     """True: inside a 25 x 25 cm mark in front of a failed move; the pessimistic map [2]."""
-    optimistic_marks: NDArray[np.bool_]
+    optimistic_marks: Bool[np.ndarray, "rows cols"]
     """True: inside a 15 x 15 cm mark in front of a failed move; the optimistic map [3]."""
-    visited: NDArray[np.bool_]
+    visited: Bool[np.ndarray, "rows cols"]
     """True: the robot's disc swept over this cell."""
-    trail: NDArray[np.bool_]
+    trail: Bool[np.ndarray, "rows cols"]
     """True: the robot's centre passed here, to a cell."""
-    frames_in_view: NDArray[np.uint16]
+    frames_in_view: UInt16[np.ndarray, "rows cols"]
     """Number of frames with a depth point in this cell, floor included [4]."""
-    score_sum: NDArray[np.float32]
+    score_sum: Float32[np.ndarray, "rows cols"]
     """Sum over frames of the target's score, each frame giving its highest in the cell [5]."""
-    score_max: NDArray[np.float32]
+    score_max: Float32[np.ndarray, "rows cols"]
     """Highest score of the target in any frame [6]."""
-    other_max: NDArray[np.float32]
+    other_max: Float32[np.ndarray, "rows cols"]
     """Highest score of any other category in any frame [7]."""
-    found_step: NDArray[np.int16]
+    found_step: Int16[np.ndarray, "rows cols"]
     """Step at which `score_max` made this cell a candidate; meaningful only for candidates."""
-    shown_x: NDArray[np.float32]
+    shown_x: Float32[np.ndarray, "rows cols"]
     """Sum over frames of the unit vector from a target point to the camera, x component: the side that was seen."""
-    shown_y: NDArray[np.float32]
+    shown_y: Float32[np.ndarray, "rows cols"]
     """The y component of the same sum."""
-    rejected: NDArray[np.bool_]
+    rejected: Bool[np.ndarray, "rows cols"]
     """True: verification rejected a candidate here; it never counts again in this episode."""
-    set_aside: NDArray[np.bool_]
+    set_aside: Bool[np.ndarray, "rows cols"]
     """True: a candidate here could not be reached; it is tried again later."""
     known: tuple[slice, slice] | None = None
     """Rows and columns of a rectangle that holds all ground seen or driven over; None: nothing yet."""
@@ -95,8 +95,8 @@ class NavMap:
         layers = {f.name: getattr(self, f.name)[window.index] for f in fields(self) if f.name not in ("frame", "known")}
         return NavMap(frame=window.frame, **layers)
 
-    def collision_marks(self, layer: CollisionLayer) -> NDArray[np.bool_]:
-        """Returns the marks of a collision layer, (rows, cols); without a layer there are none."""
+    def collision_marks(self, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the marks of a collision layer; without a layer there are none."""
         if layer is CollisionLayer.NONE:
             return np.zeros_like(self.seen_obstacle)
         return self.pessimistic_marks if layer is CollisionLayer.PESSIMISTIC else self.optimistic_marks

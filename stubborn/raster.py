@@ -7,27 +7,27 @@ from typing import NamedTuple
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int
 
-Cells = tuple[NDArray[np.integer], NDArray[np.integer]]
+Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 """Rows and columns."""
 
 
-def distance_to(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
     """Returns the exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
     return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
 
 
 class NearestCells(NamedTuple):
-    """For every cell of a grid, the nearest cell of a mask; (rows, cols) each."""
+    """For every cell of a grid, the nearest cell of a mask."""
 
-    gap_cells: NDArray[np.float32]
+    gap_cells: Float32[np.ndarray, "rows cols"]
     """Distance to it, good to 2 %."""
-    rows: NDArray[np.intp]
-    cols: NDArray[np.intp]
+    rows: Int[np.ndarray, "rows cols"]
+    cols: Int[np.ndarray, "rows cols"]
 
 
-def nearest(mask: NDArray[np.bool_]) -> NearestCells:
+def nearest(mask: Bool[np.ndarray, "rows cols"]) -> NearestCells:
     """Returns the nearest True cell of every cell.
 
     The mask must hold at least one True cell.
@@ -43,7 +43,9 @@ def nearest(mask: NDArray[np.bool_]) -> NearestCells:
     return NearestCells(np.asarray(distance, np.float32), row_of[labels], col_of[labels])
 
 
-def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int) -> NDArray[np.bool_]:
+def connected(
+    mask: Bool[np.ndarray, "rows cols"], row: int, col: int, *, connectivity: int
+) -> Bool[np.ndarray, "rows cols"]:
     """Returns the connected part of a mask that contains a cell; empty when that cell is not in the mask."""
     if not mask[row, col]:
         return np.zeros_like(mask)
@@ -51,7 +53,7 @@ def connected(mask: NDArray[np.bool_], row: int, col: int, *, connectivity: int)
     return np.asarray(parts) == parts[row, col]
 
 
-def large_parts(mask: NDArray[np.bool_], least_cells: float) -> NDArray[np.bool_]:
+def large_parts(mask: Bool[np.ndarray, "rows cols"], least_cells: float) -> Bool[np.ndarray, "rows cols"]:
     """Returns the mask without its 8-connected parts of fewer cells."""
     _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
     large = np.asarray(stats)[:, cv2.CC_STAT_AREA] >= least_cells
@@ -59,7 +61,9 @@ def large_parts(mask: NDArray[np.bool_], least_cells: float) -> NDArray[np.bool_
     return large[np.asarray(parts, np.intp)]
 
 
-def sight_is_clear(blocked: NDArray[np.bool_], starts: Cells, ends: Cells, edge_cells: float) -> NDArray[np.bool_]:
+def sight_is_clear(
+    blocked: Bool[np.ndarray, "rows cols"], starts: Cells, ends: Cells, edge_cells: float
+) -> Bool[np.ndarray, " n"]:
     """Returns, for each pair of cells, whether the straight line between their centres crosses no blocked cell.
 
     The last `edge_cells` before the end do not count.
