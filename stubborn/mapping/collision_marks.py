@@ -12,7 +12,7 @@ import statistics
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool
 
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
@@ -83,7 +83,7 @@ class GpsNoise:
 
 def square_ahead(
     frame: GridFrame, pose: Pose, edge_m: float, near_edge_m: float
-) -> tuple[tuple[slice, slice], NDArray[np.bool_]]:
+) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
     """Returns the cells whose centre lies in a square ahead of the robot, which is rotated with its heading.
 
     The result is the index of a small rectangle of `frame` and the mask inside it. Every cell is tested on its own, so

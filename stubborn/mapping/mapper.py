@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int, Int32
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
@@ -54,9 +54,9 @@ class MappingConfig:
 class Sighting:
     """Target pixels of one frame, as cells of the whole map."""
 
-    rows: NDArray[np.intp]
-    cols: NDArray[np.intp]
-    distance_m: NDArray[np.float32]
+    rows: Int[np.ndarray, " n"]
+    cols: Int[np.ndarray, " n"]
+    distance_m: Float32[np.ndarray, " n"]
     """From the robot's centre, in plan."""
 
     def nearest_m(self, navmap: NavMap) -> float:
@@ -93,8 +93,8 @@ class Mapper:
         self._score_rays: dict[int, Rays] = {}
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
 
-    def add_depth(self, navmap: NavMap, depth: NDArray[np.float32], pose: Pose) -> bool:
-        """Enters one depth image, (height_px, width_px) metres, into the obstacle layers.
+    def add_depth(self, navmap: NavMap, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose) -> bool:
+        """Enters one depth image in metres into the obstacle layers.
 
         Returns:
             True when the image is exact, that is, shows no noise.
@@ -117,7 +117,7 @@ class Mapper:
     def add_scores(
         self,
         navmap: NavMap,
-        depth: NDArray[np.float32],
+        depth: Float32[np.ndarray, "height_px width_px"],
         scores: Scores,
         pose: Pose,
         step: int,
@@ -152,8 +152,8 @@ class Mapper:
         return _note_sighting(navmap, window, np.unique(flat[found]), pose)
 
     def _confirm(
-        self, target: NDArray[np.float32], d: NDArray[np.float32]
-    ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+        self, target: Float32[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
+    ) -> tuple[Float32[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
         """Returns depth smoothed over the target, and False at target pixels off the surface of most neighbours.
 
         At the rim of an object a noisy depth image shows what is behind or in front of it.
@@ -169,7 +169,7 @@ class Mapper:
         d[box] = np.where(found[box], smooth, d[box])
         return d, confirmed
 
-    def _inner(self, target: NDArray[np.float32], rim_px: int) -> NDArray[np.bool_]:
+    def _inner(self, target: Float32[np.ndarray, "h w"], rim_px: int) -> Bool[np.ndarray, "h w"]:
         """Returns the target pixels that are farther than `rim_px` pixels of the image from the target's outline.
 
         At the rim of a near object, a noisy depth image gives its distance to the target behind it. A detected outline
@@ -183,7 +183,7 @@ class Mapper:
         return np.asarray(cv2.erode(found, kernel, borderType=cv2.BORDER_REPLICATE), np.uint8).view(np.bool_)
 
     def _drop_candidates(
-        self, view: NavMap, d: NDArray[np.float32], found: NDArray[np.bool_], rays: Rays, camera_pose: Pose
+        self, view: NavMap, d: Float32[np.ndarray, "h w"], found: Bool[np.ndarray, "h w"], rays: Rays, camera_pose: Pose
     ) -> None:
         """Removes candidates in free air in front of the target: from afar a noisy image shows it too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
@@ -220,7 +220,7 @@ class Mapper:
         return self._score_rays[block_px], (pick, pick)
 
 
-def _note_sighting(navmap: NavMap, window: Window, flat: NDArray[np.int32], pose: Pose) -> Sighting:
+def _note_sighting(navmap: NavMap, window: Window, flat: Int32[np.ndarray, " n"], pose: Pose) -> Sighting:
     """Returns the target points in some row-major cells of a window, and notes the side from which they were seen."""
     rows, cols = np.divmod(flat, window.frame.shape[1])
     x_m, y_m = window.frame.centres(rows, cols)
@@ -232,10 +232,10 @@ def _note_sighting(navmap: NavMap, window: Window, flat: NDArray[np.int32], pose
     return Sighting(rows, cols, distance_m)
 
 
-def _cells(points: GroundPoints, which: NDArray[np.bool_], window: Window) -> NDArray[np.int32]:
+def _cells(points: GroundPoints, which: Bool[np.ndarray, " n"], window: Window) -> Int32[np.ndarray, " some"]:
     """Returns the row-major cells of some of the points."""
     return points.rows[which] * np.int32(window.frame.shape[1]) + points.cols[which]
 
 
-def _span(indices: NDArray[np.int32], offset: int) -> slice:
+def _span(indices: Int32[np.ndarray, " n"], offset: int) -> slice:
     return slice(int(indices.min()) + offset, int(indices.max()) + offset + 1)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int
 
 from stubborn.navmap import NavMap
 
@@ -28,24 +28,24 @@ class FrameScores:
     def __init__(
         self,
         shape: tuple[int, int],
-        flat: NDArray[np.integer],
-        target: NDArray[np.float32],
-        other: NDArray[np.float32],
+        flat: Int[np.ndarray, " n"],
+        target: Float32[np.ndarray, " n"],
+        other: Float32[np.ndarray, " n"],
     ) -> None:
-        """`flat` (n,) is the row-major cell of each pixel; `target` and `other` (n,) are its scores in [0, 1]."""
-        self.in_view = np.zeros(shape, np.bool_)
-        """(rows, cols) True where a pixel lies."""
+        """`flat` is the row-major cell of each pixel; `target` and `other` are its scores in [0, 1]."""
+        self.in_view: Bool[np.ndarray, "rows cols"] = np.zeros(shape, np.bool_)
+        """True where a pixel lies."""
         self.in_view.reshape(-1)[flat] = True
-        self.target: NDArray[np.float32] | None = None
-        """(rows, cols) Highest score of the target; 0 out of view. None: 0 everywhere."""
+        self.target: Float32[np.ndarray, "rows cols"] | None = None
+        """Highest score of the target; 0 out of view. None: 0 everywhere."""
         hit = target > 0
         if hit.any():
             self.target = np.zeros(shape, np.float32)
             np.maximum.at(self.target.reshape(-1), flat[hit], target[hit])
             speaks = target == self.target.reshape(-1)[flat]
             flat, other = flat[speaks], other[speaks]
-        self.other = np.zeros(shape, np.float32)
-        """(rows, cols) Highest score of any other category where the target's is highest; 0 out of view."""
+        self.other: Float32[np.ndarray, "rows cols"] = np.zeros(shape, np.float32)
+        """Highest score of any other category where the target's is highest; 0 out of view."""
         np.maximum.at(self.other.reshape(-1), flat, other)
 
 
@@ -86,6 +86,6 @@ class LatestFrame:
             np.copyto(layer, score, where=frame.in_view)
 
 
-def _note_found(view: NavMap, target: NDArray[np.float32], candidate_score: float, step: int) -> None:
+def _note_found(view: NavMap, target: Float32[np.ndarray, "rows cols"], candidate_score: float, step: int) -> None:
     """Notes the step for cells that become candidates."""
     view.found_step[(target > candidate_score) & (view.score_max <= candidate_score)] = step

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int, Int8, UInt8
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
@@ -55,16 +55,16 @@ class OccupancyConfig:
 class Surfaces:
     """A depth image smoothed along surfaces, but not across their edges."""
 
-    depth: NDArray[np.float32]
-    """(h, w) metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
-    neighbours: NDArray[np.uint8]
-    """(h, w) the number of these neighbours."""
+    depth: Float32[np.ndarray, "h w"]
+    """Metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
+    neighbours: UInt8[np.ndarray, "h w"]
+    """Number of these neighbours."""
     exact: bool
     """True: the image shows no noise, so that every pixel counts."""
 
     @classmethod
-    def of(cls, depth: NDArray[np.float32], config: OccupancyConfig) -> Surfaces:
-        """Returns the surfaces of an image (h, w) of metres, where 0 is no distance."""
+    def of(cls, depth: Float32[np.ndarray, "h w"], config: OccupancyConfig) -> Surfaces:
+        """Returns the surfaces of an image in metres, where 0 is no distance."""
         scaled = depth * np.float32(config.jump_1_m)
         total, count = depth.copy(), np.zeros(depth.shape, np.uint8)
         for ahead, behind in _NEIGHBOUR_PAIRS:
@@ -87,15 +87,17 @@ class Surfaces:
         exact = bool(rough_1_m < config.exact_1_m)
         return cls(depth if exact else total + depth, count, exact)
 
-    def confirmed(self, least: int) -> NDArray[np.bool_]:
-        """Returns (h, w) True where a pixel has so many neighbours on its surface; everywhere in an exact image."""
+    def confirmed(self, least: int) -> Bool[np.ndarray, "h w"]:
+        """Returns True where a pixel has so many neighbours on its surface; everywhere in an exact image."""
         return self.neighbours >= (0 if self.exact else least)
 
 
-def agreeing(depth: NDArray[np.float32], config: OccupancyConfig) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+def agreeing(
+    depth: Float32[np.ndarray, "h w"], config: OccupancyConfig
+) -> tuple[Bool[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
     """Returns which pixels lie on one surface with most of their neighbours, and the smoothed depth.
 
-    `depth` is (h, w) metres, 0 where there is no distance; such neighbours do not count. Both results are (h, w).
+    `depth` is in metres, 0 where there is no distance; such neighbours do not count.
     """
     known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     surfaces = Surfaces.of(depth, config)
@@ -117,21 +119,21 @@ _NEIGHBOUR_PAIRS = (
 class SightLines:
     """The range of sight of one frame through the obstacle band, by image column and lowest row."""
 
-    nearest_m: NDArray[np.float32]
-    """(rows, columns) depth of the nearest surface between the band's top row and this one; 0 where one is unknown."""
-    up: NDArray[np.float32]
-    """(rows,) rise per metre of depth, decreasing in even steps."""
-    left: NDArray[np.float32]
-    """(columns,) metres to the left per metre of depth, decreasing in even steps."""
+    nearest_m: Float32[np.ndarray, "h w"]
+    """Depth of the nearest surface between the band's top row and this one; 0 where one is unknown."""
+    up: Float32[np.ndarray, " h"]
+    """Rise per metre of depth, decreasing in even steps."""
+    left: Float32[np.ndarray, " w"]
+    """Metres to the left per metre of depth, decreasing in even steps."""
     pose: Pose
     """Pose of the camera."""
 
     @classmethod
     def of_frame(
         cls,
-        depth: NDArray[np.float32],
-        up: NDArray[np.float32],
-        left: NDArray[np.float32],
+        depth: Float32[np.ndarray, "h w"],
+        up: Float32[np.ndarray, " h"],
+        left: Float32[np.ndarray, " w"],
         pose: Pose,
         rise_m: float,
     ) -> SightLines:
@@ -142,20 +144,20 @@ class SightLines:
         first = int(np.count_nonzero(up > max(rise_m, 0.0)))
         return cls(np.minimum.accumulate(depth[first:], axis=0), up[first:], left, pose)
 
-    def towards(self, target_m: NDArray[np.float32]) -> SightLines:
-        """Returns the same, cut off at the nearest target point of each column, (columns,) metres; inf: no target."""
+    def towards(self, target_m: Float32[np.ndarray, " w"]) -> SightLines:
+        """Returns the same, cut off at the nearest target point of each column; inf: no target."""
         nearest_m = np.where(np.isfinite(target_m), np.minimum(self.nearest_m, target_m), np.float32(0.0))
         return replace(self, nearest_m=nearest_m)
 
     def passes(
         self,
         frame: GridFrame,
-        rows: NDArray[np.integer],
-        cols: NDArray[np.integer],
+        rows: Int[np.ndarray, " n"],
+        cols: Int[np.ndarray, " n"],
         drop_m: float,
         range_m: tuple[float, float],
         margin_m: float,
-    ) -> NDArray[np.bool_]:
+    ) -> Bool[np.ndarray, " n"]:
         """Returns, for each cell, whether the frame saw through it, from the camera's height to `drop_m` below it.
 
         The middle and both sides of a cell are tested. Cells outside the image or the range are not seen through.
@@ -189,11 +191,11 @@ class Occupancy:
         self._drop_m = camera.height_m - min_height_m
 
     def add(
-        self, view: NavMap, solid: NDArray[np.integer], tall: NDArray[np.integer], sight: SightLines, single: int
+        self, view: NavMap, solid: Int[np.ndarray, " n"], tall: Int[np.ndarray, " m"], sight: SightLines, single: int
     ) -> None:
         """Enters a frame into the obstacle layers of a view that contains everything in range.
 
-        `solid` (n,) and `tall` (n,) are the row-major cells of the points in the obstacle band and at eye level;
+        `solid` and `tall` are the row-major cells of the points in the obstacle band and at eye level;
         `single` is the evidence from a cell's only point, see `evidence_of_one`.
         """
         hits = self._hits(view.frame.shape, solid, single)
@@ -210,8 +212,13 @@ class Occupancy:
         view.seen_at_eye_level[rows, cols] &= evidence > 0
 
     def passes(
-        self, frame: GridFrame, rows: NDArray[np.integer], cols: NDArray[np.integer], sight: SightLines, margin_m: float
-    ) -> NDArray[np.bool_]:
+        self,
+        frame: GridFrame,
+        rows: Int[np.ndarray, " n"],
+        cols: Int[np.ndarray, " n"],
+        sight: SightLines,
+        margin_m: float,
+    ) -> Bool[np.ndarray, " n"]:
         """Returns, for each cell, whether a frame saw `margin_m` past its centre at all heights of the band."""
         range_m = (self.camera.min_depth_m, self.camera.max_depth_m)
         return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
@@ -220,8 +227,8 @@ class Occupancy:
         """Returns the evidence from a single point in a cell: all in an exact image, half in a noisy one."""
         return self.config.hit if surfaces.exact else self.config.hit // 2
 
-    def _hits(self, shape: tuple[int, int], cells: NDArray[np.integer], single: int) -> NDArray[np.int8]:
-        """Returns the evidence (rows, cols) from one frame's points."""
+    def _hits(self, shape: tuple[int, int], cells: Int[np.ndarray, " n"], single: int) -> Int8[np.ndarray, "rows cols"]:
+        """Returns the evidence from one frame's points."""
         evidence = np.zeros(shape, np.int8)
         evidence.reshape(-1)[cells] = single
         if single == self.config.hit:

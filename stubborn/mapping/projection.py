@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Int32
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
@@ -22,13 +22,13 @@ from sim.interface import CameraModel
 class GroundPoints:
     """Depth pixels of one frame seen from above; pixels without a distance are left out."""
 
-    valid: NDArray[np.bool_]
-    """(h, w) True where depth is a distance; the other fields hold these pixels only, in row-major order."""
-    rows: NDArray[np.int32]
+    valid: Bool[np.ndarray, "h w"]
+    """True where depth is a distance; the other fields hold these pixels only, in row-major order."""
+    rows: Int32[np.ndarray, " n"]
     """Row of each point on the window's grid."""
-    cols: NDArray[np.int32]
+    cols: Int32[np.ndarray, " n"]
     """Column of each point on the window's grid."""
-    height_m: NDArray[np.float32]
+    height_m: Float32[np.ndarray, " n"]
     """Height of each point above the floor."""
 
 
@@ -47,12 +47,12 @@ class Rays:
         self.up = up[skipped:]
         self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
 
-    def sample(self, depth: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns those pixels of a full-size depth image, (height_px, width_px) metres, as a new array."""
+    def sample(self, depth: Float32[np.ndarray, "height_px width_px"]) -> Float32[np.ndarray, "h w"]:
+        """Returns those pixels of a full-size depth image in metres, as a new array."""
         return np.ascontiguousarray(depth[self.pick])
 
     def project(
-        self, d: NDArray[np.float32], confirmed: NDArray[np.bool_], camera_pose: Pose, window: Window
+        self, d: Float32[np.ndarray, "h w"], confirmed: Bool[np.ndarray, "h w"], camera_pose: Pose, window: Window
     ) -> GroundPoints:
         """Returns cells of `window` and heights of the confirmed points of a sampled depth image.
 
