@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool
 
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.untrap import UntrapConfig
@@ -29,11 +29,11 @@ class CollisionAvoidance:
 
 
 class ProvenFree(NamedTuple):
-    """Ground that the robot's own motion has proved free; masks (rows, cols)."""
+    """Ground that the robot's own motion has proved free."""
 
-    body: NDArray[np.bool_]
+    body: Bool[np.ndarray, "rows cols"]
     """The body was here: no collision mark counts."""
-    centre: NDArray[np.bool_]
+    centre: Bool[np.ndarray, "rows cols"]
     """The robot's centre was here: no obstacle counts."""
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32
 
 from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, cells_near_segment
@@ -55,13 +55,13 @@ class FreeSpace:
     """The cells of one window of the map that the robot's centre may enter."""
 
     frame: GridFrame
-    traversable: NDArray[np.bool_]
+    traversable: Bool[np.ndarray, "rows cols"]
     """True: outside dilated obstacles, or proven free by the robot's own trail."""
-    clearance_m: NDArray[np.float32]
+    clearance_m: Float32[np.ndarray, "rows cols"]
     """Distance from each cell's centre to that of the nearest obstacle cell, before dilation."""
-    reachable: NDArray[np.bool_]
+    reachable: Bool[np.ndarray, "rows cols"]
     """True: traversable and connected to the robot's cell (4-neighbourhood)."""
-    speed: NDArray[np.float32]
+    speed: Float32[np.ndarray, "rows cols"]
     """Speed of the front: 1 in the open, less near obstacles and, where asked for, on unseen ground."""
 
 
@@ -71,8 +71,8 @@ class Goal:
 
     free: FreeSpace
     """The free space to plan on."""
-    cells: NDArray[np.bool_]
-    """(rows, cols) of the free space; cells that are not reachable do not count."""
+    cells: Bool[np.ndarray, "rows cols"]
+    """A mask over the free space; cells that are not reachable do not count."""
     longest_m: float = math.inf
     """A longer route does not count."""
     marker_xy_m: tuple[float, float] | None = None
@@ -85,7 +85,7 @@ class Route:
 
     goal: Goal
     """The goal; its cells are the reachable ones only."""
-    distance_m: NDArray[np.float32]
+    distance_m: Float32[np.ndarray, "rows cols"]
     """From each cell to the goal; infinite where there is no path, and where the front did not need to go."""
     length_m: float
     """From the robot's cell."""
@@ -104,25 +104,25 @@ class Planner:
         self.config = config
         self.proven_ground = proven_ground
 
-    def obstacles(self, view: NavMap, layer: CollisionLayer) -> NDArray[np.bool_]:
+    def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns a new mask of depth obstacles and of the marks of a layer that the body has not proved wrong."""
         return view.seen_obstacle | (view.collision_marks(layer) & ~self.proven_ground(view).body)
 
-    def unseen(self, view: NavMap) -> NDArray[np.bool_]:
+    def unseen(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""
         seen = (view.frames_in_view > 0) | view.visited
         return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
 
-    def unknown(self, view: NavMap) -> NDArray[np.bool_]:
+    def unknown(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground never in view, up to the border of what was; gaps within that are closed."""
         return distance_to(self.unseen(view)) <= self.config.unseen_gap_m / view.frame.cell_m
 
     def free_space(
-        self, view: NavMap, pose: Pose, layer: CollisionLayer, costly: NDArray[np.bool_] | None = None
+        self, view: NavMap, pose: Pose, layer: CollisionLayer, costly: Bool[np.ndarray, "rows cols"] | None = None
     ) -> FreeSpace:
         """Returns the free space of a window with dilated obstacles; ground outside the window is not free.
 
-        Routes avoid `costly` ground (rows, cols) where the detour is not too long.
+        Routes avoid `costly` ground where the detour is not too long.
         """
         obstacles = self.obstacles(view, layer)
         own_index, own = cells_near_segment(
@@ -163,7 +163,7 @@ class Planner:
         length_m = float(distance_m[here])
         return Route(goal, distance_m, length_m) if math.isfinite(length_m) else None
 
-    def _speed(self, clearance_m: NDArray[np.float32]) -> NDArray[np.float32]:
+    def _speed(self, clearance_m: Float32[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
         """Returns 1 in the open and less near obstacles."""
         c = self.config
         share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.clearance_m - c.dilation_m, 1e-6))

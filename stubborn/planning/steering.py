@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
@@ -81,8 +81,8 @@ def descent_direction(route: Route, pose: Pose, length_m: float) -> float:
 
 
 def _sweep(
-    free: FreeSpace, pose: Pose, yaw_rad: NDArray[np.floating], length_m: float
-) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+    free: FreeSpace, pose: Pose, yaw_rad: Float64[np.ndarray, " n"], length_m: float
+) -> tuple[Bool[np.ndarray, " n"], Float32[np.ndarray, " n"]]:
     """Returns whether a straight move in each direction stays traversable, and its least clearance in metres.
 
     A robot that is already nearer than the safety distance may leave, but not come nearer still.
@@ -98,7 +98,7 @@ def _sweep(
     return np.asarray((clear & inside).all(axis=0)), clearance_m.min(axis=0)
 
 
-def _lowest_neighbour(distance_m: NDArray[np.float32], row: int, col: int) -> tuple[int, int]:
+def _lowest_neighbour(distance_m: Float32[np.ndarray, "rows cols"], row: int, col: int) -> tuple[int, int]:
     """Returns the neighbour with the least distance, or the cell itself when none is nearer."""
     rows, cols = distance_m.shape
     best, lowest_m = (row, col), distance_m[row, col]
@@ -114,8 +114,11 @@ def _lowest_neighbour(distance_m: NDArray[np.float32], row: int, col: int) -> tu
 
 
 def _interpolate(
-    values: NDArray[np.float32], frame: GridFrame, x_m: NDArray[np.float64], y_m: NDArray[np.float64]
-) -> NDArray[np.float64]:
+    values: Float32[np.ndarray, "rows cols"],
+    frame: GridFrame,
+    x_m: Float64[np.ndarray, " n"],
+    y_m: Float64[np.ndarray, " n"],
+) -> Float64[np.ndarray, " n"]:
     """Returns bilinear values at points, over the finite ones of the four cells around each.
 
     The value is infinite where that of the point's own cell is.
