@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
@@ -41,8 +41,8 @@ class _Choice:
     """Some candidates on a part of the map."""
 
     part: Window
-    candidates: NDArray[np.bool_]
-    """(rows, cols) of the part."""
+    candidates: Bool[np.ndarray, "rows cols"]
+    """A mask over the part."""
     last_resort: LastResort
     acceptable: bool
     """True: they are those that the verifier would accept now."""
@@ -81,11 +81,11 @@ class TargetSeeker:
         self._far = False  # whether the candidate pursued needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
 
-    def candidates(self, view: NavMap) -> NDArray[np.bool_]:
+    def candidates(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells that score as the target and were neither rejected nor set aside."""
         return (view.score_max > self.candidate_score) & ~view.rejected & ~view.set_aside
 
-    def acceptable(self, navmap: NavMap) -> NDArray[np.bool_]:
+    def acceptable(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
 
         The candidate that is pursued as such stays one: else the goal could change with every frame. The rule that

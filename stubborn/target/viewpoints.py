@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32
 
 from sim.geometry.pose import Pose
 from stubborn.navmap import CollisionLayer, NavMap
@@ -36,7 +36,7 @@ class Viewpoints:
     """Reachable cells to look at a candidate from, all of one kind."""
 
     free: FreeSpace
-    cells: NDArray[np.bool_]
+    cells: Bool[np.ndarray, "rows cols"]
     near_enough: bool
     """True: the agent may stop there."""
 
@@ -78,7 +78,9 @@ class ViewpointFinder:
             near_enough = last_resort is LastResort.STOP
             yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)
 
-    def _in_sight(self, view: NavMap, gap_m: NDArray[np.float32], nearest: NearestCells) -> NDArray[np.bool_]:
+    def _in_sight(
+        self, view: NavMap, gap_m: Float32[np.ndarray, "rows cols"], nearest: NearestCells
+    ) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells near a candidate from which nothing hides its nearest cell."""
         edge_cells = self.target_edge_m / view.frame.cell_m
         rows, cols = np.nonzero(gap_m <= self.distances.viewpoints_m[-1])
