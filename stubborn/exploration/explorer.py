@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
@@ -75,20 +75,20 @@ class Ground:
         self,
         window: Window | None = None,
         layer: CollisionLayer | None = None,
-        costly: NDArray[np.bool_] | None = None,
+        costly: Bool[np.ndarray, "rows cols"] | None = None,
     ) -> FreeSpace:
         """Returns the free space of a window (the local one) on a collision layer (the preferred one).
 
-        Routes avoid `costly` ground, (rows, cols) of the window.
+        Routes avoid `costly` ground, a mask over the window.
         """
         view = self.navmap.view(self.window if window is None else window)
         return self.planner.free_space(view, self.pose, self.layers[0] if layer is None else layer, costly)
 
-    def unseen(self, window: Window) -> NDArray[np.bool_]:
+    def unseen(self, window: Window) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground of a window at some distance from all that was in view."""
         return self.planner.unseen(self.navmap.view(window))
 
-    def unknown(self, window: Window) -> NDArray[np.bool_]:
+    def unknown(self, window: Window) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground of a window never in view, up to the border of what was."""
         return self.planner.unknown(self.navmap.view(window))
 

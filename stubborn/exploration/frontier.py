@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Float32
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
@@ -52,7 +52,9 @@ class FrontierConfig:
         return FrontierExplorer(self)
 
 
-def frontier_cells(known_free: NDArray[np.bool_], open_unknown: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def frontier_cells(
+    known_free: Bool[np.ndarray, "rows cols"], open_unknown: Bool[np.ndarray, "rows cols"]
+) -> Bool[np.ndarray, "rows cols"]:
     """Returns the known free cells with an unknown cell that is not blocked among their 8 neighbours."""
     near_unknown = cv2.dilate(np.ascontiguousarray(open_unknown).view(np.uint8), np.ones((3, 3), np.uint8))
     return known_free & (near_unknown > 0)
@@ -64,14 +66,14 @@ class _Known:
 
     window: Window
     free: FreeSpace
-    frontiers: NDArray[np.bool_]
-    spent: NDArray[np.bool_]
+    frontiers: Bool[np.ndarray, "rows cols"]
+    spent: Bool[np.ndarray, "rows cols"]
     """Shares memory with the explorer's own mask."""
-    trail_m: NDArray[np.float32]
+    trail_m: Float32[np.ndarray, "rows cols"]
     """Distance from the robot's trail."""
 
     @property
-    def open_frontiers(self) -> NDArray[np.bool_]:
+    def open_frontiers(self) -> Bool[np.ndarray, "rows cols"]:
         """The frontiers that are not spent."""
         return self.frontiers & ~self.spent
 

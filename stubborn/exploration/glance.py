@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Float64
 
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
@@ -80,7 +80,7 @@ class Glancer:
                 best_gain_m2, best_rad = gain_m2, heading_rad
         return best_rad
 
-    def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> NDArray[np.float64]:
+    def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> Float64[np.ndarray, " bearings"]:
         """Returns, per bearing, the area of ground never in view that nothing known hides from the robot."""
         x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
         y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
@@ -99,5 +99,5 @@ class Glancer:
         )
 
 
-def _sin_cos(angle_rad: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sin_cos(angle_rad: Float64[np.ndarray, " n"]) -> tuple[Float64[np.ndarray, " n"], Float64[np.ndarray, " n"]]:
     return np.sin(angle_rad), np.cos(angle_rad)

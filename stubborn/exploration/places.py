@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from jaxtyping import Bool, Int
 
 from sim.geometry.grid import Window
 from sim.interface import Action
@@ -17,17 +17,17 @@ from stubborn.planning.planner import Goal
 class MapCells:
     """Some cells of the whole map."""
 
-    rows: NDArray[np.intp]
-    cols: NDArray[np.intp]
+    rows: Int[np.ndarray, " n"]
+    cols: Int[np.ndarray, " n"]
 
     @classmethod
-    def of(cls, mask: NDArray[np.bool_], window: Window) -> MapCells:
+    def of(cls, mask: Bool[np.ndarray, "rows cols"], window: Window) -> MapCells:
         """Returns the cells of a mask over a window."""
         rows, cols = np.nonzero(mask)
         return cls(rows + window.rows.start, cols + window.cols.start)
 
-    def within(self, window: Window) -> NDArray[np.bool_]:
-        """Returns the mask (rows, cols) of those cells that lie in a window."""
+    def within(self, window: Window) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the mask of those cells that lie in a window."""
         mask = np.zeros(window.frame.shape, np.bool_)
         rows, cols = self.rows - window.rows.start, self.cols - window.cols.start
         inside = window.frame.contains(rows, cols)
