@@ -16,10 +16,13 @@ CHECKED = (
     "sim.geometry.convex",
     "sim.geometry.fast_marching",
     "sim.geometry.grid",
+    "stubborn.exploration",
+    "stubborn.mapping",
+    "stubborn.navmap",
+    "stubborn.planning",
+    "stubborn.raster",
     "stubborn.segmentation",
-    "stubborn.target.classifiers",
-    "stubborn.target.verification",
-    "stubborn.target.verifier_fit",
+    "stubborn.target",
 )
 """Modules and packages that are checked. `sim.geometry.fast_marching_kernels` is not: numba compiles its functions."""
 
