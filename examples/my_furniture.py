@@ -40,6 +40,7 @@ def main(file: Path, seed: int = 3) -> None:
     house = generate(seed, pool="train", kind="studio", catalogue=CATALOGUE.replacing("stool", CRATE))
     # A house file names its textures relative to itself.
     textures = os.path.relpath(assets_dir() / "textures", file.resolve().parent)
+    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(house_text(house, textures))
     stools = sum(body.name.startswith("stool_") for body in house.bodies)
     print(f"{file}: {stools} stools, all of them crates")

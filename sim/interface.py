@@ -118,7 +118,7 @@ class RobotModel:
 
 @dataclass(frozen=True, kw_only=True)
 class SuccessRule:
-    """When a STOP succeeds: a visible point of an instance is near enough, on the same storey (contract, section 2)."""
+    """When a STOP succeeds: a visible point of an instance is near enough, on the same storey."""
 
     distance_m: float = 1.0
     """Largest distance in plan from the robot's centre to a visible point of the instance's footprint."""
@@ -236,8 +236,9 @@ class AgentSpec:
     """One line for `--list-agents`."""
     config: Any = None
     """Default configuration, a frozen dataclass whose fields `--config agent.FIELD=VALUE` sets; None: it has none."""
-    sensors: tuple[str, ...] = ("rgb", "depth")
-    """Image sensors that the agent reads itself. What its segmenter reads is added."""
+    sensors: tuple[Any, ...] = ("rgb", "depth")
+    """Sensors that the agent reads: names of `SENSORS`, or its own objects (`sim.sensors.sensor.Sensor`). Those of its
+    segmenter are added."""
     uses_segmentation: bool = True
     """False: its results do not depend on `--semantics`."""
     uses_ground_truth: bool = False
@@ -246,7 +247,16 @@ class AgentSpec:
     """Returns a `sim.viewers.viewer.MapPainter` that draws the agent's map; None: viewers draw the true floor plan."""
 
     def __post_init__(self) -> None:
-        if "semantic" in self.sensors and not self.uses_ground_truth:
+        true = [
+            each for each in self.sensors if each == "semantic" or (not isinstance(each, str) and _reads_truth(each))
+        ]
+        if true and not self.uses_ground_truth:
+            names = ", ".join(f"'{each if isinstance(each, str) else each.name}'" for each in true)
             raise ConfigError(
-                "An agent that reads the 'semantic' sensor reads ground truth: declare uses_ground_truth=True."
+                f"AgentSpec '{self.description or self.make}': sensor {names} reads ground truth: declare "
+                "uses_ground_truth=True."
             )
+
+
+def _reads_truth(sensor: Any) -> bool:
+    return sensor == "semantic" if isinstance(sensor, str) else not {"semantic", "geom"}.isdisjoint(sensor.images)

@@ -14,7 +14,7 @@ from rich.table import Table
 
 from sim import cli
 from sim.analysis import display
-from sim.composition.agents import SPECS
+from sim.composition.agents import SPECS, find_agent
 from sim.composition.options import RunOptions, check_options
 from sim.composition.run_config import configuration_of, record_of
 from sim.composition.runner import error_line, plan_episodes
@@ -25,6 +25,7 @@ from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import RunnerSpec
 from sim.houses.load import load_house
 from sim.paths import code_hash
+from stubborn.agents import EXPLORERS
 
 Args = RunOptions
 """The options of this command, under the name that every command has."""
@@ -74,8 +75,9 @@ def run_missing(
     try:
         done = {line["episode_id"] for line in run.lines}
         todo = [episode for episode in episodes if episode.episode_id not in done]
+        segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
         console.print(
-            f"{options.agent} with {options.semantics} segmentation, {len(episodes)} episodes of {split['name']} "
+            f"{options.agent}{segmentation}, {len(episodes)} episodes of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
         _report_resumed(run, len(episodes), len(todo), console)
@@ -96,10 +98,12 @@ def report_house(options: RunOptions, console: Console) -> None:
 
 
 def agent_table() -> Table:
-    """Returns the table that `--list-agents` prints: name and description of each agent."""
+    """Returns the table that `--list-agents` prints: agents with their descriptions, and the explorers."""
     table = Table("agent", "description", box=None)
     for name, spec in SPECS.items():
         table.add_row(name, spec.description)
+    table.add_section()
+    table.add_row("--explorer", "for agents that take one: " + ", ".join(EXPLORERS))
     return table
 
 

@@ -116,7 +116,7 @@ class StubbornAgent:
         self.reset(GOAL_CATEGORIES[0], 0)
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode; `seed` is not used, since nothing in this agent is random."""
+        """Starts a new episode; `seed` is for explorers that draw at random."""
         self.goal = goal
         self.step = 0
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
@@ -128,7 +128,7 @@ class StubbornAgent:
         """The route that is followed; None: the agent turns or pushes."""
         self.approach: Approach | None = None
         """The candidate that is approached; None: the agent explores."""
-        self.explorer.reset()
+        self.explorer.reset(seed)
         self.seeker.reset(goal)
         self.untrap.reset()
 

@@ -19,6 +19,7 @@ from sim.robot.foreign import load_robot, robot_sha256
 from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.opengl import describe_gl
 from sim.sensors.profiles import RenderProfile, get_profile
+from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
 from stubborn.agent import AgentConfig
 from stubborn.target.verification import FittedVerifier, Verifier, verifier_for
@@ -55,7 +56,7 @@ class RunConfig:
     robot: RobotConfig
     camera: CameraModel
     sensors: tuple[str, ...]
-    """Image sensors in the agent's observation: those that agent and segmentation declare."""
+    """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
     profile: RenderProfile
     noise: NoiseConfig
     task: TaskConfig
@@ -79,13 +80,13 @@ def configuration_of(options: RunOptions, spec: AgentSpec | None = None) -> RunC
         verification=VerificationConfig(method=options.verification, parameters=options.verifier),
         robot=robot,
         camera=camera,
-        sensors=_sensors(spec, options.semantics),
+        sensors=_sensor_names(spec, options.semantics),
         profile=get_profile(options.profile),
         noise=get_noise(options.noise),
         task=TaskConfig(),
     )
     tree = with_fields(tree, _settings(options))
-    missing = [name for name in _sensors(spec, options.semantics) if name not in tree.sensors]
+    missing = [name for name in _sensor_names(spec, options.semantics) if name not in tree.sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
     if "semantic" in tree.sensors and not spec.uses_ground_truth:
@@ -145,8 +146,15 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
     return replace(spec.config, explorer=find_explorer(options.explorer))
 
 
-def _sensors(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
-    read = (*spec.sensors, *(("depth", *KINDS[semantics].spec.sensors) if spec.uses_segmentation else ()))
+def sensors_of(spec: AgentSpec, config: RunConfig) -> tuple[str | Sensor, ...]:
+    """Returns the sensors of the observation: the agent's own objects, and names of standard sensors."""
+    own = {each.name: each for each in spec.sensors if not isinstance(each, str)}
+    return tuple(own.get(name, name) for name in config.sensors)
+
+
+def _sensor_names(spec: AgentSpec, semantics: str) -> tuple[str, ...]:
+    own = [each if isinstance(each, str) else each.name for each in spec.sensors]
+    read = (*own, *(("depth", *KINDS[semantics].spec.sensors) if spec.uses_segmentation else ()))
     return tuple(dict.fromkeys(read))
 
 

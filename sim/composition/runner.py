@@ -8,13 +8,14 @@ import numpy as np
 
 from sim.composition.agents import build_agent, find_agent
 from sim.composition.options import RunOptions, start_pose
-from sim.composition.run_config import RunConfig, configuration_of, truth_images, verifier_of, versions
+from sim.composition.run_config import RunConfig, configuration_of, sensors_of, truth_images, verifier_of, versions
 from sim.composition.segmenters import NoSegmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, EpisodeError
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.interface import AgentSpec, Segmenter
+from sim.sensors.sensor import Sensor
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES
 
@@ -27,7 +28,7 @@ class EpisodeRunner:
         self._spec = spec = find_agent(options.agent)
         config = configuration_of(options)
         truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * selection.any_selected(options)
-        self._env = make_env(options, config, sensors=config.sensors, truth=truth)
+        self._env = make_env(options, config, sensors=sensors_of(spec, config), truth=truth)
         segmenter: Segmenter = NoSegmentation()
         if spec.uses_segmentation:
             segmenter = make_segmenter(options.semantics, self._env, config.detector)
@@ -63,14 +64,14 @@ class EpisodeRunner:
 
 
 def make_env(
-    options: RunOptions, config: RunConfig, *, sensors: tuple[str, ...], truth: tuple[str, ...] = ()
+    options: RunOptions, config: RunConfig, *, sensors: tuple[str | Sensor, ...], truth: tuple[str, ...] = ()
 ) -> ObjectNavEnv:
     """Returns the environment of a run.
 
     Args:
         options: checked options; they name the houses.
         config: the configuration tree of these options.
-        sensors: image sensors in the observation.
+        sensors: sensors in the observation.
         truth: images without noise that are rendered besides.
     """
     return ObjectNavEnv(

@@ -23,7 +23,7 @@ from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.sensor import Sensor, SensorContext
-from sim.sensors.standard import resolve_sensors
+from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
 
@@ -165,6 +165,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene.task.begin(episode.goal, episode.start)
         self._episode, self._motion = episode, None
         observation, semantic = self._observe()
+        self._require_in_space(observation)
         self._scene.task.look(semantic)
         return observation, self._info(collided=False)
 
@@ -226,6 +227,16 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Returns the noise that the house's sidecar fixes, else the environment's."""
         fixed = self.split.sidecar(house).noise
         return self._make_noise(noise_from_dict(fixed)) if fixed else self._default_noise
+
+    def _require_in_space(self, observation: dict[str, NDArray]) -> None:
+        """Raises ConfigError if the first reading of a sensor of the user's is not in its space."""
+        for sensor in (each for each in self.sensors if each.name not in STANDARD_SENSORS):
+            space, reading = sensor.space(self.camera_model), observation[sensor.name]
+            if not space.contains(reading):
+                raise ConfigError(
+                    f"Sensor '{sensor.name}' read {reading!r}, which is not in its space {space}; a reading is an "
+                    "array of the space's shape and dtype."
+                )
 
     def _observe(self) -> tuple[dict[str, NDArray], NDArray[np.uint8]]:
         """Returns the observation, and the true segmentation, which the metrics need even if no agent gets it."""

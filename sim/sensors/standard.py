@@ -138,12 +138,31 @@ def resolve_sensors(given: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
     """
     resolved: dict[str, Sensor] = {}
     for each in given:
-        sensor = _standard_sensor(each) if isinstance(each, str) else each
+        sensor = _standard_sensor(each) if isinstance(each, str) else _checked(each)
         if resolved.setdefault(sensor.name, sensor) != sensor:
             raise ConfigError(f"Two sensors have the name '{sensor.name}'; each key of the observation needs its own.")
     for name in POSE_SENSORS:
         resolved.setdefault(name, STANDARD_SENSORS[name])
     return tuple(resolved.values())
+
+
+def _checked(sensor: Sensor) -> Sensor:
+    """Returns a sensor of the user's after a check of its interface.
+
+    Raises:
+        ConfigError: it is a class, lacks a member of `Sensor`, or has the name of a standard sensor.
+    """
+    if isinstance(sensor, type):
+        raise ConfigError(f"Sensor {sensor.__name__} is a class; give an object: {sensor.__name__}().")
+    missing = [member for member in ("name", "images", "noise", "space", "read") if member not in dir(sensor)]
+    if missing:
+        raise ConfigError(
+            f"Sensor {type(sensor).__name__} has no {', '.join(missing)}; see `sim.sensors.sensor.Sensor` "
+            "(images = () and noise = None where there are none)."
+        )
+    if sensor.name in STANDARD_SENSORS and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
+        raise ConfigError(f"Sensor {type(sensor).__name__} has the name of the standard sensor '{sensor.name}'.")
+    return sensor
 
 
 def _standard_sensor(name: str) -> Sensor:

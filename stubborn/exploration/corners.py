@@ -69,7 +69,7 @@ class CornerExplorer:
         self.config = config
         self.reset()
 
-    def reset(self) -> None:
+    def reset(self, seed: int = 0) -> None:
         """Forgets the last episode."""
         self.corner = self.config.first_corner
         """Index of the corner that is pursued."""

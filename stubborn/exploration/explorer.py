@@ -3,7 +3,7 @@
 An explorer is one class with two methods and holds no planner:
 
     class Farthest:
-        def reset(self) -> None: ...
+        def reset(self, seed: int) -> None: ...
 
         def explore(self, ground: Ground) -> Exploration:
             free = ground.free_space()
@@ -35,8 +35,8 @@ Exploration = Generator[Goal, Route | None, Route | Action | None]
 class Explorer(Protocol):
     """Chooses where to go while there is no candidate."""
 
-    def reset(self) -> None:
-        """Forgets the last episode."""
+    def reset(self, seed: int) -> None:
+        """Forgets the last episode; random draws of this one come from `seed`."""
         ...
 
     def explore(self, ground: Ground) -> Exploration:

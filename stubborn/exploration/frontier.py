@@ -86,7 +86,7 @@ class FrontierExplorer:
         self.look_around = LookAround(config.look_around_turns)
         self.reset()
 
-    def reset(self) -> None:
+    def reset(self, seed: int = 0) -> None:
         """Forgets the last episode."""
         self.look_around.begin()
         self._goal: MapCells | None = None

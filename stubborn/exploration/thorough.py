@@ -55,7 +55,7 @@ class ThoroughExplorer:
         self.look_around = LookAround(config.look_around_turns)
         self.reset()
 
-    def reset(self) -> None:
+    def reset(self, seed: int = 0) -> None:
         """Forgets the last episode."""
         self.corners.reset()
         self.glancer.reset()

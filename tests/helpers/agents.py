@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
 
-from sim.interface import Action, AgentSpec, Observation
+from sim.interface import Action, AgentSpec, CameraModel, Observation
+from sim.sensors.sensor import SensorContext
 
 SEEN: list[set[str]] = []
 """Keys of each observation that a `Spy` got in this process."""
@@ -49,3 +52,19 @@ def make_narrow(*, camera: object, robot: object) -> Spy:
 SPY = AgentSpec(make=make_spy, description="notes what it sees", config=SpyConfig(), sensors=("depth",))
 CHEAT = AgentSpec(make=make_spy, sensors=("semantic",), uses_ground_truth=True, uses_segmentation=False)
 NUMBER = 3
+
+
+class Ahead:
+    """A sensor of the agent's own: the smallest depth in the middle of the image, metres."""
+
+    name, images, noise = "ahead", ("depth",), None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        return spaces.Box(0.0, camera.max_depth_m, (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        height, width = context.images["depth"].shape
+        return context.images["depth"][height // 2, width // 3 : -width // 3].min(keepdims=True)
+
+
+FEELER = AgentSpec(make=make_spy, sensors=("depth", Ahead()), uses_segmentation=False)

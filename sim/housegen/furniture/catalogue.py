@@ -6,13 +6,14 @@ import itertools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from sim.errors import ConfigError
 from sim.housegen.furniture.item import Item, Mount, Pool
 from sim.housegen.furniture.workbench import Workbench
+from sim.interface import MPCAT40_ID
 
 HINTS: frozenset[str] = frozenset(
     {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
@@ -51,9 +52,15 @@ class Catalogue:
     """
 
     def __init__(self, styles: Iterable[Style]) -> None:
-        """Raises ConfigError if two styles of one category have the same name."""
+        """Raises ConfigError for an unknown category or pool, and for two styles of one name in a category."""
         by_category: dict[str, dict[str, Style]] = {}
         for style in styles:
+            if style.category not in MPCAT40_ID:
+                raise ConfigError(f"Style '{style.name}': no category '{style.category}' in mpcat40.")
+            if style.pool not in get_args(Pool):
+                raise ConfigError(
+                    f"Style '{style.name}': no pool '{style.pool}'. There is: {', '.join(get_args(Pool))}."
+                )
             same_category = by_category.setdefault(style.category, {})
             if style.name in same_category:
                 raise ConfigError(f"The catalogue has two styles '{style.name}' of category '{style.category}'.")

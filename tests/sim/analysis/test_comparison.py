@@ -102,6 +102,17 @@ def test_only_episodes_that_both_have_played_are_compared(tmp_path: Path) -> Non
     assert code_of(first, "a") == "c0de"
 
 
+def test_runs_with_another_success_rule_are_compared_although_their_shortest_paths_differ(tmp_path: Path) -> None:
+    folders = [run_folder(tmp_path / name, "ab", shortest_path=path_m) for name, path_m in (("a", 4.2), ("b", 3.9))]
+    with pytest.raises(ConfigError, match="shortest_path"):
+        require_same_episodes(*map(read_run, folders))
+    for folder, distance_m in zip(folders, (1.0, 0.5), strict=True):
+        config = json.loads((folder / "config.json").read_text())
+        config["config"] = {"task": {"success": {"distance_m": distance_m}}}
+        (folder / "config.json").write_text(json.dumps(config))
+    assert require_same_episodes(*map(read_run, folders)) == ["a", "b"]
+
+
 def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) -> None:
     first, other, foreign = (
         read_run(run_folder(tmp_path / name, ids, split=split))

@@ -54,8 +54,22 @@ def test_an_agent_that_declares_ground_truth_gets_it_and_its_results_say_so(hous
     assert line["uses_ground_truth"] is True
 
 
+def test_an_agent_gets_a_sensor_of_its_own(house: Path, tmp_path: Path) -> None:
+    _, keys = played(house, tmp_path, "tests.helpers.agents:FEELER", "gt")
+    assert keys == {"depth", "ahead", *POSE_SENSORS}
+    assert json.loads((tmp_path / "config.json").read_text())["config"]["sensors"] == ["depth", "ahead"]
+
+
+def test_a_sensor_of_its_own_is_no_back_door_to_the_truth() -> None:
+    class Peeper(agents.Ahead):
+        name, images = "peeper", ("semantic",)
+
+    with pytest.raises(ConfigError, match="sensor 'peeper' reads ground truth"):
+        AgentSpec(make=agents.make_spy, sensors=(Peeper(),))
+
+
 def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
-    with pytest.raises(ConfigError, match="declare uses_ground_truth=True"):
+    with pytest.raises(ConfigError, match="sensor 'semantic' reads ground truth: declare uses_ground_truth=True"):
         AgentSpec(make=agents.make_spy, sensors=("semantic",))
 
 

@@ -198,3 +198,50 @@ def test_a_name_given_twice_counts_once_and_two_sensors_with_one_name_are_refuse
     assert names == ["depth", "rgb", *POSE_SENSORS]
     with pytest.raises(ConfigError, match="Two sensors have the name 'depth'"):
         resolve_sensors(("depth", replace(DepthSensor(), noise=Fog(2.0))))
+
+
+class Constant:
+    """A sensor whose reading is given; its space holds one float32 number in [0, 1]."""
+
+    name, images, noise = "constant", (), None
+
+    def __init__(self, value: object) -> None:
+        self._value = value
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        return spaces.Box(0.0, 1.0, (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        return self._value  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize("value", [0.5, np.array([0.5]), np.array([2.0], np.float32), np.zeros(2, np.float32)])
+def test_a_reading_that_is_not_in_the_space_of_its_sensor_is_refused(value: object, tmp_path: Path) -> None:
+    file = tmp_path / "room.xml"
+    house = with_box(room(5, 5), "sofa_00", centre_m=(2.0, 0, 0.4), half_m=(0.3, 0.8, 0.4))
+    file.write_text(house.spec.to_xml())
+    env = ObjectNavEnv(house=file, sensors=(Constant(value),), camera=SMALL)
+    with pytest.raises(ConfigError, match=r"Sensor 'constant' read .* not in its space"):
+        env.reset(seed=0)
+    env.close()
+
+
+class NoNoise:
+    name, images, space, read = "half", (), Constant.space, Constant.read
+
+
+class Gps(Constant):
+    name = "gps"
+
+
+@pytest.mark.parametrize(
+    ("sensor", "message"),
+    [
+        (Constant, "Constant is a class; give an object"),
+        (NoNoise(), "Sensor NoNoise has no noise"),
+        (Gps(0.0), "the name of the standard sensor 'gps'"),
+    ],
+)
+def test_an_object_that_is_no_sensor_is_refused_in_one_sentence(sensor: object, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        resolve_sensors((sensor,))  # type: ignore[arg-type]

@@ -31,7 +31,7 @@ class Farthest:
         self.config = config
         self.reset()
 
-    def reset(self) -> None:
+    def reset(self, seed: int = 0) -> None:
         self.goal_xy_m: tuple[float, float] | None = None
 
     def explore(self, ground: Ground) -> Exploration:
@@ -84,7 +84,7 @@ class Undecided:
     def __init__(self) -> None:
         self.lengths_m: list[float | None] = []
 
-    def reset(self) -> None:
+    def reset(self, seed: int = 0) -> None:
         self.lengths_m.clear()
 
     def explore(self, ground: Ground) -> Exploration:
