@@ -1,4 +1,4 @@
-"""Builds a standalone MuJoCo specification in the house format (contract, section 3) from placed items."""
+"""Builds a standalone MuJoCo specification in the house format (docs/houses.md) from placed items."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads the category and the instance of each geom from the names of geoms and bodies (contract, section 3).
+"""Reads the category and the instance of each geom from the names of geoms and bodies (docs/houses.md).
 
 A label is a name `<category>_<number>` (`chair_03`, `chest_of_drawers_00`), with a category of mpcat40 in underscores.
 A geom gets the first label among its own name, its body's name and the names of the body's ancestors; that name is its

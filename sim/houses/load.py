@@ -1,4 +1,4 @@
-"""Loads a house file and refuses files that break a rule of the house format (contract, section 3)."""
+"""Loads a house file and refuses files that break a rule of the house format (docs/houses.md)."""
 
 from __future__ import annotations
 

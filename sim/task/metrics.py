@@ -1,4 +1,4 @@
-"""Metrics of an episode as pure functions (contract, section 2).
+"""Metrics of an episode as pure functions (docs/task.md).
 
 SPL is that of Anderson et al. 2018 (arXiv:1807.06757), soft SPL that of Habitat; distances are in metres.
 """

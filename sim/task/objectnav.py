@@ -1,4 +1,4 @@
-"""The ObjectNav task: start of an episode, its metrics while it runs, and its end (contract, section 2)."""
+"""The ObjectNav task: start of an episode, its metrics while it runs, and its end (docs/task.md)."""
 
 from __future__ import annotations
 

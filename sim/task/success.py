@@ -1,4 +1,4 @@
-"""Places where a STOP succeeds: near a point of the goal's footprint in free line of sight (contract, section 2).
+"""Places where a STOP succeeds: near a point of the goal's footprint in free line of sight (docs/task.md).
 
 One function, `GoalRegion.satisfied`, computes both the mask of places to which distances are measured and the test at
 STOP. It uses the boundary of a footprint only: a line to a point inside it crosses the boundary at a point that is

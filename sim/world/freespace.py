@@ -1,4 +1,4 @@
-"""Free space of the robot on one storey, and geodesic distances in it (contract, section 2).
+"""Free space of the robot on one storey, and geodesic distances in it (docs/task.md).
 
 A position is free when it lies on a floor of the house and the robot's disc touches no collision geom between step
 height and robot height. Movable objects count at their positions when the `FreeSpace` is made. Arrays are indexed
