@@ -25,14 +25,13 @@ from rich.console import Console
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
-from sim.analysis.report.drawings import split_of
+from sim.analysis.report.drawings import ground_truth_of, split_of
 from sim.geometry.grid import GridFrame
 from sim.interface import ConfigError
 from sim.task.failures import cause_of_failure, first_looping_step, first_trapped_step
 from sim.task.ground_truth import GroundTruth
 from sim.task.metrics import EXPLORED_SHARE
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
-from sim.world.world import World
 
 Picture = NDArray[np.uint8]
 PX_M = 60.0
@@ -74,7 +73,7 @@ def main(args: Args) -> int:
         line = run.lines[episode_id]
         trajectory = read_trajectory(trajectory_file(run.path, episode_id))
         if truth is None or truth.world.house.name != line["house"]:
-            truth = GroundTruth(World(split.load_house(line["house"])))
+            truth = ground_truth_of(run, split.load_house(line["house"]))
         words = in_words(episode_id, line["goal"], trajectory)
         file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
         cv2.imwrite(str(file), draw(truth, line["goal"], trajectory, words)[..., ::-1])

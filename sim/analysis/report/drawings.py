@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from sim.analysis.comparison import Run
 from sim.analysis.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_path
 from sim.analysis.report.words import marks
+from sim.configuration import with_fields
 from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import EpisodeError, HouseError
-from sim.interface import ConfigError, RobotModel
+from sim.houses.house import House
+from sim.interface import CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
 from sim.task.ground_truth import GroundTruth
@@ -131,12 +133,20 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
     for episode_id in sorted(recorded, key=lambda i: str(runs[0].lines[i]["house"])):
         if house != (house := str(runs[0].lines[episode_id]["house"])) and split is not None:
             try:
-                truth = GroundTruth(World(split.load_house(house), robot=robot))
+                truth = ground_truth_of(runs[0], split.load_house(house), robot)
             except (ConfigError, HouseError) as error:
                 truth = None
                 problems.append(f"House '{house}' is not drawn: {error}")
         drawings.add(runs, episode_id, trajectories[episode_id], truth)
     return drawings, problems
+
+
+def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) -> GroundTruth:
+    """Returns the ground truth of a house with the success rule and the camera of a run."""
+    tree = run.config.get("config", {})
+    success = with_fields(SuccessRule(), tree.get("task", {}).get("success", {}))
+    camera = with_fields(CameraModel(), tree.get("camera", {}))
+    return GroundTruth(World(house, robot=robot, rule=success), success=success, camera=camera)
 
 
 def _robot_of(run: Run) -> RobotConfig | None:

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from sim import run
-from sim.analysis.comparison import read_run
+from sim.analysis.comparison import Run, read_run
 from sim.analysis.report.build import command_of
-from sim.analysis.report.drawings import path_on, split_of
+from sim.analysis.report.drawings import ground_truth_of, path_on, split_of
 from sim.analysis.report.figures import wilson
 from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
 from sim.analysis.report.words import explain, marks
@@ -478,3 +478,12 @@ def test_text_from_files_runs_nothing_in_the_browser(browser: Browser, pair: tup
     browser.run("document.querySelectorAll('.open').forEach(button => button.click())")
     assert browser.run("return document.querySelectorAll('img').length") == 0
     assert browser.complaints() == []
+
+
+def test_the_ground_truth_of_a_page_follows_the_success_rule_of_the_run() -> None:
+    house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    areas = []
+    for distance_m in (1.0, 0.5):
+        run = Run(Path("runs/x"), {"config": {"task": {"success": {"distance_m": distance_m}}}}, {})
+        areas.append(int(ground_truth_of(run, house).target("sofa").reached.sum()))
+    assert areas[1] < 0.7 * areas[0]
