@@ -221,9 +221,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 1000 --shard 1/4 --out runs/big": (_SHARDS[1],),
     f"{PYTHON} tools/merge_runs.py runs/big": (*_SHARDS, f"{PYTHON} tools/merge_runs.py {{tmp}}/big"),
     # docs/reproduce.md
-    f"{PYTHON} tools/reproduce.py categories --episodes 200 --split val": (
-        f"{PYTHON} tools/reproduce.py categories --episodes 1 --split val --agents random oracle --out {{tmp}}/paper",
-    ),
     f"{PYTHON} tools/reproduce.py ablation": (
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
     ),
@@ -286,23 +283,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --rate 1e-3 --views {{tmp}}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
-    # docs/reproduce.md, the tables that have been played
-    **{
-        f"{PYTHON} tools/reproduce.py {table} --episodes 200 --workers 2": (
-            f"{PYTHON} tools/reproduce.py {table} --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
-        )
-        for table in ("failures", "exploration")
-    },
-    f"{PYTHON} tools/reproduce.py overall --episodes 200 --agents stubborn single-frame frontier-avoid random oracle": (
-        f"{PYTHON} tools/reproduce.py overall --episodes 1 --agents random oracle --out {{tmp}}/paper",
-    ),
+    # docs/results.md
     f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
-    ),
-    f"{PYTHON} tools/reproduce.py failures --semantics rednet --agents stubborn single-frame": (
-        f"{PYTHON} tools/reproduce.py failures --semantics rednet --agents random oracle --episodes 1"
-        " --out {tmp}/paper",
     ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 19": (

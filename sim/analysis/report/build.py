@@ -169,6 +169,7 @@ def _facts(run: Run, label: str, trajectories: Trajectories, index: int) -> RunF
     facts = [
         ("folder", run.path),
         ("agent", config.get("agent")),
+        ("explorer", config.get("explorer")),
         ("semantics", config.get("semantics")),
         ("houses", f"{split.get('name')} {split.get('version')} ({str(split.get('sha256'))[:8]})"),
         ("noise", config.get("noise")),
