@@ -138,7 +138,7 @@ def _move_up(
     trial: NDArray[np.float64],
     place: NDArray[np.int32],
 ) -> None:
-    """Writes a cell to the heap at `index`, or above it as far as its trial distance is the smaller one."""
+    """Writes a cell to the heap at `index`, or above it while its trial distance is the smaller one."""
     while index > 0:
         parent = (index - 1) >> 1
         if trial[parent] <= distance:
@@ -159,7 +159,7 @@ def _move_down(
     trial: NDArray[np.float64],
     place: NDArray[np.int32],
 ) -> None:
-    """Writes a cell to the heap at `index`, or below it as far as its trial distance is the larger one."""
+    """Writes a cell to the heap at `index`, or below it while its trial distance is the larger one."""
     while 2 * index + 1 < length:
         child = 2 * index + 1
         if child + 1 < length and trial[child + 1] < trial[child]:
