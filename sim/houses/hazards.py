@@ -1,0 +1,75 @@
+"""Reads the hazards that sites of a house declare, and tells how near a path comes to them.
+
+A hazard is an obstacle that depth cannot see, sees too late or takes for passable, placed by `sim.housegen.hazards`
+where paths lead. Its site is a box of the world body named `hazard_<kind>_<number>` around its geoms. Sites are never
+rendered.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+
+_HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")
+_NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
+
+
+@dataclass(frozen=True)
+class Hazard:
+    """The extent of one hazard."""
+
+    name: str
+    """Name of its site, for example `hazard_glass_00`."""
+    kind: str
+    """Family of the hazard, for example `glass`."""
+    low_m: tuple[float, float, float]
+    high_m: tuple[float, float, float]
+    """Lowest and highest corner of the axis-aligned box around it."""
+
+    def distance_m(self, xy_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Returns the distances (n,) in plan from positions (n, 2) to the box; 0 inside."""
+        low, high = np.array(self.low_m[:2]), np.array(self.high_m[:2])
+        return np.hypot(*np.maximum(np.maximum(low - xy_m, xy_m - high), 0.0).T)
+
+
+def read_hazards(model: mujoco.MjModel) -> tuple[Hazard, ...]:
+    """Returns the hazards that sites of the world body declare, in the model's order."""
+    hazards = []
+    for site in range(model.nsite):
+        match = _HAZARD.fullmatch(model.site(site).name)
+        if match is None or model.site_bodyid[site] != 0 or model.site_type[site] != mujoco.mjtGeom.mjGEOM_BOX:
+            continue
+        rotation = np.empty(9)
+        mujoco.mju_quat2Mat(rotation, model.site_quat[site])
+        half = np.abs(rotation.reshape(3, 3)) @ model.site_size[site]
+        x0, y0, z0 = (model.site_pos[site] - half).tolist()
+        x1, y1, z1 = (model.site_pos[site] + half).tolist()
+        hazards.append(Hazard(match[0], match["kind"], (x0, y0, z0), (x1, y1, z1)))
+    return tuple(hazards)
+
+
+def nearest_hazard_m(hazards: Sequence[Hazard], path_m: NDArray[np.float64]) -> float:
+    """Returns the smallest distance in plan between any hazard and a path (n, 2); inf without a hazard."""
+    return min((float(hazard.distance_m(path_m).min()) for hazard in hazards), default=np.inf)
+
+
+def steepest_path(field_m: NDArray[np.float32], begin: tuple[int, int]) -> NDArray[np.int64]:
+    """Returns the cells (n, 2) of a shortest path from a cell to the source of a field of geodesic distances.
+
+    Each cell is the neighbour of the one before with the smallest distance; the path ends where none is smaller.
+    """
+    cells = [np.array(begin)]
+    limit = np.array(field_m.shape) - 1
+    while True:
+        near = np.clip(cells[-1] + _NEIGHBOURS, 0, limit)
+        values = field_m[near[:, 0], near[:, 1]]
+        best = int(values.argmin())
+        if not values[best] < field_m[tuple(cells[-1])]:
+            return np.array(cells)
+        cells.append(near[best])
