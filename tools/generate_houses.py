@@ -1,6 +1,6 @@
 """Generates the houses of a split, or of any seeds; prints houses per second of one core and rejected tries.
 
-The val and test houses are written as MJCF files, the train houses as a list with their checksums:
+The houses of val, test, large and hazards are written as MJCF files, the train houses as a list with their checksums:
     python tools/generate_houses.py --split val --out assets/mjcf_houses/val --workers 2
     python tools/generate_houses.py --split train --out assets/mjcf_houses/train --workers 2
 Houses of other seeds:
@@ -44,7 +44,7 @@ class Args:
     out: Path
     """Folder for the XML files (for train: for the list); created if missing."""
     split: str | None = None
-    """Name of a shipped split (val, test, train), whose recipes define seeds, kinds of plans and sizes."""
+    """Name of a shipped split (val, test, large, hazards, train), whose recipes define seeds, plan kinds and sizes."""
     houses: int | None = None
     """Number of houses; by default all of the split, or 1."""
     workers: int = 1
@@ -94,7 +94,7 @@ def main(args: Args) -> int:
 
 
 def _write_split(args: Args, split: str) -> Iterator[Made]:
-    """Writes the houses of val or test as files."""
+    """Writes the houses of a split that is shipped as files."""
     if split not in SPLITS:
         raise ConfigError(f"No split '{split}'. There is: {', '.join(SPLITS)}, train.")
     textures = args.out.resolve().parent / "textures"

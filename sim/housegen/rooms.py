@@ -13,8 +13,10 @@ from typing import Literal
 
 import numpy as np
 
-PlanKind = Literal["studio", "flat", "corridor", "lshape", "openplan", "large"]
-PLAN_KINDS: tuple[PlanKind, ...] = ("studio", "flat", "corridor", "lshape", "openplan", "large")
+PlanKind = Literal["studio", "flat", "corridor", "lshape", "openplan", "greatroom", "split", "loop", "large", "estate"]
+PLAN_KINDS: tuple[PlanKind, ...] = (
+    "studio", "flat", "corridor", "lshape", "openplan", "greatroom", "split", "loop", "large", "estate",
+)  # fmt: skip
 """Kinds of floor plans, smallest first."""
 
 PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
@@ -24,16 +26,22 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
         "corridor": (70.0, 270.0),
         "lshape": (95.0, 230.0),
         "openplan": (80.0, 260.0),
+        "greatroom": (90.0, 260.0),
+        "split": (110.0, 320.0),
+        "loop": (90.0, 320.0),
         "large": (180.0, 400.0),
+        "estate": (300.0, 800.0),
     }
 )
 """Smallest and largest floor area of each kind of plan."""
-MAX_ROOMS = 18
-"""Largest number of rooms in a home, including hallways."""
+MAX_ROOMS, MAX_ESTATE_ROOMS = 18, 56
+"""Largest number of rooms in a home, including hallways; the second one for the kind `estate`."""
+MIN_ESTATE_ROOMS = 18
+"""Smallest number of rooms of the kind `estate`, including hallways."""
 HALLWAYS: Mapping[PlanKind, int] = MappingProxyType(
     {"studio": 1, "flat": 1, "corridor": 1, "lshape": 2, "openplan": 1, "large": 3}
 )
-"""Number of hallways that a kind of plan may need."""
+"""Number of hallways that a kind of plan with rooms in rows along corridors may need."""
 GAP = "slot"
 """Front of a column through which a branch corridor passes."""
 
@@ -66,6 +74,7 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "gym": RoomRule((13.0, 18.0, 32.0), 3.1),
         "laundry": RoomRule((4.0, 5.5, 13.0), 1.75, 2.6, windows=False, grows=False),
         "closet": RoomRule((3.4, 4.5, 11.0), 1.7, 2.6, windows=False, grows=False),
+        "stair_hall": RoomRule((13.1, 15.0, 26.0), 2.75, 2.2, grows=False),
         "hallway": RoomRule((2.0, 10.0, 60.0), 1.1, 30.0, windows=False),
     }
 )

@@ -1,8 +1,9 @@
 """Recipes of the houses of the shipped splits (seed, pool, kind of plan, size), and the version of these splits.
 
-The tables here decide what is generated: `SPLITS` for val and test, whose houses use the held-out pool and are shipped
-as files, and `train_recipe` for train. Train houses are not shipped as files: `sim.housegen.house_list` reads and
-writes their recipes and checksums (`train/houses.json`) and generates them on first use. Seeds of splits differ.
+The tables here decide what is generated: `SPLITS` for val, test, large and hazards, whose houses use the held-out pool
+and are shipped as files, and `train_recipe` for train. Train houses are not shipped as files:
+`sim.housegen.house_list` reads and writes their recipes and checksums (`train/houses.json`) and generates them on first
+use. Seeds of splits differ.
 """
 
 from __future__ import annotations
@@ -44,6 +45,10 @@ class Recipe:
     rooms: tuple[str, ...] = ()
     movable: bool = False
     """Whether its light furniture can be pushed."""
+    storeys: int = 1
+    """Number of storeys."""
+    hazards: tuple[str, ...] = ()
+    """Kinds of hazards placed in it (`sim.housegen.hazards`)."""
 
     def make(self) -> GeneratedHouse:
         """Returns the generated house; the same bytes of XML every time.
@@ -60,12 +65,19 @@ class Recipe:
         from sim.housegen.generator import HouseConfig
 
         return HouseConfig(
-            pool=self.pool, kind=self.kind, area_m2=self.area_m2, rooms=self.rooms, name=self.name, movable=self.movable
+            pool=self.pool,
+            kind=self.kind,
+            area_m2=self.area_m2,
+            rooms=self.rooms,
+            name=self.name,
+            movable=self.movable,
+            storeys=self.storeys,
+            hazards=self.hazards,
         )
 
     def to_json(self) -> dict[str, Any]:
         """Returns the recipe as a JSON object."""
-        return asdict(self) | {"rooms": list(self.rooms)}
+        return asdict(self) | {"rooms": list(self.rooms), "hazards": list(self.hazards)}
 
     @classmethod
     def from_json(cls, entry: Mapping[str, Any]) -> Recipe:
@@ -82,6 +94,8 @@ class Recipe:
             area_m2=float(entry["area_m2"]),
             rooms=tuple(entry["rooms"]),
             movable=bool(entry["movable"]),
+            storeys=int(entry.get("storeys", 1)),
+            hazards=tuple(entry.get("hazards", ())),
         )
 
 
@@ -96,60 +110,135 @@ _Shape = tuple[PlanKind, float, tuple[str, ...]]
 _VAL: tuple[_Shape, ...] = (
     ("flat", 95.0, ("gym",)),
     ("corridor", 140.0, ("office",)),
-    ("lshape", 130.0, ("gym", "laundry")),
+    ("loop", 130.0, ("gym", "laundry")),
     ("openplan", 130.0, ()),
-    ("studio", 55.0, ()),
+    ("split", 150.0, ("office",)),
     ("large", 270.0, ("gym", "laundry", "office")),
-    ("flat", 115.0, ("office",)),
-    ("openplan", 150.0, ("gym", "closet")),
+    ("studio", 55.0, ()),
+    ("greatroom", 150.0, ("gym", "closet")),
     ("lshape", 190.0, ("laundry",)),
     ("corridor", 260.0, ("gym",)),
-    ("large", 320.0, ("office", "laundry")),
+    ("loop", 190.0, ("office",)),
     ("flat", 75.0, ()),
-    ("corridor", 150.0, ("office", "gym")),
+    ("split", 280.0, ("gym", "laundry")),
+    ("greatroom", 105.0, ()),
     ("openplan", 220.0, ("laundry",)),
-    ("large", 400.0, ("gym", "office", "laundry", "closet")),
+    ("large", 380.0, ("gym", "office", "laundry", "closet")),
     ("lshape", 120.0, ("gym",)),
+    ("loop", 100.0, ()),
     ("flat", 128.0, ("gym",)),
-    ("large", 290.0, ("gym",)),
+    ("loop", 290.0, ("gym", "laundry")),
+    ("split", 200.0, ("gym",)),
     ("openplan", 100.0, ("office",)),
-    ("corridor", 210.0, ("laundry",)),
+    ("large", 320.0, ("office", "laundry")),
+    ("corridor", 165.0, ("laundry",)),
+    ("greatroom", 210.0, ("office", "gym")),
+    ("loop", 160.0, ("closet",)),
+    ("large", 300.0, ("gym",)),
+    ("split", 125.0, ()),
+    ("lshape", 145.0, ("office",)),
+    ("greatroom", 258.0, ("gym", "office")),
 )
 
 _TEST: tuple[_Shape, ...] = (
     ("lshape", 110.0, ("gym",)),
+    ("loop", 145.0, ("office",)),
     ("flat", 125.0, ("office",)),
-    ("corridor", 155.0, ("gym",)),
     ("large", 300.0, ("gym", "office")),
-    ("openplan", 145.0, ("laundry",)),
+    ("greatroom", 135.0, ("laundry",)),
+    ("split", 165.0, ("gym",)),
+    ("corridor", 155.0, ("gym",)),
     ("flat", 65.0, ()),
-    ("corridor", 265.0, ("office", "gym")),
+    ("loop", 270.0, ("gym", "laundry")),
+    ("openplan", 145.0, ("laundry",)),
+    ("split", 260.0, ("office", "gym")),
     ("studio", 50.0, ()),
+    ("greatroom", 180.0, ("gym", "office")),
     ("lshape", 200.0, ("gym", "office")),
-    ("openplan", 185.0, ("closet",)),
     ("large", 360.0, ("gym", "laundry", "office")),
+    ("loop", 115.0, ()),
+    ("openplan", 185.0, ("closet",)),
+    ("split", 140.0, ()),
+    ("corridor", 265.0, ("laundry",)),
     ("flat", 90.0, ("gym",)),
-    ("lshape", 140.0, ("laundry",)),
-    ("corridor", 120.0, ()),
-    ("openplan", 255.0, ("gym", "laundry")),
-    ("flat", 130.0, ("gym", "office")),
+    ("loop", 205.0, ("gym", "laundry")),
+    ("greatroom", 230.0, ("gym",)),
     ("large", 390.0, ("gym", "laundry", "closet")),
-    ("corridor", 268.0, ("laundry",)),
-    ("lshape", 135.0, ("office",)),
+    ("corridor", 120.0, ()),
+    ("lshape", 140.0, ("laundry",)),
+    ("split", 305.0, ("gym", "office", "laundry")),
     ("openplan", 80.0, ()),
+    ("greatroom", 98.0, ()),
+    ("loop", 310.0, ("office", "gym")),
+    ("flat", 130.0, ("gym", "office")),
 )
+
+_LARGE: tuple[_Shape, ...] = (
+    ("estate", 360.0, ("gym", "office", "laundry")),
+    ("estate", 480.0, ("gym", "laundry")),
+    ("estate", 440.0, ("stair_hall", "gym", "office", "laundry")),
+    ("estate", 620.0, ("gym", "office", "laundry", "closet")),
+    ("estate", 310.0, ("laundry",)),
+    ("estate", 540.0, ("office", "gym")),
+    ("estate", 400.0, ("stair_hall", "office", "laundry")),
+    ("estate", 700.0, ("gym", "office", "laundry", "gym")),
+    ("estate", 340.0, ("gym",)),
+    ("estate", 580.0, ("gym", "laundry", "closet")),
+    ("estate", 500.0, ("stair_hall", "gym", "laundry")),
+    ("estate", 420.0, ("office", "gym")),
+    ("estate", 780.0, ("gym", "office", "laundry", "closet")),
+    ("estate", 380.0, ("office", "laundry")),
+    ("estate", 660.0, ("gym", "office", "laundry")),
+    ("estate", 560.0, ("stair_hall", "gym", "office")),
+    ("estate", 325.0, ("office",)),
+    ("estate", 740.0, ("gym", "office", "laundry", "office")),
+    ("estate", 460.0, ("gym", "office", "closet")),
+    ("estate", 600.0, ("stair_hall", "gym", "office", "laundry")),
+)
+
+_HAZARDS: tuple[_Shape, ...] = (
+    ("flat", 95.0, ()),
+    ("loop", 150.0, ("gym",)),
+    ("corridor", 130.0, ("office",)),
+    ("greatroom", 140.0, ()),
+    ("split", 170.0, ("gym", "laundry")),
+    ("openplan", 110.0, ("office",)),
+    ("lshape", 150.0, ("gym",)),
+    ("loop", 195.0, ("office", "gym")),
+    ("flat", 120.0, ("gym",)),
+    ("corridor", 180.0, ("gym", "laundry")),
+    ("greatroom", 185.0, ("gym",)),
+    ("openplan", 160.0, ("gym",)),
+    ("split", 130.0, ("office",)),
+    ("lshape", 190.0, ("gym", "office")),
+    ("flat", 82.0, ()),
+)
+HAZARD_KINDS = ("glass", "sliding", "ajar", "slab", "feet", "scan", "overhang", "loose")
+"""Kinds of hazards in the houses of the split `hazards`."""
 
 
 def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
     """Returns the recipes of a split of held-out houses."""
     return tuple(
-        Recipe(f"{split}_{n:02d}", first_seed + n, "heldout", kind, area_m2, rooms, movable=_is_movable(n))
+        Recipe(
+            f"{split}_{n:02d}",
+            first_seed + n,
+            "heldout",
+            kind,
+            area_m2,
+            rooms,
+            movable=_is_movable(n),
+            storeys=2 if "stair_hall" in rooms else 1,
+            hazards=HAZARD_KINDS if split == "hazards" else (),
+        )
         for n, (kind, area_m2, rooms) in enumerate(shapes)
     )
 
 
-_TRAIN_SMALL: tuple[PlanKind, ...] = ("flat", "lshape", "openplan", "corridor", "flat", "studio", "corridor")
-_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "large", "large", "large")
+_TRAIN_SMALL: tuple[PlanKind, ...] = (
+    "flat", "loop", "openplan", "corridor", "split", "greatroom", "lshape", "loop", "flat", "studio", "corridor",
+)  # fmt: skip
+_TRAIN_LARGE: tuple[PlanKind, ...] = ("large", "corridor", "loop", "large", "split")
 _TRAIN_ROOMS: tuple[tuple[str, ...], ...] = (
     ("gym",),
     ("office",),
@@ -181,7 +270,12 @@ def train_recipe(seed: int) -> Recipe:
 
 
 SPLITS: Mapping[str, tuple[Recipe, ...]] = MappingProxyType(
-    {"val": _heldout("val", 10_000, _VAL), "test": _heldout("test", 20_000, _TEST)}
+    {
+        "val": _heldout("val", 10_000, _VAL),
+        "test": _heldout("test", 20_000, _TEST),
+        "large": _heldout("large", 30_000, _LARGE),
+        "hazards": _heldout("hazards", 40_000, _HAZARDS),
+    }
 )
-"""Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of each split
-is larger than 250 m2."""
+"""Recipes of the houses shipped as files, by split, in the order of the episodes; a quarter of the houses of val and
+test is larger than 250 m2, all of `large` are larger than 300 m2, and 5 of them have two storeys."""
