@@ -15,7 +15,7 @@ from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
 from sim.housegen.decoration import draw_lamps, draw_structure_looks
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
-from sim.housegen.furnishing import furnish
+from sim.housegen.furnishing import FurnishError, furnish
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Pool
@@ -33,7 +33,7 @@ GENERATOR_VERSION = 2
 """Increased whenever the same seed gives another house."""
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
-AREA_M2 = (50.0, 400.0)
+AREA_M2 = (50.0, 800.0)
 MAX_BYTES = 395_000
 """Largest size of a house file."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
@@ -57,6 +57,10 @@ class HouseConfig:
     """The model's name in the file."""
     movable: bool = False
     """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.movables`)."""
+    storeys: int = 1
+    """Number of storeys."""
+    hazards: tuple[str, ...] = ()
+    """Kinds of hazards that are placed where paths lead."""
 
     def __post_init__(self) -> None:
         if self.pool not in _POOL_STREAM:
@@ -70,6 +74,8 @@ class HouseConfig:
             raise ConfigError(
                 f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."
             )
+        if self.storeys != 1:
+            raise ConfigError(f"HouseConfig.storeys must be 1, got {self.storeys}.")
         if self.clutter is not None and not 0.0 <= self.clutter <= 1.0:
             raise ConfigError(f"HouseConfig.clutter must lie in [0, 1], got {self.clutter}.")
 
@@ -136,11 +142,15 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         rng = np.random.default_rng([seed, _POOL_STREAM[config.pool], attempt])
         try:
             draft = _draw_house(rng, config, catalogue)
-        except PlanError as error:
+        except (PlanError, FurnishError) as error:
             rejects.append(str(error))
             continue
         spec = _build_within_limit(draft, config)
-        faults = check_house(spec) if spec is not None else [f"its file is larger than {MAX_BYTES / 1000:.0f} KB"]
+        faults = (
+            check_house(spec, furnished=True)
+            if spec is not None
+            else [f"its file is larger than {MAX_BYTES / 1000:.0f} KB"]
+        )
         if spec is not None and not faults:
             return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
         rejects.append("; ".join(faults))
@@ -163,6 +173,7 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
 
     Raises:
         PlanError: no floor plan fits.
+        FurnishError: a room did not get the furniture that it needs.
     """
     area_m2, kind = _draw_size(rng, config)
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))

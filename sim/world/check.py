@@ -1,7 +1,8 @@
 """Checks whether a house can be used; each fault that is found is one sentence.
 
 The check measures the compiled model, not the generator's own data: labels, overlaps of collision geoms, objects
-without support, unstable objects, and whether the robot reaches every room and every goal category.
+without support, unstable objects, and whether the robot reaches every room and every goal category. For generated
+houses it also tests the furniture that each kind of room must have.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from sim.houses.house import Room, read_rooms
 from sim.houses.labels import Labels, collidable_geoms, read_labels
 from sim.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace
+from sim.world.room_requirements import unmet_requirements
 
 MAX_OVERLAP_M = 0.01
 """Largest overlap of two objects that is no fault."""
@@ -36,11 +38,19 @@ STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window"))
 """Parts of the building: they may overlap each other."""
 
 
-def check_house(spec: mujoco.MjSpec, *, rule: SuccessRule | None = None, robot: RobotModel | None = None) -> list[str]:
+def check_house(
+    spec: mujoco.MjSpec,
+    *,
+    furnished: bool = False,
+    rule: SuccessRule | None = None,
+    robot: RobotModel | None = None,
+) -> list[str]:
     """Returns a sentence for each fault of a house; an empty list when there is none.
 
     Args:
         spec: the house, without a robot; it is not changed.
+        furnished: True: each room must also have the furniture of its kind (`sim.world.room_requirements`), as in every
+            generated house.
         rule: its success distance and storey height count; the default rule when None.
         robot: its radius and height count; the default robot when None.
     """
@@ -53,6 +63,8 @@ def check_house(spec: mujoco.MjSpec, *, rule: SuccessRule | None = None, robot: 
     mujoco.mj_kinematics(model, data)
     house = _CompiledHouse(model, data, labels, read_rooms(model))
     faults = _overlaps(house) + _without_support(house) + _unstable(model)
+    if furnished:
+        faults += unmet_requirements(model, data, labels, house.rooms)
     return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())
 
 

@@ -1,7 +1,7 @@
-"""Furnishes rooms: rules by kind of room (room_rules), built from groups of furniture and single steps."""
+"""Furnishes rooms (furnish_room): rules by kind of room (room_rules), built from groups of furniture and single steps."""
 
 from __future__ import annotations
 
-from sim.housegen.furnishing.room_rules import furnish
+from sim.housegen.furnishing.furnish_room import FurnishError, furnish
 
-__all__ = ["furnish"]
+__all__ = ["FurnishError", "furnish"]

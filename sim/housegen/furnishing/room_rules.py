@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from sim.housegen.furnishing.bathrooms import furnish_bathroom
-from sim.housegen.furnishing.filling import fill_room, middle_rug
+from sim.housegen.furnishing.filling import middle_rug
 from sim.housegen.furnishing.groups import bed_group, desk_group, dining_group
 from sim.housegen.furnishing.hallways import furnish_hallway
 from sim.housegen.furnishing.kitchens import furnish_kitchen, kitchen_units
@@ -16,19 +15,10 @@ from sim.housegen.furnishing.steps import hang, hang_above, place, place_row, pu
 from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.placement import RoomLayout
 from sim.housegen.placement.floor import put_against_wall
-from sim.housegen.placement.on_walls import hang_before_window, hang_from_ceiling
 from sim.housegen.rectangles import SIDES
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""
-
-
-def furnish(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Furnishes a room by the rule of its kind, then fills it and adds curtains and a lamp."""
-    RULES[layout.kind](layout, source)
-    fill_room(layout, source)
-    _hang_curtains(layout, source)
-    _hang_ceiling_lamps(layout, source)
 
 
 def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
@@ -206,41 +196,6 @@ def _extras(
     if boxes and source.clutter_chance(0.25):
         kind = "floor" if layout.kind in BOXES_ON_FLOOR else "bin"
         place(layout, source, "objects", kind, along="corner", front_m=0.0)
-
-
-def _hang_curtains(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs the same curtains or blinds at every window of a room; long curtains where nothing stands below."""
-    style = source.rng.random()
-    looks = source.window_looks()
-    for side, window in layout.walls.windows():
-        width, height = window.span[1] - window.span[0], window.top_m - window.bottom_m
-        tries = [("blinds", width - 0.02, height - 0.02)]
-        if layout.kind not in ("bathroom", "laundry", "kitchen", "hallway") and style < 0.7:
-            wide = math.ceil(5.0 * (width + 0.3)) / 5.0  # few widths: windows of nearly one size share a curtain
-            tries = [("curtain", wide, 2.2), ("curtain", wide, math.ceil(5.0 * (height + 0.2)) / 5.0), *tries]
-        if style > 0.88:
-            return
-        for category, wide, high in tries:
-            item = source.make(category, width_m=round(wide, 2), height_m=round(high, 2), looks=looks)
-            if item is not None and item.mount == "wall" and hang_before_window(layout, item, side, window):
-                break
-
-
-def _hang_ceiling_lamps(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs a lamp from the middle of the ceiling, several along a hallway."""
-    lamp = source.make("lighting", "ceiling")
-    if lamp is None or lamp.mount != "ceiling":
-        return
-    count = max(1, int(layout.inner.long_m / 4.5)) if layout.kind == "hallway" else 1
-    for n in range(count):
-        x, y = layout.inner.centre
-        if count > 1:
-            along = (n + 0.5) / count
-            if layout.inner.width_m > layout.inner.depth_m:
-                x = layout.inner.x0 + along * layout.inner.width_m
-            else:
-                y = layout.inner.y0 + along * layout.inner.depth_m
-        hang_from_ceiling(layout, lamp, x, y)
 
 
 RULES: Mapping[str, Callable[[RoomLayout, FurnitureSource], None]] = MappingProxyType(

@@ -6,6 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sim.housegen.openings import HALF_WALL_M, Opening, leaf_keep_out
 from sim.housegen.placement.records import Placement, zone_in_front
 from sim.housegen.placement.walk_grid import WalkGrid
@@ -24,6 +27,16 @@ class Block:
     rect: Rect
     z0_m: float
     z1_m: float
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The state of a layout at one time."""
+
+    placements: tuple[Placement, ...]
+    blocks: tuple[Block, ...]
+    reserved: tuple[tuple[Rect, Rect], ...]
+    occupied: NDArray[np.uint8]
 
 
 class RoomLayout:
@@ -122,6 +135,18 @@ class RoomLayout:
     def used_on_surface(self, host: Placement, number: int) -> list[Rect]:
         """Returns the list of rectangles used on a surface of an item, in the item's frame; new ones are appended."""
         return self._on_surface.setdefault((id(host.placed), number), [])
+
+    def snapshot(self) -> Snapshot:
+        """Returns the present state of the layout, for `restore`."""
+        return Snapshot(tuple(self.placements), tuple(self._blocks), tuple(self._reserved), self.grid.occupied())
+
+    def restore(self, state: Snapshot) -> None:
+        """Removes everything that was added after a snapshot was taken."""
+        self.placements[:] = state.placements
+        self._blocks[:] = state.blocks
+        self._reserved[:] = state.reserved
+        self._on_surface.clear()
+        self.grid.set_occupied(state.occupied)
 
     # ---- inside --------------------------------------------------------------------------------------------------
 

@@ -44,6 +44,14 @@ class WalkGrid:
         """Marks the cells that a rectangle touches as occupied."""
         self._taken[self._cells(rect)] = 1
 
+    def occupied(self) -> NDArray[np.uint8]:
+        """Returns a copy of the occupied cells, for `set_occupied`."""
+        return self._taken.copy()
+
+    def set_occupied(self, cells: NDArray[np.uint8]) -> None:
+        """Replaces the occupied cells by a copy that `occupied` returned."""
+        self._taken[:] = cells
+
     def stays_walkable(self, new: Rect, reachable: Sequence[Rect]) -> bool:
         """Returns whether the room stays usable for the robot with `new` occupied as well.
 
