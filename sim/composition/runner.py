@@ -120,7 +120,10 @@ def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[l
 def error_line(options: RunOptions, episode: Episode, error: str) -> dict[str, Any]:
     """Returns the result line of an episode that could not be run to its end."""
     nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
-    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "gt_explored": None, "wall_time_s": 0.0}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "wall_time_s": 0.0}
+    nothing |= dict.fromkeys(
+        ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
+    )
     identity = identity_of(options, find_agent(options.agent), episode)
     return identity | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
 

@@ -12,10 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import EpisodeError
+from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
+from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import GoalRegion, Surroundings
 from sim.world.freespace import FreeSpace
+from sim.world.plan import floor_polygons
 from sim.world.world import World
 
 
@@ -40,10 +43,12 @@ class GroundTruth:
     def __init__(self, world: World, *, success: SuccessRule | None = None, camera: CameraModel | None = None) -> None:
         self.world = world
         self.success = success or SuccessRule()
-        self._sight_height_m = self.success.sight_height_with(camera or CameraModel())
+        self.camera = camera or CameraModel()
+        self._sight_height_m = self.success.sight_height_with(self.camera)
         self._at_rest = mujoco.MjData(world.model)
         mujoco.mj_kinematics(world.model, self._at_rest)
         self._spaces: dict[float, FreeSpace] = {}
+        self._floors: dict[float, tuple[GridFrame, NDArray[np.bool_]]] = {}
         self._surroundings: dict[float, Surroundings] = {}
         self._targets: dict[tuple[str, float], Target] = {}
 
@@ -61,6 +66,14 @@ class GroundTruth:
                 floor_z_m=floor_z_m,
             )
         return self._spaces[floor_z_m]
+
+    def unseen_floor(self, floor_z_m: float = 0.0) -> SeenFloor:
+        """Returns the floor of a storey of which the camera has seen nothing yet."""
+        if floor_z_m not in self._floors:
+            world = self.world
+            outlines = floor_polygons(world.model, self._at_rest, world.labels, floor_z_m)
+            self._floors[floor_z_m] = floor_cells(self.space(floor_z_m).frame, outlines)
+        return SeenFloor(*self._floors[floor_z_m], floor_z_m, self.camera)
 
     def target(self, goal: str, floor_z_m: float = 0.0) -> Target:
         """Returns the places of a storey where a STOP for a goal succeeds, and the distance to them from everywhere.

@@ -46,6 +46,20 @@ def goal_share(semantic: NDArray[np.uint8], goal: str) -> float:
     return int(np.count_nonzero(semantic == MPCAT40_ID[goal])) / semantic.size
 
 
+def steps_to_first_sight(first_seen_step: int | None, max_steps: int) -> int:
+    """Returns the time to first sight, censored at the limit: an episode that never showed the goal has `max_steps`.
+
+    Its mean over episodes is the restricted mean time to first sight. It also counts an agent that stops before it has
+    seen the goal with the limit, so that an early STOP does not shorten the time.
+    """
+    return max_steps if first_seen_step is None else first_seen_step
+
+
+def per_metre(area_m2: float, path_length_m: float) -> float:
+    """Returns the floor area seen per metre driven; 0 where the robot has not moved."""
+    return area_m2 / path_length_m if path_length_m > 0.0 else 0.0
+
+
 def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:
     """Returns whether the last window of positions (n, 2) stays within `TRAPPED_RADIUS_M` of its first position.
 

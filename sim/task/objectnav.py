@@ -17,10 +17,11 @@ from sim.task import metrics
 from sim.task.config import TaskConfig
 from sim.task.failures import Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
+from sim.task.seen_floor import SeenFloor
 from sim.task.trajectory import Recorder, Trajectory
 from sim.world.world import World
 
-EndReason = Literal["stop", "max_steps"]
+EndReason = Literal["stop", "max_steps", "fallen"]
 _EXACT_TEST_M = 0.1
 """Farther than this from the nearest cell where a STOP succeeds, the exact test of success is left out."""
 
@@ -36,12 +37,14 @@ class _Record:
     positions_m: list[tuple[float, float]]
     """Positions of the robot's centre, the start first."""
     recorder: Recorder
+    floor: SeenFloor
     distance_m: float | None
     """Geodesic distance from the robot to the nearest place where a STOP succeeds; None: no path."""
     path_length_m: float = 0.0
     collisions: int = 0
     touches: int = 0
-    explored: bool = False
+    first_seen_step: int | None = None
+    """Number of actions before the first frame that made GT exploration true; None: no frame did so."""
     trapped: bool = False
     success: bool = False
     end_reason: EndReason | None = None
@@ -84,14 +87,22 @@ class Task:
             raise self.unreachable_error(goal, start)
         recorder = Recorder(start, distance_m=shortest_path_m, goal_on_storey=on_storey)
         self._record = _Record(
-            goal, start, shortest_path_m, [(start.x_m, start.y_m)], recorder, distance_m=shortest_path_m
+            goal,
+            start,
+            shortest_path_m,
+            [(start.x_m, start.y_m)],
+            recorder,
+            self.truth.unseen_floor(start.floor_z_m),
+            distance_m=shortest_path_m,
         )
 
     def look(self, semantic: NDArray[np.uint8]) -> None:
-        """Counts one frame of ground-truth segmentation (h, w)."""
+        """Counts one frame of ground-truth segmentation (h, w) from the robot's pose: step 0 is the first one."""
         record, share = self._running, metrics.goal_share(semantic, self.goal)
         record.recorder.look(share)
-        record.explored = record.explored or share >= metrics.EXPLORED_SHARE
+        if record.first_seen_step is None and share >= metrics.EXPLORED_SHARE:
+            record.first_seen_step = self.num_steps
+        record.floor.look(semantic, self.world.camera_pose)
 
     def observe(self, action: Action, motion: Motion, semantic: NDArray[np.uint8] | None = None) -> None:
         """Counts one action that the world has carried out, and the frame rendered after it.
@@ -110,11 +121,13 @@ class Task:
         record.trapped = record.trapped or metrics.stayed_near(record.positions_m)
         if action == Action.STOP:
             record.success = self.truth.succeeds_now(record.goal, pose.x_m, pose.y_m, pose.floor_z_m)
-        record.distance_m = self._distance_now()
+        record.distance_m = None if motion.fell else self._distance_now()
         record.recorder.move(motion, pose, record.distance_m)
         if semantic is not None:
             self.look(semantic)
-        if action == Action.STOP:
+        if motion.fell:
+            self._end("fallen")
+        elif action == Action.STOP:
             self._end("stop")
         elif self.num_steps >= self.config.max_steps:
             self._end("max_steps")
@@ -136,8 +149,8 @@ class Task:
 
     @property
     def terminated(self) -> bool:
-        """Whether the agent called STOP."""
-        return self._running.end_reason == "stop"
+        """Whether the agent called STOP or drove over an edge."""
+        return self._running.end_reason in ("stop", "fallen")
 
     @property
     def truncated(self) -> bool:
@@ -183,7 +196,11 @@ class Task:
             "shortest_path": record.shortest_path_m,
             "collisions": record.collisions,
             "touches": record.touches,
-            "gt_explored": record.explored,
+            "gt_explored": record.first_seen_step is not None,
+            "first_seen_step": record.first_seen_step,
+            "steps_to_first_sight": metrics.steps_to_first_sight(record.first_seen_step, self.config.max_steps),
+            "area_seen_m2": record.floor.area_m2,
+            "area_per_metre": metrics.per_metre(record.floor.area_m2, record.path_length_m),
             "trapped": record.trapped,
             "failure": record.failure,
             "end_reason": record.end_reason,

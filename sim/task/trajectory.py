@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
 from sim.robot.drive import Ended, Motion
+from sim.task.metrics import EXPLORED_SHARE
 
 FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
@@ -57,7 +58,7 @@ class Trajectory:
     """Metres in plan from the end of the episode to the nearest instance, walls ignored; None: storey has none."""
     success: bool
     end_reason: str | None
-    """`stop`, `max_steps` or `error`; None: the episode still runs."""
+    """`stop`, `max_steps`, `fallen` or `error`; None: the episode still runs."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 
@@ -75,6 +76,12 @@ class Trajectory:
     def moved_m(self) -> NDArray[np.float64]:
         """Displacement of each action in plan, (n,) metres."""
         return np.hypot(*np.diff(self.positions_m.astype(np.float64), axis=0).T)
+
+    @property
+    def first_seen_step(self) -> int | None:
+        """Number of actions before the first frame that showed the goal by the GT-exploration rule; None: no frame."""
+        seen = np.flatnonzero(self.goal_share >= EXPLORED_SHARE)
+        return int(seen[0]) if len(seen) else None
 
 
 _ARRAYS: Mapping[str, tuple[type, int, int]] = {

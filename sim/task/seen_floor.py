@@ -1,0 +1,106 @@
+"""The floor area that the robot's camera has seen.
+
+The floor of a storey is divided into square cells of `CELL_M`. A cell is seen when its centre projects into the image
+at a depth within the camera's range, and the true segmentation of that pixel is floor. The floor is a plane at a known
+height, so no depth image is needed: a pixel that is floor and in which the centre of a floor cell projects shows that
+cell. A lower floor that is visible through a stairwell shows no cell, because the stairwell has no floor.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.convex import ConvexPolygon
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
+from sim.interface import MPCAT40_ID, CameraModel
+
+CELL_M = 0.1
+"""Edge of a cell of the floor."""
+_SAME_FLOOR_M = 0.5
+_FLOOR = MPCAT40_ID["floor"]
+
+
+class SeenFloor:
+    """The cells of the floor of one storey, and which of them the camera has seen.
+
+    Args:
+        frame: grid of the cells.
+        floor: mask (rows, cols) of the cells that are floor.
+        floor_z_m: height of the storey's floor; frames from another storey show nothing.
+        camera: intrinsics, mount height and depth range.
+    """
+
+    def __init__(self, frame: GridFrame, floor: NDArray[np.bool_], floor_z_m: float, camera: CameraModel) -> None:
+        self.frame = frame
+        self._floor_z_m = floor_z_m
+        self._camera = camera
+        self.cells = np.zeros_like(floor)  # (rows, cols) True: seen
+        self._waiting = floor.copy()  # (rows, cols) True: floor that was not seen yet
+        self._count = 0
+        self._side = math.tan(0.5 * camera.hfov_rad)
+        below_m = camera.height_m / math.tan(0.5 * camera.vfov_rad)
+        self._near_m, self._far_m = max(camera.min_depth_m, below_m), camera.max_depth_m
+
+    @property
+    def area_m2(self) -> float:
+        """The area of the cells seen so far."""
+        return self._count * self.frame.cell_m**2
+
+    def look(self, semantic: NDArray[np.uint8], camera_pose: Pose) -> None:
+        """Counts the cells that one frame of true segmentation (h, w) shows for the first time."""
+        if abs(camera_pose.floor_z_m - self._floor_z_m) > _SAME_FLOOR_M or self._near_m >= self._far_m:
+            return
+        window = self.frame.index_of(self._bounds(camera_pose))
+        waiting = self._waiting[window]
+        x, y = self.frame.axes(window)
+        c, s = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
+        dx, dy = (x - camera_pose.x_m)[None, :], (y - camera_pose.y_m)[:, None]
+        ahead, left = c * dx + s * dy, c * dy - s * dx
+        inside = waiting & (ahead > self._near_m) & (ahead <= self._far_m) & (np.abs(left) < self._side * ahead)
+        rows, cols = np.nonzero(inside)
+        shown = semantic[self._pixels(ahead[rows, cols], left[rows, cols], semantic.shape)] == _FLOOR
+        waiting[rows[shown], cols[shown]] = False
+        self.cells[window][rows[shown], cols[shown]] = True
+        self._count += int(np.count_nonzero(shown))
+
+    def _bounds(self, pose: Pose) -> tuple[float, float, float, float]:
+        """Returns the smallest and largest x and y of the floor in the camera's range."""
+        c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+        corners = [(d, side * d * self._side) for d in (self._near_m, self._far_m) for side in (-1.0, 1.0)]
+        x = [pose.x_m + c * ahead - s * left for ahead, left in corners]
+        y = [pose.y_m + s * ahead + c * left for ahead, left in corners]
+        return min(x), min(y), max(x), max(y)
+
+    def _pixels(
+        self, ahead_m: NDArray[np.float64], left_m: NDArray[np.float64], shape: tuple[int, ...]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Returns the rows and columns of the pixels that show points of the floor, in an image of any resolution."""
+        height, width = shape
+        focal_px = self._camera.focal_px * width / self._camera.width_px
+        rows = (0.5 * height + focal_px * self._camera.height_m / ahead_m).astype(np.intp)
+        cols = (0.5 * width - focal_px * left_m / ahead_m).astype(np.intp)
+        return np.minimum(rows, height - 1), np.minimum(cols, width - 1)
+
+
+def floor_cells(frame: GridFrame, floors: list[ConvexPolygon] | None) -> tuple[GridFrame, NDArray[np.bool_]]:
+    """Returns a grid of `CELL_M` that covers another grid, and the mask (rows, cols) of its cells that are floor.
+
+    Args:
+        frame: covers the storey.
+        floors: outlines of its floors; None: all of it is floor.
+    """
+    rows, cols = (math.ceil(size * frame.cell_m / CELL_M) for size in frame.shape)
+    coarse = GridFrame(origin_xy_m=frame.origin_xy_m, shape=(rows, cols), cell_m=CELL_M)
+    if floors is None:
+        return coarse, np.ones(coarse.shape, dtype=np.bool_)
+    floor = np.zeros(coarse.shape, dtype=np.bool_)
+    for polygon in floors:
+        window = coarse.index_of(polygon.bounds_m)
+        x, y = coarse.axes(window)
+        centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
+        floor[window] |= polygon.contains(centres).reshape(len(y), len(x))
+    return coarse, floor
