@@ -119,7 +119,7 @@ class HouseBuilder:
         if rest is not None:
             self.add(replace(placed, item=rest))
         for movable in movables:
-            self._add_movable_body(movable, placed)
+            self.add_movable_body(movable, placed)
 
     def _split(self, item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         """Returns the static and the movable parts of an item; computed once for each design."""
@@ -147,6 +147,19 @@ class HouseBuilder:
             size=[_r(room.rect.width_m / 2), _r(room.rect.depth_m / 2), _r(height_m / 2)],
         )  # fmt: skip
 
+    def add_box_site(self, name: str, low_m: Sequence[float], high_m: Sequence[float]) -> None:
+        """Adds a site that marks the axis-aligned box between two corners; it is never rendered."""
+        self._spec.worldbody.add_site(
+            name=name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,
+            pos=[_r((a + b) / 2) for a, b in zip(low_m, high_m, strict=True)],
+            size=[_r((b - a) / 2) for a, b in zip(low_m, high_m, strict=True)],
+        )  # fmt: skip
+
+    def add_collision_geoms(self, body: str, geoms: Sequence[Geom]) -> None:
+        """Adds geoms to a body that collide and are not rendered."""
+        for geom in geoms:
+            self._add_shape(self._spec.body(body).add_geom(self._collision, type=_SHAPES[geom.shape]), geom)
+
     def add_lamp(self, lamp: Lamp) -> None:
         """Adds a light; it has no label, because it is not visible itself."""
         light = self._spec.worldbody.add_light()
@@ -165,7 +178,8 @@ class HouseBuilder:
             light.exponent = 1.0
             light.attenuation = [1.0, 0.0, 0.06]
 
-    def _add_movable_body(self, movable: Movable, placed: PlacedItem) -> None:
+    def add_movable_body(self, movable: Movable, placed: PlacedItem) -> None:
+        """Adds a body with a free joint at the pose of the item that it was part of."""
         name = self._label(movable.item.category)
         x, y = placed.to_world(*movable.offset_m)
         body = self._spec.worldbody.add_body(

@@ -79,9 +79,9 @@ def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         return _light_parts(item)
     if item.category in ("chair", "stool") and item.mass_kg is not None:
         friction = CASTORS if _has_castors(item) else GLIDES
-        made = _movable(item, item.mass_kg, friction)
+        made = as_movable(item, item.mass_kg, friction)
     elif item.category == "plant":
-        made = _movable(item, _plant_kg(item), POTTERY)
+        made = as_movable(item, _plant_kg(item), POTTERY)
     else:
         return item, ()
     if made.friction * made.mass_kg * GRAVITY_M_S2 > MAX_PUSH_N:
@@ -89,7 +89,7 @@ def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
     return None, (made,)
 
 
-def _movable(item: Item, mass_kg: float, friction: float, *, rolls: bool = False) -> Movable:
+def as_movable(item: Item, mass_kg: float, friction: float, *, rolls: bool = False) -> Movable:
     """Returns an item as a body of this mass and friction."""
     solid = [geom for geom in item.geoms if geom.solid and not _is_foliage(item, geom)]
     collision_geoms = [shape for geom in collision_boxes(solid, item) for shape in _exact_shapes(geom)]
@@ -229,7 +229,7 @@ def _light_parts(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         x, y, _ = _rounded(0.5 * (low + high))
         moved = tuple(replace(geom, pos_m=_rounded(np.subtract(geom.pos_m, (x, y, 0.0)))) for geom in part)
         alone = replace(item, geoms=moved, size_m=_rounded(high - low), surfaces=())
-        made.append(replace(_movable(alone, mass_kg, RUBBER, rolls=rolls), offset_m=(x, y)))
+        made.append(replace(as_movable(alone, mass_kg, RUBBER, rolls=rolls), offset_m=(x, y)))
     return (replace(item, geoms=tuple(rest)) if rest else None), tuple(made)
 
 
