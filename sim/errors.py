@@ -20,7 +20,7 @@ class EpisodeError(ObjectNavError, ValueError):
 
 
 class PhysicsError(ObjectNavError, RuntimeError):
-    """The simulation reached an unphysical state: NaN, an unstable state, a robot that fell."""
+    """The simulation reached an unphysical state: NaN, an unstable state, a robot that tipped over."""
 
 
 class RenderError(ObjectNavError, RuntimeError):

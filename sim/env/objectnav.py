@@ -42,7 +42,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     1 for a STOP that succeeds (a visible point of an instance within 1.0 m, see `SuccessRule`), else 0.
 
     ## End
-    `terminated` at STOP, `truncated` after `max_steps` actions.
+    `terminated` at STOP and when the robot drives over an edge (`end_reason` is `fallen`, no success), `truncated` after
+    `max_steps` actions.
 
     ## Starting state
     `reset(seed=...)` draws an episode of the split, or a start and a goal in the house;

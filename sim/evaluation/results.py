@@ -19,8 +19,11 @@ from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text
 
-SUMMARY_METRICS = ("success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions")
-"""Metrics of a result line that the summary averages."""
+SUMMARY_METRICS = (
+    "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
+    "area_seen_m2", "area_per_metre", "trapped", "collisions",
+)  # fmt: skip
+"""Metrics (`metric_value`) that the summary averages."""
 RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
 """What the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
@@ -116,6 +119,18 @@ class RunDirectory:
             _write_json(file, existing | {"episodes": config["episodes"]})
 
 
+def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
+    """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
+
+    `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
+    that never showed the goal: the mean is the restricted mean time to first sight.
+    """
+    value = line.get("gt_explored" if metric == "never_seen" else metric)
+    if value is None:
+        return None
+    return 1.0 - float(value) if metric == "never_seen" else float(value)
+
+
 def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """Returns the number of episodes and, for each of `SUMMARY_METRICS`, the mean and its 95 % bootstrap interval.
 
@@ -128,11 +143,12 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     summary: dict[str, Any] = {
         "episodes": len(lines),
         "errors": sum(line["end_reason"] == "error" for line in lines),
+        "falls": sum(line["end_reason"] == "fallen" for line in lines),
         "houses": len(set(houses)),
         "ci95_resamples": RESAMPLED_IN_ONE_HOUSE if len(set(houses)) == 1 else RESAMPLED,
     }
     for metric in SUMMARY_METRICS:
-        value = estimate([line.get(metric) for line in lines], houses)
+        value = estimate([metric_value(line, metric) for line in lines], houses)
         summary[metric] = {"mean": value.mean, "ci95": [value.low, value.high]}
     causes = Counter(line["failure"] for line in lines if line.get("failure") is not None)
     summary["failures"] = dict(causes.most_common())

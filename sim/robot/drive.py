@@ -36,6 +36,8 @@ class Motion:
     """Why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
     contacts: tuple[Contact, ...]
     """All contacts of the hull, also those that did not stop the motion."""
+    fell: bool = False
+    """The robot has driven over an edge (`sim.world.world`)."""
 
     @property
     def collided(self) -> bool:

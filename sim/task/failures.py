@@ -3,7 +3,7 @@
 The causes are those of the paper's Table I (section III), where people judged videos; here rules judge what the world
 recorded, so they can be wrong about the intention of the agent. The first rule that applies decides:
 
-1. `misc`: the physics broke.
+1. `misc`: the physics broke. `stairs`: the robot drove over an edge.
 2. The agent called STOP: `false_detection`, unless some frame showed the goal's category (which instance it was is not
    recorded) and any instance of it is within `STOPPED_AT_GOAL_M` in plan: then the agent is assumed to have stopped at
    the right object, but too far from it or behind a wall: `misc`. An agent that gives up, or stops at random, is a
@@ -65,6 +65,8 @@ def cause_of_failure(trajectory: Trajectory) -> Cause | None:
         return None
     if trajectory.end_reason == "error":
         return "misc"
+    if trajectory.end_reason == "fallen":
+        return "stairs"
     seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
     if trajectory.end_reason == "stop":
         nearest_m = trajectory.nearest_instance_m

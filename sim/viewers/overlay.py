@@ -104,7 +104,9 @@ def add_end(frame: Picture, line: Mapping[str, Any]) -> None:
     """Writes the outcome of the episode over the header of a frame."""
     frame[:_HEADER_PX, 600:] = HEADER
     success = bool(line["success"])
-    why = str(line.get("error") or line.get("failure") or line.get("end_reason") or "").replace("_", " ")
+    fell = line.get("end_reason") == "fallen"
+    why = "the robot fell" if fell else str(line.get("error") or line.get("failure") or line.get("end_reason") or "")
+    why = why.replace("_", " ")
     words = f"found after {line['num_steps']} steps" if success else f"not found after {line['num_steps']} steps"
     words += f", SPL {line['spl']:.2f}" if success else f": {why}"
     _write(frame, words, (600, 34), WIDTH_PX - 620, 0.7, (150, 230, 165) if success else (255, 150, 140), 2)

@@ -1,8 +1,8 @@
 """Free space of the robot on one storey, and geodesic distances in it (docs/task.md).
 
-A position is free when it lies on a floor of the house and the robot's disc touches no collision geom between step
-height and robot height. Movable objects count at their positions when the `FreeSpace` is made. Arrays are indexed
-[row, col] = [y, x] on `frame`.
+A position is free when the robot's disc lies on floors of the house, so that no wheel can be beyond the edge of a
+stairwell, and touches no collision geom between step height and robot height. Movable objects count at their positions
+when the `FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on `frame`.
 """
 
 from __future__ import annotations
@@ -33,6 +33,10 @@ STEP_HEIGHT_M = 0.03
 """Lower geoms are no obstacles: they pass under the robot, or the robot climbs them."""
 NEAREST_FREE_M = 0.3
 """A position at most this far from a free cell still has a geodesic distance: the robot may have pushed an object."""
+SEAM_M = 0.06
+"""Narrower gaps between floors are no edges: a wheel crosses them."""
+_RIM_POINTS = 32
+"""Points on the rim of the disc that the exact test looks for a floor at."""
 
 
 class FreeSpace:
@@ -93,9 +97,22 @@ class FreeSpace:
     def is_free(self, x_m: float, y_m: float) -> bool:
         """Returns whether the disc fits at exactly this position."""
         here = np.array([[x_m, y_m]], dtype=np.float64)
-        if not (_covers(self._extent, here) and (self._floors is None or _covers(self._floors, here))):
+        if not _covers(self._extent, here) or not self._stands_on_floor(x_m, y_m):
             return False
         return self.clearance(x_m, y_m, at_most_m=self.radius_m) >= self.radius_m
+
+    def _stands_on_floor(self, x_m: float, y_m: float) -> bool:
+        """Returns whether the floors carry the whole disc at exactly this position, but for seams."""
+        if self._floors is None:
+            return True
+        angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
+        rim = np.array([[x_m, y_m]]) + self.radius_m * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        carried = {step: np.zeros(_RIM_POINTS, dtype=np.bool_) for step in _SEAM_STEPS}
+        for polygon in self._floors:
+            for step, found in carried.items():
+                found |= polygon.contains(rim + np.array(step))
+        here, east, west, north, south = carried.values()
+        return _covers(self._floors, np.array([[x_m, y_m]])) and bool((here | (east & west) | (north & south)).all())
 
     def largest_part(self) -> NDArray[np.bool_]:
         """Returns the mask (rows, cols) of the largest connected part of the free space."""
@@ -155,7 +172,7 @@ class FreeSpace:
         """Returns the mask (rows, cols) of free cells; with rooms, only those connected to the inside of a room."""
         free = self._covered(self._extent)
         if self._floors is not None:
-            free &= self._covered(self._floors)
+            free &= self._away_from_edges(self._covered(self._floors))
         x, y = self.frame.axes()
         for polygon in self._obstacles:
             rows, cols = self.frame.index_of(polygon.bounds_m, self.radius_m)
@@ -169,6 +186,14 @@ class FreeSpace:
         inside = self._covered([rectangle for room in rooms for rectangle in room_rectangles(room)])
         return _connected_to(free, free & inside)
 
+    def _away_from_edges(self, floor: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Returns the cells of the floor (rows, cols) whose disc lies on it; seams and the border of the grid count."""
+        if floor.all():
+            return floor
+        seam, disc = (_disc(round(length_m / self.frame.cell_m)) for length_m in (0.5 * SEAM_M, self.radius_m))
+        whole = cv2.morphologyEx(floor.astype(np.uint8), cv2.MORPH_CLOSE, seam)
+        return floor & (cv2.erode(whole, disc, borderType=cv2.BORDER_CONSTANT, borderValue=1) > 0)
+
     def _covered(self, polygons: Iterable[ConvexPolygon]) -> NDArray[np.bool_]:
         """Returns the mask (rows, cols) of cells whose centre lies in a polygon."""
         covered = np.zeros(self.frame.shape, dtype=np.bool_)
@@ -178,6 +203,13 @@ class FreeSpace:
             centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
             covered[window] |= polygon.contains(centres).reshape(len(y), len(x))
         return covered
+
+
+_SEAM_STEPS = tuple((0.5 * SEAM_M * x, 0.5 * SEAM_M * y) for x, y in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)))
+
+
+def _disc(radius_cells: int) -> NDArray[np.uint8]:
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius_cells + 1,) * 2), np.uint8)
 
 
 def _connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -1,4 +1,4 @@
-"""Finds the floors of a compiled world and the heights of its storeys."""
+"""Finds the floors of a compiled world and the heights of its levels."""
 
 from __future__ import annotations
 
@@ -10,20 +10,23 @@ from sim.houses.labels import Labels
 from sim.interface import MPCAT40_ID
 from sim.robot.body import FLOOR_MASK
 
+LEVEL_M = 0.15
+"""Floors less than this above a level belong to it: rugs, thresholds. A landing or a sunken area is its own level."""
+
 
 def floor_geoms(model: mujoco.MjModel, labels: Labels) -> NDArray[np.intp]:
     """Returns the ids of the geoms that carry wheels."""
     return np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & (model.geom_contype == FLOOR_MASK[0]))
 
 
-def storey_floors(model: mujoco.MjModel, labels: Labels, same_storey_m: float) -> tuple[float, ...]:
-    """Returns the floor heights of the storeys in metres, lowest first; (0.0,) for a world without a static floor.
+def floor_levels(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
+    """Returns the heights of the levels of floors in metres, lowest first; (0.0,) for a world without a static floor.
 
-    Floors less than `same_storey_m` above the floor of a storey (rugs, thresholds) belong to that storey.
+    A storey may have several levels; storeys are told apart by `SuccessRule.same_storey_m`.
     """
     floors: list[float] = []
     for top in sorted(_floor_tops(model, labels).tolist()):
-        if not floors or top - floors[-1] >= same_storey_m:
+        if not floors or top - floors[-1] >= LEVEL_M:
             floors.append(top)
     return tuple(floors) or (0.0,)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,8 @@ from sim.robot.config import RobotConfig
 from sim.robot.contacts import ContactLog
 from sim.robot.drive import Driver, Motion
 from sim.world.compile import compile_world
-from sim.world.storeys import floor_geoms, storey_floors
+from sim.world.storeys import floor_geoms, floor_levels
+from sim.world.support import FloorSupport
 
 _PLACE_ATTEMPTS = 3
 """How often `reset` lifts the wheels out of a floor that they overlap; each rug on a rug needs one more."""
@@ -49,18 +51,19 @@ class World:
         self._body = Body.find(self.model, self.data)
         log = ContactLog(self.model, self.data, self.labels, self._body.hull_geoms)
         self._driver = Driver(self.config, self.model, self.data, self._body, log)
-        self._storeys_m = storey_floors(self.model, self.labels, self.rule.same_storey_m)
+        self._levels_m = floor_levels(self.model, self.labels)
         self._floors = floor_geoms(self.model, self.labels)
+        self._support = FloorSupport(self.model, self.data, self._floors, self.config)
         self._motors = [self.model.actuator(f"{PREFIX}{side}_motor").id for side in ("left", "right")]
         self._floor_friction = self.model.geom_friction[self._floors, 0].copy()
         self._motor_gain = self.model.actuator_gainprm[self._motors, 0].copy()
 
     @property
     def pose(self) -> Pose:
-        """The robot's true pose; its `floor_z_m` is the floor height of the robot's storey."""
+        """The robot's true pose; its `floor_z_m` is the height of the level of floors that the robot is on."""
         x, y, yaw, _, _ = self._body.state()
         z = self._body.z_m
-        return Pose(x, y, wrap_angle(yaw), min(self._storeys_m, key=lambda floor: abs(floor - z)))
+        return Pose(x, y, wrap_angle(yaw), min(self._levels_m, key=lambda floor: abs(floor - z)))
 
     @property
     def camera_pose(self) -> Pose:
@@ -90,12 +93,19 @@ class World:
     def move(self, action: Action) -> Motion:
         """Performs one action in physics, from rest to rest. STOP is a motion of zero.
 
+        `fell` of the motion is True when the robot is lower than before by more than a step, or when its centre of mass
+        is no longer above the hull of its supported wheels and casters: it has driven over an edge. A planar base
+        cannot tip, it would stay on the edge with its hull, which no real robot does.
+
         Raises:
-            PhysicsError: NaN, an unstable state, a robot that tipped over or fell.
+            PhysicsError: NaN, an unstable state, or a robot that tipped over without an edge.
         """
         z_before = self._body.z_m
         motion = self._driver.run(Action(action))
-        self._require_physical(z_before)
+        self._require_finite()
+        if action != Action.STOP and self._has_fallen(z_before):
+            return replace(motion, fell=True)
+        self._require_upright()
         return motion
 
     def _set_conditions(self, conditions: Conditions) -> None:
@@ -149,26 +159,32 @@ class World:
             f"in house '{self.house.name}'"
         )
 
-    def _require_physical(self, z_before: float) -> None:
-        """Raises a PhysicsError when the state after an action is not physical."""
-        fault = self._fault(z_before)
-        if fault:
-            raise PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {fault}")
+    def _has_fallen(self, z_before: float) -> bool:
+        """Returns whether the robot is on its way down, or down, from the floor on which it stood at `z_before`."""
+        x, y, yaw, _, _ = self._body.state()
+        z, physics = self._body.z_m, self.config.physics
+        if z_before - z > physics.max_drop_m:
+            return True
+        if self._body.tilt_rad > physics.max_tilt_rad:  # the origin of a body that lies on its side is not at the floor
+            z = self.pose.floor_z_m
+        return not self._support.carries(x, y, z, yaw)
 
-    def _fault(self, z_before: float) -> str:
-        """Returns a sentence about an unphysical state; "" for a physical one."""
-        physics = self.config.physics
+    def _require_finite(self) -> None:
+        """Raises a PhysicsError when MuJoCo gave a warning, or a position is not finite."""
         for kind, warning in enumerate(self.data.warning):
             if warning.number:
-                return mujoco.mju_warningText(kind, int(warning.lastinfo))
+                raise self._physics_error(mujoco.mju_warningText(kind, int(warning.lastinfo)))
         if not np.isfinite(self.data.qpos).all():
-            return "a position is not finite."
-        if self._body.tilt_rad > physics.max_tilt_rad:
-            return f"the robot tipped over, it leans {np.degrees(self._body.tilt_rad):.0f} deg."
-        fallen_m = z_before - self._body.z_m
-        if fallen_m > physics.max_drop_m:
-            return f"the robot fell {fallen_m:.2f} m."
-        return ""
+            raise self._physics_error("a position is not finite.")
+
+    def _require_upright(self) -> None:
+        """Raises a PhysicsError when the robot leans too much."""
+        if self._body.tilt_rad > self.config.physics.max_tilt_rad:
+            lean_deg = np.degrees(self._body.tilt_rad)
+            raise self._physics_error(f"the robot tipped over, it leans {lean_deg:.0f} deg.")
+
+    def _physics_error(self, fault: str) -> PhysicsError:
+        return PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {fault}")
 
 
 def _disable_log_file() -> None:

@@ -62,6 +62,14 @@ def two_storeys() -> House:
     return House("two_storeys", house.spec)
 
 
+def ledge(drop_m: float) -> House:
+    """A floor that ends at x = 0, and beyond it another one that is lower by `drop_m`; a bed on the upper one."""
+    house = with_box(House("ledge", mujoco.MjSpec()), "floor_00", centre_m=(-2, 0, -0.05), half_m=(2, 2, 0.05))
+    house = with_box(house, "floor_01", centre_m=(2, 0, -drop_m - 0.05), half_m=(2, 2, 0.05))
+    house = with_box(house, "bed_00", centre_m=(-3.5, 1.0, 0.25), half_m=(0.5, 1.0, 0.25))
+    return House("ledge", house.spec)
+
+
 def with_box(
     house: House,
     name: str,

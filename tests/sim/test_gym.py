@@ -16,8 +16,9 @@ from gymnasium import wrappers
 from gymnasium.utils.env_checker import check_env
 
 import sim.gym  # noqa: F401 - registers
+from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import ledge, room, with_box
 
 ROOT = Path(__file__).resolve().parents[2]
 ENV_ID = "stubborn/ObjectNav-v0"
@@ -186,3 +187,14 @@ def test_the_example_runs_both_agents_in_one_episode() -> None:
     ends = [play(name, max_steps=4) for name in ("random", "stubborn")]
     assert ends[0]["episode_id"] == ends[1]["episode_id"]
     assert [end["num_steps"] for end in ends] == [end["episode"]["l"] for end in ends] == [4, 4]
+
+
+def test_a_fall_terminates_the_episode(tmp_path: Path) -> None:
+    file = tmp_path / "ledge.xml"
+    file.write_text(ledge(0.6).spec.to_xml())
+    env = gymnasium.make(ENV_ID, house=file, goal="bed", start=Pose(-0.4, 0.0, 0.0), sensors=("depth",))
+    env.reset(seed=0)
+    steps = [env.step(Action.MOVE_FORWARD) for _ in range(2)]
+    assert [(terminated, truncated) for _, _, terminated, truncated, _ in steps] == [(False, False), (True, False)]
+    assert (steps[1][4]["end_reason"], steps[1][1]) == ("fallen", 0.0)
+    env.close()

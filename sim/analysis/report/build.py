@@ -210,6 +210,9 @@ def _notes(run: Run, trajectories: Trajectories, index: int) -> Iterable[str]:
     errors = sum(line.get("end_reason") == "error" for line in run.lines.values())
     if errors:
         yield f"{errors} of {count} episodes ended with an error; they count as failures and are listed below."
+    falls = sum(line.get("end_reason") == "fallen" for line in run.lines.values())
+    if falls:
+        yield f"In {falls} of {count} episodes the robot drove over an edge and fell."
     if len(run.config.get("codes") or []) > 1:
         yield "The episodes were run by more than one version of the code."
     missing = sum(of_runs[index] is None for of_runs in trajectories.values()) - errors

@@ -28,13 +28,14 @@ MEANING: Mapping[str, str] = {
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
     "trapped": f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position.",
     "explore": "The goal never came into view before the steps ran out.",
-    "stairs": "The goal is on another storey.",
+    "stairs": "The goal is on another storey, or the robot drove over an edge.",
     "misc": "No other rule applies: stopped short of the goal, ran out of steps on the path to it, or an error.",
 }
 """The meaning of each cause of failure (the rules are in `sim.task.failures`)."""
 ENDS: Mapping[str, str] = {
     "stop": "called STOP",
     "max_steps": "the steps ran out",
+    "fallen": "the robot drove over an edge",
     "error": "the episode ended with an error",
 }
 
@@ -134,7 +135,9 @@ def _explore(line: Line, trajectory: Trajectory) -> str:
     return f"{_never_seen(line)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
 
 
-def _stairs(line: Line, _: Trajectory) -> str:
+def _stairs(line: Line, trajectory: Trajectory) -> str:
+    if trajectory.end_reason == "fallen":
+        return f"The robot drove over an edge at step {trajectory.num_steps} and fell. {_view(line, trajectory)}"
     return f"No {_goal(line)} is on the storey where the episode starts."
 
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
+from sim.evaluation.results import summarise
 from sim.evaluation.rollout import episode_seed, play_episode
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import ledge, room, with_box
 
 SMALL = CameraModel(width_px=64, height_px=48)
 EPISODE = Episode("sofa_room_0", "sofa_room", "sofa", Pose(-1.0, 0.0, 0.0))
@@ -77,3 +79,15 @@ def test_an_agents_seed_depends_on_run_and_episode_only() -> None:
     seeds = {episode_seed(run, name) for run in (0, 1) for name in ("a", "b")}
     assert len(seeds) == 4
     assert episode_seed(1, "a") == episode_seed(1, "a")
+
+
+def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
+    file = tmp_path / "ledge.xml"
+    file.write_text(ledge(0.6).spec.to_xml())
+    env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL)
+    episode = replace(EPISODE, house="ledge", goal="bed", start=Pose(-0.4, 0.0, 0.0))
+    line = play_episode(env, Script([Action.MOVE_FORWARD] * 5), episode, seed=0)
+    env.close()
+    assert (line["end_reason"], line["failure"], line["num_steps"]) == ("fallen", "stairs", 2)
+    assert "error" not in line
+    assert summarise([line])["falls"] == 1

@@ -232,3 +232,32 @@ def test_the_rule_says_which_rooms_belong_to_a_storey():
     ]
     assert spaces[0].frame.shape == (180, 180)  # 4 m and 0.25 m on either side, in cells of 2.5 cm
     assert spaces[1].frame.shape != (180, 180)  # no room of this storey: the walls bound it
+
+
+def floor_with_hole() -> House:
+    """Returns four floors around a hole of 2 x 2 m in the middle, without walls."""
+    house = House("hole", mujoco.MjSpec())
+    for number, (x, y, hx, hy) in enumerate(((-2, 0, 1, 3), (2, 0, 1, 3), (0, -2, 1, 1), (0, 2, 1, 1))):
+        house = with_box(house, f"floor_{number:02d}", centre_m=(x, y, -0.05), half_m=(hx, hy, 0.05))
+    return house
+
+
+def test_nothing_is_free_over_a_hole_nor_where_the_disc_overhangs_its_edge():
+    space = free_space(floor_with_hole())
+    x, y = space.frame.axes()
+    beyond = np.hypot(np.maximum(np.abs(x) - 1.0, 0.0)[None, :], np.maximum(np.abs(y) - 1.0, 0.0)[:, None])
+    assert not (space.free & (beyond < RADIUS_M - 0.03)).any()
+    beside = (np.abs(x)[None, :] > 1.0 + RADIUS_M + 0.03) & (np.abs(y)[:, None] < 2.5)
+    inside = np.abs(x)[None, :] < 3.0 - 0.5
+    assert space.free[beside & inside].all()
+    for x_m, free in ((-1.2, True), (-1.15, False), (0.0, False)):
+        assert space.is_free(x_m, 0.0) == free
+
+
+def test_a_seam_between_two_floors_is_no_edge():
+    house = House("seam", mujoco.MjSpec())
+    for number, x in enumerate((-1.01, 1.01)):
+        house = with_box(house, f"floor_{number:02d}", centre_m=(x, 0, -0.05), half_m=(1, 1, 0.05))
+    space = free_space(house)
+    assert space.is_free(-0.1, 0.0)
+    assert space.free[tuple(space.frame.to_cells((-0.1, 0.0)))]
