@@ -7,7 +7,7 @@ the number of tries is limited and reported.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Pool
 from sim.housegen.furniture_source import FurnitureSource
+from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
 from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
 from sim.housegen.placement import RoomLayout
@@ -60,7 +61,9 @@ class HouseConfig:
     storeys: int = 1
     """Number of storeys."""
     hazards: tuple[str, ...] = ()
-    """Kinds of hazards that are placed where paths lead."""
+    """Families of hazards (`sim.housegen.hazards.FAMILIES`) that are placed where paths lead."""
+    hazard_count: int | None = None
+    """Number of hazards; it depends on the area when None."""
 
     def __post_init__(self) -> None:
         if self.pool not in _POOL_STREAM:
@@ -70,6 +73,9 @@ class HouseConfig:
         unknown = [room for room in self.rooms if room not in ROOM_RULES]
         if unknown:
             raise ConfigError(f"HouseConfig.rooms: no room kind '{unknown[0]}'. There is: {', '.join(ROOM_RULES)}.")
+        unknown = [family for family in self.hazards if family not in FAMILIES]
+        if unknown:
+            raise ConfigError(f"HouseConfig.hazards: no hazards '{unknown[0]}'. There is: {', '.join(FAMILIES)}.")
         if self.area_m2 is not None and not AREA_M2[0] <= self.area_m2 <= AREA_M2[1]:
             raise ConfigError(
                 f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."
@@ -166,6 +172,7 @@ class _Draft:
     structure: list[PlacedItem]
     layouts: list[RoomLayout]
     lamps: list[Lamp]
+    hazards: tuple[PlacedHazard, ...] = ()
 
 
 def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
@@ -185,7 +192,12 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
         furnish(layout, source)
-    return _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m))
+    draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m))
+    if not config.hazards:
+        return draft
+    bare = _build(draft, config, BYTES_PER_GEOM[0])
+    hazards = draw_hazards(rng, config.hazards, config.pool, bare, openings, config.hazard_count)
+    return replace(draft, hazards=hazards)
 
 
 def _draw_plan(
@@ -242,6 +254,8 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.Mj
                 builder.add_movable(placement.placed)
             else:
                 builder.add(placement.placed)
+    for number, hazard in enumerate(draft.hazards):
+        hazard.add_to(builder, number)
     for lamp in draft.lamps:
         builder.add_lamp(lamp)
     return builder.spec

@@ -213,8 +213,8 @@ _HAZARDS: tuple[_Shape, ...] = (
     ("lshape", 190.0, ("gym", "office")),
     ("flat", 82.0, ()),
 )
-HAZARD_KINDS = ("glass", "sliding", "ajar", "slab", "feet", "scan", "overhang", "loose")
-"""Kinds of hazards in the houses of the split `hazards`."""
+HAZARD_KINDS = ("glass", "slab", "overhang", "legs", "scan", "loose")
+"""Families of hazards (`sim.housegen.hazards.FAMILIES`) in the houses of the split `hazards`."""
 
 
 def _heldout(split: str, first_seed: int, shapes: tuple[_Shape, ...]) -> tuple[Recipe, ...]:
