@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
 from sim.analysis.tables import Cell
-from sim.evaluation.bootstrap import Value, estimate, paired_difference
+from sim.evaluation.bootstrap import estimate, paired_difference
+from sim.evaluation.results import metric_value
 
 
 @dataclass(frozen=True)
@@ -21,19 +22,13 @@ class Metric:
 
     def cell(self, lines: Sequence[Line]) -> Cell:
         """Returns the mean over lines."""
-        values = [line_value(line, self.key) for line in lines]
+        values = [metric_value(line, self.key) for line in lines]
         return Cell(estimate(values, houses_of(lines)), self.percent, self.digits)
 
     def difference(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
         """Returns the mean of second minus first; both hold the same episodes in the same order."""
-        a, b = ([line_value(line, self.key) for line in lines] for lines in (first, second))
+        a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
         return Cell(paired_difference(a, b, houses_of(first)), self.percent, self.digits, difference=True)
-
-
-def line_value(line: Line, key: str) -> Value:
-    """Returns the number under this key of a result line; None where there is none."""
-    value = line.get(key)
-    return None if value is None else float(value)
 
 
 def houses_of(lines: Sequence[Line]) -> list[str]:
@@ -47,3 +42,8 @@ EXPLORED = Metric("GT exploration %", "gt_explored", percent=True)
 TRAPPED = Metric("trapped %", "trapped", percent=True)
 COLLISIONS = Metric("collisions", "collisions", digits=2)
 STEPS = Metric("steps", "num_steps", digits=0)
+FIRST_SIGHT = Metric("steps to first sight", "steps_to_first_sight", digits=0)
+"""Restricted mean: an episode that never shows the goal counts with the step limit."""
+NEVER_SEEN = Metric("never seen %", "never_seen", percent=True)
+AREA = Metric("area seen, m2", "area_seen_m2")
+AREA_PER_METRE = Metric("area per metre, m2/m", "area_per_metre", digits=2)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from sim.episodes.splits import Episode, write_split
+from sim.evaluation.results import SUMMARY_METRICS
 from sim.geometry.pose import Pose
 from sim.paths import code_hash
 from sim.task.failures import cause_of_failure
@@ -71,11 +72,12 @@ def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_pa
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
     wanted = (
         "episode_id house goal agent semantics seed success spl soft_spl distance_to_goal num_steps path_length "
-        "shortest_path collisions gt_explored trapped failure end_reason"
+        "shortest_path collisions gt_explored first_seen_step steps_to_first_sight area_seen_m2 area_per_metre trapped "
+        "failure end_reason"
     )
     assert set(wanted.split()) <= set(line)
     assert summary["episodes"] == 2
-    for metric in ["success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "trapped", "collisions"]:
+    for metric in SUMMARY_METRICS:
         low, high = summary[metric]["ci95"]
         assert low <= summary[metric]["mean"] <= high
     config = json.loads((tmp_path / "config.json").read_text())
@@ -116,6 +118,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
         assert trajectory.moved_m.sum() == pytest.approx(line["path_length"], abs=1e-4)
         assert int(trajectory.collided.sum()) == line["collisions"]
         assert bool((trajectory.goal_share >= EXPLORED_SHARE).any()) == line["gt_explored"]
+        assert trajectory.first_seen_step == line["first_seen_step"]
         assert cause_of_failure(trajectory) == line["failure"]
         assert (line["failure"] is None) == (line["success"] == 1.0)
         assert {"split", "noise", "profile", "versions", "start"} <= set(trajectory.about)

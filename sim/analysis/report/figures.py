@@ -7,7 +7,20 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
-from sim.analysis.metrics import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric, houses_of
+from sim.analysis.metrics import (
+    AREA,
+    AREA_PER_METRE,
+    COLLISIONS,
+    EXPLORED,
+    FIRST_SIGHT,
+    NEVER_SEEN,
+    SPL,
+    STEPS,
+    SUCCESS,
+    TRAPPED,
+    Metric,
+    houses_of,
+)
 from sim.analysis.report.words import MEANING, outcome
 from sim.analysis.tables import Cell
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
@@ -20,6 +33,10 @@ METRICS = (
     Metric("soft SPL", "soft_spl", digits=3),
     Metric("distance to goal, m", "distance_to_goal", digits=2),
     EXPLORED,
+    NEVER_SEEN,
+    FIRST_SIGHT,
+    AREA,
+    AREA_PER_METRE,
     TRAPPED,
     COLLISIONS,
     STEPS,

@@ -21,6 +21,7 @@ from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_markdown, 
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
+from tools.compare_runs import compare
 
 
 def houses(count: int) -> list[str]:
@@ -219,3 +220,13 @@ def test_options_that_change_no_result_are_no_difference_between_runs(tmp_path: 
     assert differences_table(*runs).rows == [("config.robot.radius_m", ["(absent)", "0.2"])]
     assert differences_table(runs[0], runs[0]).notes == ("The configurations are equal.",)
     to_rich(differences_table(*runs))
+
+
+def test_a_run_from_before_the_time_to_first_sight_can_be_compared_and_has_no_value_for_it(tmp_path: Path) -> None:
+    common = {"success": 1.0, "gt_explored": True, "end_reason": "stop"}
+    older = read_run(run_folder(tmp_path / "older", "ab", **common))
+    newer = read_run(run_folder(tmp_path / "newer", "ab", **common, steps_to_first_sight=7, area_seen_m2=20.0))
+    cells = dict(compare(older, newer).rows)["steps to first sight"]
+    assert [cell.text() for cell in cells if isinstance(cell, Cell)] == ["-", "7 [7, 7]*", "-"]
+    cells = dict(compare(newer, newer).rows)["area seen, m2"]
+    assert [cell.mean_text for cell in cells if isinstance(cell, Cell)] == ["20.0", "20.0", "+0.0"]

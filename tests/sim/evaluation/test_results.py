@@ -25,6 +25,26 @@ def line(number: int, **metrics: object) -> dict:
     return base | {"gt_explored": 1.0, "trapped": 0.0, "collisions": 3, "end_reason": "stop"} | metrics
 
 
+def test_the_time_to_first_sight_counts_episodes_that_never_saw_the_goal_with_the_limit() -> None:
+    seen = {"gt_explored": True, "first_seen_step": 20, "steps_to_first_sight": 20, "area_per_metre": 4.0}
+    never = {"gt_explored": False, "first_seen_step": None, "steps_to_first_sight": 500, "area_per_metre": 2.0}
+    summary = summarise([line(0, **seen), line(1, **seen), line(2, **never), line(3, **seen)])
+    assert summary["steps_to_first_sight"]["mean"] == 140.0
+    assert summary["never_seen"]["mean"] == 0.25
+    assert summary["never_seen"]["mean"] == 1.0 - summary["gt_explored"]["mean"]
+    assert summary["area_per_metre"]["mean"] == 3.5
+    low, high = summary["steps_to_first_sight"]["ci95"]
+    assert low < 140.0 < high
+
+
+def test_lines_of_older_versions_have_no_time_to_first_sight_and_do_not_count() -> None:
+    older = summarise([line(0), line(1)])
+    assert older["steps_to_first_sight"] == older["area_seen_m2"] == {"mean": None, "ci95": [None, None]}
+    assert older["never_seen"]["mean"] == 0.0
+    mixed = summarise([line(0), line(1, steps_to_first_sight=30)])
+    assert mixed["steps_to_first_sight"]["mean"] == 30.0
+
+
 def test_a_run_that_was_killed_while_writing_a_line_goes_on_without_that_line(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG)
     run.append(line(1))
