@@ -122,6 +122,16 @@ MATERIALS: dict[str, Material] = {
     "books": _material(
         "ffffff f2ece0", "fffaf4 e6e2e8", textures=(("books_classic", "books_paperback"), ("books_pastel",))
     ),
+    "small": _material(
+        "ffffff",
+        "ffffff",
+        textures=(
+            ("small_red", "small_blue", "small_green", "small_sand"),
+            ("small_plum", "small_teal", "small_rose", "small_moss"),
+        ),
+        specular=0.2,
+        shininess=0.3,
+    ),
     "pot": _material("b5653f e6e2d8 4a4c50 8a9a94 c9a987", "8f4a3a d9cfe0 2f4a4f a3a08f", specular=0.2),
     "soil": _material("3a2a20", "42342a"),
     "foliage": _material("3f7a3a 2f6232 5a8f42 4a7f55 79983f", "35664f 6a9a5f 8aa05a 27503a"),

@@ -55,4 +55,6 @@ class AssetTable:
             made.uservert = np.rint(mesh.vertices_m / MESH_UNIT_M).ravel().tolist()
             if len(mesh.faces):
                 made.userface = mesh.faces.astype(int).ravel().tolist()
+            if mesh.texture_uv is not None:
+                made.usertexcoord = mesh.texture_uv.ravel().tolist()
         return self._meshes[mesh.name]

@@ -155,6 +155,12 @@ def paper(rng: np.random.Generator, px: int, *, stripes: int, contrast: float) -
     return np.where(np.mod(x * stripes, 1.0) < 0.5, 0.96, 0.96 - contrast) + 0.01 * noise(rng, px, 1, 1)
 
 
+def palette(rng: np.random.Generator, px: int, *, colours: tuple[str, ...]) -> Image:
+    """Returns upright stripes of equal width, one of each hexadecimal colour."""
+    rgb = np.array([[int(colour[i : i + 2], 16) / 255 for i in (0, 2, 4)] for colour in colours])
+    return np.broadcast_to(np.repeat(rgb, px // len(colours), axis=0), (px, px, 3))
+
+
 def motif(rng: np.random.Generator, px: int, *, across: int, contrast: float) -> Image:
     """Returns wallpaper with staggered small flowers."""
     y, x = _grid(px)

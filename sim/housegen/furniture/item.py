@@ -48,6 +48,8 @@ class MeshShape:
     """Kind and hash of the content."""
     vertices_m: NDArray[np.float64]  # (n, 3)
     faces: NDArray[np.int32]  # (m, 3), counter-clockwise from outside; (0, 3): the convex hull of the vertices
+    texture_uv: NDArray[np.float64] | None = None  # (n, 2)
+    """Texture coordinates of the vertices, in widths and heights of the picture; None without a picture of its own."""
 
 
 @dataclass(frozen=True)
