@@ -1,4 +1,4 @@
-"""Small procedural meshes: chamfered boxes, lofts, bent strips, foliage; each under 100 vertices.
+"""Small procedural meshes: chamfered boxes, lofts, bent strips, foliage; each at most 250 vertices.
 
 Vertices are rounded to 0.1 mm, so that the same parameters give the same mesh, the same name and short XML.
 MuJoCo collides a mesh by its convex hull; meshes without faces are also rendered as their hull.
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.housegen.furniture.item import MeshShape
 
-MAX_VERTICES = 100
+MAX_VERTICES = 250
 """Limit for one mesh; it keeps the XML of a house small."""
 
 
@@ -79,10 +79,11 @@ def frustum(
     return named_mesh("frustum", vertices)
 
 
-def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> MeshShape:
+def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False, loop: bool = False) -> MeshShape:
     """Returns a surface over a stack of rings, closed at both ends; rings may go down again to form a bowl.
 
-    With `hull`, the mesh has no faces and MuJoCo uses the convex hull, which halves the XML of a convex loft.
+    With `hull`, the mesh has no faces and MuJoCo uses the convex hull, which halves the XML of a convex loft. With
+    `loop`, the last ring is joined to the first one instead: a body with a hole, such as the seat of a toilet.
     """
     angles = math.pi / 4 + np.arange(segments) * (math.tau / segments)  # a corner of a rounded square is a vertex
     vertices = []
@@ -94,10 +95,13 @@ def loft(rings: Sequence[Ring], segments: int = 12, *, hull: bool = False) -> Me
     if hull:
         return named_mesh("loft", np.vstack(vertices))
     faces: list[tuple[int, int, int]] = []
-    for level in range(len(rings) - 1):
+    count = len(rings) * segments
+    for level in range(len(rings) if loop else len(rings) - 1):
         for i in range(segments):
             a, b = level * segments + i, level * segments + (i + 1) % segments
-            faces += [(a, b, b + segments), (a, b + segments, a + segments)]
+            faces += [(a, b, (b + segments) % count), (a, (b + segments) % count, (a + segments) % count)]
+    if loop:
+        return named_mesh("loft", np.vstack(vertices), faces)
     last = (len(rings) - 1) * segments
     for i in range(1, segments - 1):
         faces += [(0, i + 1, i), (last, last + i, last + i + 1)]

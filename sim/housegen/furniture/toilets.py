@@ -5,47 +5,80 @@ Sizes follow Neufert, Architects' Data: 0.35-0.42 m wide, 0.60-0.72 m deep, seat
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
 from sim.housegen.furniture.workbench import Workbench
 
+Profile = tuple[tuple[float, float, float, float], ...]
+"""Rings of a pan, each with its height as a share of the height of the rim, its half depth and half width as shares of
+those of the rim, and how far it is moved to the wall as a share of the half depth of the rim."""
+PEDESTAL: Profile = ((0.0, 0.66, 0.62, 0.3), (0.12, 0.6, 0.56, 0.3), (0.5, 0.62, 0.6, 0.28), (0.78, 0.9, 0.92, 0.06))
+"""A narrow foot under a wide bowl."""
+SKIRTED: Profile = ((0.0, 0.86, 0.78, 0.12), (0.3, 0.84, 0.78, 0.13), (0.75, 0.93, 0.92, 0.05))
+"""Nearly straight sides."""
+_SEAT_M = 0.020
+"""Thickness of a seat."""
 
-def _pan(w: Workbench, x0: float, x1: float, half: float, seat: float, look: Look, *, base: float = 0.6) -> None:
-    """Adds a bowl from the wall side x0 to its nose x1, with a seat ring and a lid up to height `seat`."""
-    middle, r = x1 - 0.5 * (x1 - x0), 0.5 * (x1 - x0)
-    rings = [
-        Ring(0.0, base * r, base * half, middle - 0.15 * r, power=2.6),
-        Ring(0.35 * seat, (base - 0.04) * r, (base - 0.08) * half, middle - 0.15 * r, power=2.4),
-        Ring(seat - 0.10, 0.95 * r, 0.95 * half, middle, power=2.2),
-        Ring(seat - 0.04, r, half, middle, power=2.2),
+
+def water_look(ceramic: Look) -> Look:
+    """Returns the look of shallow water on ceramic: a little darker and bluer."""
+    r, g, b, a = ceramic.rgba
+    return replace(ceramic, rgba=(round(0.76 * r, 3), round(0.86 * g, 3), round(0.92 * b, 3), a), texture=None)
+
+
+def bowl_rings(rim: float, r: float, half: float, middle: float, power: float) -> list[Ring]:
+    """Returns the rings of the hollow of a pan, from its rim at the height `rim` inwards and down to its bottom."""
+    return [
+        Ring(rim, 0.76 * r, 0.74 * half, middle + 0.02, power=power),
+        Ring(rim - 0.06, 0.66 * r, 0.64 * half, middle + 0.02, power=power),
+        Ring(rim - 0.15, 0.34 * r, 0.34 * half, middle, power=power),
     ]
-    w.mesh(loft(rings, 14, hull=True), (0.0, 0.0, 0.0), look)
 
 
-def _seat_and_lid(w: Workbench, x0: float, x1: float, half: float, seat: float, look: Look, *, open_: bool) -> None:
-    middle, r = 0.5 * (x0 + x1), 0.5 * (x1 - x0)
-    rings = [
-        Ring(seat - 0.042, r, half, middle, power=2.2),
-        Ring(seat, r, half, middle, power=2.2),
-        Ring(seat, 0.66 * r, 0.64 * half, middle + 0.02, power=2.0),
-        Ring(seat - 0.03, 0.60 * r, 0.58 * half, middle + 0.02, power=2.0),
-    ]
+def _toilet(
+    w: Workbench, x: tuple[float, float], half: float, seat: float, look: Look, cover: Look, *, profile: Profile,
+    open_: bool, seat_x: float, low: float = 0.0, power: float = 2.3,
+) -> None:  # fmt: skip
+    """Adds a pan with its seat, whose top is at the height `seat`, and its lid, which is up if `open_`.
+
+    Args:
+        w: the workbench.
+        x: wall side and nose of the pan.
+        half: half width of the pan.
+        seat: height of the top of the seat.
+        look: look of the pan.
+        cover: look of the seat and the lid.
+        profile: outline of the pan below its rim.
+        open_: whether the lid is up, so that the bowl is visible.
+        seat_x: the wall side of the seat.
+        low: height of the lowest point of the pan.
+        power: shape of the rings; 2 is an ellipse.
+    """
+    middle, r, rim = 0.5 * (x[0] + x[1]), 0.5 * (x[1] - x[0]), seat - _SEAT_M
+    rings = [Ring(low + z * (rim - low), a * r, b * half, middle - back * r, power=power) for z, a, b, back in profile]
+    rings += [Ring(rim - 0.03, r, half, middle, power=power), Ring(rim, 0.985 * r, 0.97 * half, middle, power=power)]
+    middle, r = 0.5 * (seat_x + x[1]), 0.5 * (x[1] - seat_x)
     if open_:
-        w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), look)
-        w.ellipsoid((middle + 0.02, 0.0, seat - 0.028), (0.58 * r, 0.56 * half, 0.003), w.look("screen"), solid=False)
-        w.mesh(
-            loft([Ring(0.0, r, half, power=2.2), Ring(0.018, 0.97 * r, 0.97 * half, power=2.2)], 16, hull=True),
-            (x0 + 0.015, 0.0, seat + r),
-            look,
-            tilt=-1.48,
-        )
+        rings += bowl_rings(rim, r, half, middle, power)
+        w.ellipsoid((middle, 0.0, rim - 0.135), (0.39 * r, 0.38 * half, 0.004), water_look(look), solid=False)
+    w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), look)
+    flat = [Ring(0.0, r, half, power=power), Ring(_SEAT_M, 0.985 * r, 0.98 * half, power=power)]
+    hole = [Ring(z, 0.66 * r, 0.64 * half, 0.02, power=2.0) for z in (_SEAT_M, 0.0)]
+    lid = [Ring(0.0, 0.99 * r, 0.99 * half, power=power), Ring(0.012, 0.99 * r, 0.99 * half, power=power)]
+    lid = loft([*lid, Ring(0.024, 0.9 * r, 0.9 * half, power=power)], 16, hull=True)
+    if open_:
+        w.mesh(loft([*flat, *hole], 16, loop=True), (middle, 0.0, rim), cover)
+        w.mesh(lid, (seat_x + 0.035, 0.0, seat + r - 0.005), cover, tilt=-1.48)
     else:
-        w.mesh(
-            loft([*rings[:2], Ring(seat + 0.02, 0.96 * r, 0.96 * half, middle, power=2.2)], 16, hull=True),
-            (0.0, 0.0, 0.0),
-            look,
-        )
+        w.mesh(loft(flat, 16, hull=True), (middle, 0.0, rim), cover)
+        w.mesh(lid, (middle, 0.0, seat + 0.002), cover)
+    for side in BOTH_SIDES:
+        w.box((seat_x - 0.01, seat_x + 0.035), (side * 0.08 - 0.015, side * 0.08 + 0.015), (rim, seat + 0.006), cover,
+              solid=False)  # fmt: skip
 
 
 def close_coupled(w: Workbench) -> None:
@@ -56,9 +89,9 @@ def close_coupled(w: Workbench) -> None:
     w.mesh(chamfered_box((0.18, 2 * half + 0.02, 0.36), 0.025), (x0 + 0.09, 0.0, seat + 0.16), white)
     w.mesh(chamfered_box((0.20, 2 * half + 0.04, 0.035), 0.012), (x0 + 0.10, 0.0, seat + 0.355), white)
     w.cylinder((x0 + 0.10, 0.0), (seat + 0.37, seat + 0.38), 0.025, w.look("chrome"), solid=False)
-    w.box((x0 + 0.02, x0 + 0.25), (-0.10, 0.10), (0.0, seat - 0.01), white)
-    _pan(w, x0 + 0.15, 0.5 * depth, half, seat, white)
-    _seat_and_lid(w, x0 + 0.19, 0.5 * depth, half, seat, white, open_=w.chance(0.5))
+    w.box((x0 + 0.02, x0 + 0.28), (-0.10, 0.10), (0.0, seat - 0.022), white)
+    _toilet(w, (x0 + 0.15, 0.5 * depth), half, seat, white, white, profile=PEDESTAL, open_=w.chance(0.5),
+            seat_x=x0 + 0.2)  # fmt: skip
 
 
 def wall_hung(w: Workbench) -> None:
@@ -67,23 +100,17 @@ def wall_hung(w: Workbench) -> None:
     boxed = w.look("lacquer")
     w.box((-0.36, -0.18), (-0.42, 0.42), (0.0, 1.12), boxed)
     w.box((-0.18, -0.172), (-0.12, 0.12), (0.90, 1.06), w.look("chrome"), solid=False)
-    rings = [
-        Ring(0.10, 0.12, 0.10, -0.08, power=2.6),
-        Ring(0.20, 0.20, 0.85 * half, 0.0, power=2.4),
-        Ring(seat - 0.04, 0.265, half, 0.075, power=2.4),
-    ]
-    w.mesh(loft(rings, 14, hull=True), (0.0, 0.0, 0.0), white)
-    w.box((-0.19, -0.04), (-0.8 * half, 0.8 * half), (0.16, seat - 0.04), white)
-    _seat_and_lid(w, -0.17, 0.34, half, seat, white, open_=w.chance(0.3))
+    profile = ((0.0, 0.42, 0.5, 0.5), (0.2, 0.68, 0.78, 0.28), (0.6, 0.92, 0.96, 0.06))
+    w.box((-0.19, -0.04), (-0.8 * half, 0.8 * half), (0.16, seat - 0.025), white)
+    _toilet(w, (-0.19, 0.34), half, seat, white, white, profile=profile, open_=w.chance(0.5), seat_x=-0.13, low=0.08)
 
 
 def high_cistern(w: Workbench) -> None:
     """Builds an old toilet with a high cistern on the wall, a pipe and a wooden seat."""
     white, wood, brass, half, seat = w.look("ceramic"), w.look("wood"), w.look("brass"), 0.19, w.length(0.41, 0.44)
     x0 = -0.30
-    w.box((x0 + 0.02, x0 + 0.20), (-0.10, 0.10), (0.10, seat - 0.05), white)
-    _pan(w, x0 + 0.06, 0.30, half, seat, white, base=0.55)
-    _seat_and_lid(w, x0 + 0.10, 0.30, half, seat, wood, open_=True)
+    w.box((x0 + 0.02, x0 + 0.24), (-0.09, 0.09), (0.12, seat - 0.03), white)
+    _toilet(w, (x0 + 0.06, 0.30), half, seat, white, wood, profile=PEDESTAL, open_=True, seat_x=x0 + 0.10)
     w.rod((x0 + 0.04, 0.0, 0.30), (x0 + 0.04, 0.0, 1.70), 0.018, brass)
     w.box((x0, x0 + 0.19), (-0.24, 0.24), (1.68, 2.0), white)
     w.box((x0, x0 + 0.20), (-0.25, 0.25), (2.0, 2.02), wood)
@@ -103,9 +130,8 @@ def low_level(w: Workbench) -> None:
     w.bar((x0 + 0.205, -0.15, 0.96), (x0 + 0.205, -0.07, 0.94), 0.012, 0.012, chrome, solid=False)
     w.rod((x0 + 0.09, 0.0, 0.28), (x0 + 0.09, 0.0, 0.72), 0.022, chrome)
     w.rod((x0 + 0.09, 0.0, 0.30), (x0 + 0.22, 0.0, 0.30), 0.022, chrome, round_ends=True)
-    w.box((x0 + 0.03, x0 + 0.2), (-0.09, 0.09), (0.0, 0.28), white)
-    _pan(w, x0 + 0.10, 0.32, half, seat, white)
-    _seat_and_lid(w, x0 + 0.16, 0.32, half, seat, white, open_=w.chance(0.5))
+    w.box((x0 + 0.03, x0 + 0.26), (-0.09, 0.09), (0.0, 0.29), white)
+    _toilet(w, (x0 + 0.10, 0.32), half, seat, white, white, profile=PEDESTAL, open_=w.chance(0.5), seat_x=x0 + 0.16)
 
 
 def square_modern(w: Workbench) -> None:
@@ -113,31 +139,10 @@ def square_modern(w: Workbench) -> None:
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.35, 0.38), w.length(0.41, 0.44)
     depth = w.length(0.62, 0.68)
     x0 = -0.5 * depth
-    w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.5 * (depth - 0.12), 0.92 * half, 0.02, power=5),
-                Ring(seat - 0.04, 0.5 * (depth - 0.02), half, 0.01, power=5),
-            ],
-            16,
-            hull=True,
-        ),
-        (0.0, 0.0, 0.0),
-        white,
-    )
-    w.box((x0, x0 + 0.15), (-half, half), (seat - 0.05, seat + 0.36), white)
-    w.mesh(
-        loft(
-            [
-                Ring(seat - 0.035, 0.5 * (depth - 0.16), half, 0.08, power=5),
-                Ring(seat + 0.012, 0.5 * (depth - 0.17), 0.98 * half, 0.08, power=5),
-            ],
-            16,
-            hull=True,
-        ),
-        (0.0, 0.0, 0.0),
-        white,
-    )
+    profile = ((0.0, 0.93, 0.90, 0.05), (0.05, 0.93, 0.90, 0.05), (0.8, 0.99, 0.98, 0.01))
+    _toilet(w, (x0 + 0.01, 0.5 * depth), half, seat, white, white, profile=profile, open_=w.chance(0.4),
+            seat_x=x0 + 0.17, power=4.0)  # fmt: skip
+    w.mesh(chamfered_box((0.15, round(2 * half, 3), 0.41), 0.02), (x0 + 0.075, 0.0, seat + 0.155), white)
     w.box((x0 + 0.03, x0 + 0.12), (-0.06, 0.06), (seat + 0.36, seat + 0.366), w.look("chrome"), solid=False)
 
 
@@ -145,20 +150,15 @@ def one_piece(w: Workbench) -> None:
     """Builds a skirted toilet whose tank and pan form one curve."""
     white, half, seat = w.look("ceramic"), 0.5 * w.length(0.37, 0.41), w.length(0.40, 0.43)
     x0 = -0.35
-    rings = [
-        Ring(0.0, 0.30, 0.75 * half, 0.0, power=3),
-        Ring(0.22, 0.29, 0.78 * half, -0.01, power=3),
-        Ring(seat - 0.04, 0.345, half, 0.0, power=2.4),
-    ]
-    w.mesh(loft(rings, 16, hull=True), (0.0, 0.0, 0.0), white)
+    _toilet(w, (x0 + 0.01, 0.345), half, seat, white, white, profile=SKIRTED, open_=w.chance(0.5), seat_x=x0 + 0.21)
     tank = [
         Ring(seat - 0.06, 0.13, half, x0 + 0.13, power=4),
         Ring(seat + 0.14, 0.10, 0.96 * half, x0 + 0.10, power=4),
-        Ring(seat + 0.30, 0.10, half, x0 + 0.10, power=4),
+        Ring(seat + 0.285, 0.10, half, x0 + 0.10, power=4),
+        Ring(seat + 0.30, 0.09, 0.96 * half, x0 + 0.10, power=4),
     ]
     w.mesh(loft(tank, 16, hull=True), (0.0, 0.0, 0.0), white)
     w.cylinder((x0 + 0.10, 0.0), (seat + 0.298, seat + 0.306), 0.03, w.look("chrome"), solid=False)
-    _seat_and_lid(w, x0 + 0.22, 0.345, half, seat, white, open_=w.chance(0.4))
 
 
 STYLES = (

@@ -7,6 +7,7 @@ from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, named_mesh
+from sim.housegen.furniture.toilets import water_look
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -32,16 +33,16 @@ def _bowl_and_seat(
     state = w.choice(("shut", "shut", "lid up", "both up", "no lid"))
     ring = [Ring(0.0, r, half, power=power), Ring(0.022, 0.99 * r, 0.99 * half, power=power)]
     hole = [Ring(0.022, 0.66 * r, 0.64 * half, 0.02, power=power), Ring(0.0, 0.64 * r, 0.62 * half, 0.02, power=power)]
-    ends = [Ring(0.0, r, half, power=power)]
     if state != "shut":
-        w.ellipsoid((middle + 0.03, 0.0, rim - 0.085), (0.5 * r, 0.45 * half, 0.003), w.look("screen"), solid=False)
+        at = (middle + 0.03, 0.0, rim - 0.085)
+        w.ellipsoid(at, (0.5 * r, 0.45 * half, 0.003), water_look(look), solid=False)
     if state == "shut":
         lid = [*ring, Ring(0.045, 0.95 * r, 0.95 * half, power=power)]
         w.mesh(loft(lid, 16, hull=True), (middle, 0.0, rim), cover)
     elif state != "both up":
-        w.mesh(loft([*ring, *hole, *ends], 16), (middle, 0.0, rim), cover)
+        w.mesh(loft([*ring, *hole], 16, loop=True), (middle, 0.0, rim), cover)
     if state == "both up":
-        w.mesh(loft([*ring, *hole, *ends], 16), (x0 + 0.045, 0.0, rim + r), cover, tilt=-1.5)
+        w.mesh(loft([*ring, *hole], 16, loop=True), (x0 + 0.045, 0.0, rim + r), cover, tilt=-1.5)
     if state in ("lid up", "both up"):
         w.mesh(loft(ring, 16, hull=True), (x0 + 0.015, 0.0, rim + r), cover, tilt=-1.5)
 
