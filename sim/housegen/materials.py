@@ -247,6 +247,11 @@ def look(material: str, rng: np.random.Generator, pool: Pool) -> Look:
     return _draw(MATERIALS[material], rng, pool)
 
 
+def palettes(pool: Pool) -> tuple[str | None, ...]:
+    """Returns the names of the palettes of small objects of a pool (`furniture.parts.palette_mesh`)."""
+    return MATERIALS["small"].swatches(pool).textures
+
+
 def wall_look(rng: np.random.Generator, pool: Pool, room_kind: str = "") -> Look:
     """Returns the look of a wall: paint or wallpaper, mostly tiles in wet rooms."""
     tiled = room_kind in ("bathroom", "laundry") and rng.random() < 0.7

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from sim.housegen.furnishing.clutter import add_clutter
 from sim.housegen.furnishing.filling import fill_room
 from sim.housegen.furnishing.room_rules import RULES
 from sim.housegen.furniture.item import Item
@@ -31,6 +32,7 @@ def furnish(layout: RoomLayout, source: FurnitureSource) -> None:
     Raises:
         FurnishError: a required piece is still missing after the last try.
     """
+    source.enter(layout)
     empty, missing = layout.snapshot(), [""]
     for _ in range(MAX_TRIES):
         RULES[layout.kind](layout, source)
@@ -43,6 +45,7 @@ def furnish(layout: RoomLayout, source: FurnitureSource) -> None:
     fill_room(layout, source)
     _hang_curtains(layout, source)
     _hang_ceiling_lamps(layout, source)
+    add_clutter(layout, source)
 
 
 def _pieces(layout: RoomLayout) -> Iterator[Piece]:

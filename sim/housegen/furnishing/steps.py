@@ -23,6 +23,14 @@ RUNNER_M = 1.0
 AISLE_M = 0.75
 """Floor kept free in front of worktops and appliances."""
 ROW_GAP_M = 0.004
+_TOP_USES = {
+    "dining": ("table",), "desk": ("office",), "coffee": ("low", "top"), "media": ("media",), "dresser": ("dresser", "top"),
+    "nightstand": ("bedside",), "side": ("low", "bedside"), "console": ("entry", "top"), "bookcase": ("shelf",),
+    "sideboard": ("top", "shelf", "media"),
+}  # fmt: skip
+"""Uses of small objects on the top of an item, by the use of the item."""
+_WALL_USES = {"mirror": ("wall",), "towel": ("rail",)}
+"""Uses of categories that also have styles which stand on the floor."""
 
 
 def place(
@@ -45,7 +53,7 @@ def place(
 
 def hang(layout: RoomLayout, source: FurnitureSource, category: str, *uses: str) -> Placement | None:
     """Hangs an item on any wall."""
-    item = source.make(category, *uses)
+    item = source.make(category, *(uses or _WALL_USES.get(category, ())))
     if item is None or item.mount != "wall":
         return None
     return hang_on_wall(layout, source.rng, item, over_floor=category == "clothes")
@@ -53,7 +61,7 @@ def hang(layout: RoomLayout, source: FurnitureSource, category: str, *uses: str)
 
 def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, category: str) -> Placement | None:
     """Hangs an item on the wall right above an item that stands against it."""
-    item = source.make(category)
+    item = source.make(category, *_WALL_USES.get(category, ()))
     if item is None or item.mount != "wall" or host.side is None:
         return None
     bottom_m = max(item.mount_height_m, host.item.size_m[2] + 0.15)
@@ -110,7 +118,7 @@ def put_on_top(
     """Puts small items on an item, each with its own probability, which also depends on the clutter."""
     uses = {
         "lighting": ("table",),
-        "objects": ("kitchen", "top") if layout.kind in ("kitchen", "dining_room") else ("top",),
+        "objects": (source.pick(top_uses(layout, source, host)), "top"),
         "plant": ("table", "small", "top"),
         "appliances": ("microwave",),
     }
@@ -119,6 +127,19 @@ def put_on_top(
             item = source.make(category, *uses[category])
             if item is not None and item.mount == "top":
                 put_on_surface(layout, source.rng, host, item)
+
+
+def top_uses(layout: RoomLayout, source: FurnitureSource, host: Placement) -> tuple[str, ...]:
+    """Returns the uses of small objects that suit the top of an item in a room."""
+    if layout.kind == "bathroom":
+        return ("bath",)
+    uses = source.uses_of(host.item)
+    if host.item.category == "counter" or (layout.kind == "kitchen" and "dining" not in uses):
+        return ("kitchen",)
+    for use, fitting in _TOP_USES.items():
+        if use in uses:
+            return fitting
+    return ("entry", "top") if layout.kind == "hallway" else ("top", "shelf")
 
 
 def place_row(

@@ -23,6 +23,7 @@ def put_on_surface(
     *,
     face: float | None = None,
     back: bool = False,
+    number: int | None = None,
 ) -> bool:
     """Puts a small item on one of the tops of `host`; returns False where no room is left.
 
@@ -33,11 +34,12 @@ def put_on_surface(
         item: item with mount "top".
         face: yaw relative to the host's front; any when None.
         back: True to put it at the rear edge, in the middle if possible.
+        number: number of the surface; any when None.
     """
-    for number, surface in enumerate(host.item.surfaces):
-        if surface.kind != "top":
+    for n, surface in enumerate(host.item.surfaces):
+        if surface.kind != "top" or number not in (None, n):
             continue
-        if _put_on(layout, rng, host, number, surface, item, face, back):
+        if _put_on(layout, rng, host, n, surface, item, face, back):
             return True
     return False
 
