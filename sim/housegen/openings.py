@@ -106,6 +106,11 @@ def _cut_join(rng: np.random.Generator, plan: FloorPlan, join: Join, clear_m: tu
     if join.kind == "open":
         return Opening("open", join.a, join.b, side, line_m, inner, 0.0, 1e3)
     length_m = inner[1] - inner[0]
+    if join.kind == "partial" and length_m > 1.8:
+        width_m = max(round(length_m * float(rng.uniform(0.45, 0.75)), 2), 1.2)
+        stub_m = min(0.35, (length_m - width_m) / 2)
+        at = round(inner[0] + stub_m + float(rng.uniform(0.0, 1.0)) * (length_m - width_m - 2 * stub_m), 2)
+        return Opening("open", join.a, join.b, side, line_m, (at, round(at + width_m, 2)), 0.0, 1e3)
     if join.kind == "opening" and length_m > 1.5:
         width_m = min(round(float(rng.uniform(1.3, 2.4)), 2), length_m - 0.2)
         at = inner[0] + 0.1 + float(rng.uniform(0.0, 1.0)) * max(0.0, length_m - 0.2 - width_m)
@@ -205,7 +210,7 @@ def _cut_windows(
         for side in SIDES:
             taken = [o.span for o in others if o.a == i and o.side == side]
             for lo, hi in outer_spans(rects, i, side):
-                if room.kind == "hallway" and (taken or hi - lo > 2.2):
+                if room.kind == "hallway" and taken:
                     continue
                 wanted = bool(rng.random() > 0.12)
                 for span in _window_spans((lo, hi), width_m, taken, most=1 if room.kind == "bathroom" else 3):

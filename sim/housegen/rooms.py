@@ -34,8 +34,10 @@ PLAN_AREA_M2: Mapping[PlanKind, tuple[float, float]] = MappingProxyType(
     }
 )
 """Smallest and largest floor area of each kind of plan."""
-MAX_ROOMS, MAX_ESTATE_ROOMS = 18, 56
-"""Largest number of rooms in a home, including hallways; the second one for the kind `estate`."""
+MAX_ROOMS: Mapping[PlanKind, int] = MappingProxyType(
+    {kind: {"loop": 26, "estate": 60}.get(kind, 18) for kind in PLAN_KINDS}
+)
+"""Largest number of rooms of a kind of plan, including hallways."""
 MIN_ESTATE_ROOMS = 18
 """Smallest number of rooms of the kind `estate`, including hallways."""
 HALLWAYS: Mapping[PlanKind, int] = MappingProxyType(
@@ -60,6 +62,8 @@ class RoomRule:
     """Whether it gets windows."""
     grows: bool = True
     """Whether it is larger in large homes."""
+    long_m: float = 0.0
+    """Smallest length of the longer side."""
 
 
 ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
@@ -74,7 +78,7 @@ ROOM_RULES: Mapping[str, RoomRule] = MappingProxyType(
         "gym": RoomRule((13.0, 18.0, 32.0), 3.1),
         "laundry": RoomRule((4.0, 5.5, 13.0), 1.75, 2.6, windows=False, grows=False),
         "closet": RoomRule((3.4, 4.5, 11.0), 1.7, 2.6, windows=False, grows=False),
-        "stair_hall": RoomRule((13.1, 15.0, 26.0), 2.75, 2.2, grows=False),
+        "stair_hall": RoomRule((13.1, 15.0, 26.0), 2.75, 2.2, grows=False, long_m=4.75),
         "hallway": RoomRule((2.0, 10.0, 60.0), 1.1, 30.0, windows=False),
     }
 )
@@ -135,7 +139,7 @@ def draw_program(rng: np.random.Generator, kind: PlanKind, area_m2: float, wante
     for group in candidates:
         need = sum(column.usual_area_m2 for column in group)
         count = sum(1 + (column.back is not None) for column in group)
-        if need <= left + 4.0 and rooms + count <= MAX_ROOMS - HALLWAYS[kind]:
+        if need <= left + 4.0 and rooms + count <= MAX_ROOMS[kind] - HALLWAYS[kind]:
             groups.append(group)
             left -= need
             rooms += count

@@ -1,8 +1,11 @@
 """Draws floor plans: rooms as rectangles in rows along corridors, and the connections between them.
 
-A home has one to three wings. A wing is a corridor with a row of rooms on either side. The public rooms (living room,
-kitchen, dining room) may form a block at one end of the main wing. The corridor of another wing starts in a gap in one
-of the rows of the main wing. A plan is drawn in a frame whose main corridor runs along +x, then mirrored and turned.
+Most kinds have one to three wings (drawing.py). A wing is a corridor with a row of rooms on either side. The public
+rooms (living room, kitchen, dining room) may form a block at one end of the main wing. The corridor of another wing
+starts in a gap in one of the rows of the main wing. The other kinds are `greatroom` (great_room.py: zones of one room
+behind partial walls), `split` (split_plan.py: public rooms between two wings), `loop` (chain_plan.py and ring_plan.py:
+rooms or corridors lead round a core) and `estate` (ring_plan.py: a ring round a core, with wings). A plan is drawn in a
+frame whose main corridor runs along +x, then mirrored and turned.
 """
 
 from __future__ import annotations

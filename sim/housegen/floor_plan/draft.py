@@ -10,6 +10,9 @@ from sim.housegen.floor_plan.plan import FloorPlan, Join, JoinKind, PlanError, R
 from sim.housegen.rectangles import Rect, shared_side
 from sim.housegen.rooms import ROOM_RULES, PlanKind
 
+MIN_GAP_M = 0.5
+"""Smallest distance between two outer walls that face each other."""
+
 
 @dataclass
 class Draft:
@@ -40,16 +43,28 @@ def check_draft(draft: Draft, area_m2: float) -> None:
     """Raises PlanError where rooms overlap, are too small or too long, or the total area is far from `area_m2`."""
     for i, (kind, rect) in enumerate(zip(draft.kinds, draft.rects, strict=True)):
         rule = ROOM_RULES[kind]
-        if rect.short_m < rule.short_m - 0.11 or rect.area_m2 < 0.9 * rule.area_m2[0]:
+        if (
+            rect.short_m < rule.short_m - 0.11
+            or rect.long_m < rule.long_m - 0.01
+            or rect.area_m2 < 0.9 * rule.area_m2[0]
+        ):
             raise PlanError(f"{kind} of {rect.width_m:.1f} x {rect.depth_m:.1f} m is too small")
         if rect.long_m / rect.short_m > 1.15 * rule.aspect:
             raise PlanError(f"{kind} of {rect.width_m:.1f} x {rect.depth_m:.1f} m is too long")
         for other in draft.rects[:i]:
             if rect.overlaps(other, 0.01):
                 raise PlanError(f"{kind} overlaps another room")
+            if 0.01 < _gap_m(rect, other) < MIN_GAP_M:
+                raise PlanError(f"{kind} faces another room at {_gap_m(rect, other):.2f} m")
     total_m2 = sum(rect.area_m2 for rect in draft.rects)
     if not 0.75 * area_m2 < total_m2 < 1.25 * area_m2:
         raise PlanError(f"rooms add up to {total_m2:.0f} m2 instead of {area_m2:.0f} m2")
+
+
+def _gap_m(a: Rect, b: Rect) -> float:
+    """Returns the width of the gap between two rectangles whose sides face each other, else 0."""
+    dx, dy = max(a.x0 - b.x1, b.x0 - a.x1), max(a.y0 - b.y1, b.y0 - a.y1)
+    return max(dx, dy) if min(dx, dy) < -0.01 else 0.0
 
 
 def finish_draft(rng: np.random.Generator, draft: Draft, kind: PlanKind, hall: int) -> FloorPlan:

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
 
+from sim.housegen.floor_plan.chain_plan import draw_chain
 from sim.housegen.floor_plan.draft import Draft, check_draft, finish_draft
-from sim.housegen.floor_plan.plan import FloorPlan
+from sim.housegen.floor_plan.great_room import draw_great_room
+from sim.housegen.floor_plan.plan import FloorPlan, PlanError
 from sim.housegen.floor_plan.public_rooms import add_public_block
+from sim.housegen.floor_plan.ring_plan import draw_ring
 from sim.housegen.floor_plan.rows import Row, add_row, draw_common_length_m, draw_length_m
+from sim.housegen.floor_plan.split_plan import draw_split
 from sim.housegen.floor_plan.wings import TwoRows, draw_wings
 from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import PlanKind, draw_program
+from sim.housegen.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PlanKind, draw_program
 
 CORRIDOR_M = ((180.0, (1.5, 1.9)), (120.0, (1.35, 1.75)), (0.0, (1.2, 1.45)))
 """Range of the corridor's width by the smallest floor area: long corridors need room for furniture at their walls."""
+NEEDED_ROOMS = ("living_room", "kitchen", "bedroom", "bathroom")
+"""Rooms that every home has that is not a studio."""
 EXTRA_DOORS = {
     frozenset(("living_room", "office")): 0.4,
     frozenset(("living_room", "dining_room")): 0.8,
@@ -33,10 +40,54 @@ def draw_floor_plan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wa
     Raises:
         PlanError: the drawn rooms do not fit together, or the area is off by more than a quarter.
     """
-    program = draw_program(rng, kind, area_m2, wanted)
-    draft = Draft()
     low_m, high_m = next(widths for above_m2, widths in CORRIDOR_M if area_m2 >= above_m2)
     corridor_m = draw_length_m(rng, low_m, high_m)
+    if kind in ("greatroom", "split", "loop", "estate"):
+        draft, entry = _draw_new_kind(rng, kind, area_m2, wanted, corridor_m)
+    else:
+        draft, entry = _draw_rows(rng, kind, area_m2, wanted, corridor_m)
+    _add_loops(rng, draft)
+    check_draft(draft, area_m2)
+    return finish_draft(rng, draft, kind, entry)
+
+
+def _draw_new_kind(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str], corridor_m: float
+) -> tuple[Draft, int]:
+    """Returns a draft of a kind whose rooms are not all in rows along corridors, and the room with the front door.
+
+    Raises:
+        PlanError: the rooms do not fit, or one that every home needs, or that is wanted, is missing.
+    """
+    scale = float(np.clip(rng.uniform(0.95, 1.1) + (area_m2 - 150.0) / 1000.0, 0.95, 1.35))
+    if kind == "greatroom":
+        draft, entry = draw_great_room(rng, area_m2, wanted, corridor_m, scale)
+    elif kind == "split":
+        draft, entry = draw_split(rng, area_m2, wanted, corridor_m, scale)
+    elif kind == "loop" and rng.random() < (170.0 - area_m2) / 40.0 + 0.5:
+        draft, entry = draw_chain(rng, area_m2, wanted, corridor_m, scale)
+    else:
+        draft, entry = draw_ring(rng, area_m2, wanted, corridor_m, scale, estate=kind == "estate")
+    missing = Counter(wanted) | Counter(NEEDED_ROOMS)
+    missing.subtract(draft.kinds)
+    if lacking := [room for room, count in missing.items() if count > 0]:
+        raise PlanError(f"no place for {lacking[0]}")
+    fewest = MIN_ESTATE_ROOMS if kind == "estate" else 0
+    if not fewest <= len(draft.kinds) <= MAX_ROOMS[kind]:
+        raise PlanError(f"{len(draft.kinds)} rooms")
+    return draft, entry
+
+
+def _draw_rows(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, wanted: Sequence[str], corridor_m: float
+) -> tuple[Draft, int]:
+    """Returns a draft of a kind with rooms in rows along corridors, and the index of its main corridor.
+
+    Raises:
+        PlanError: the rooms do not fit.
+    """
+    program = draw_program(rng, kind, area_m2, wanted)
+    draft = Draft()
     scale = float(np.clip(0.85 * area_m2 / program.usual_area_m2, 0.85, 1.7))
     public_at_end = kind in ("studio", "flat", "openplan", "large") or (kind == "lshape" and rng.random() < 0.6)
     main, branches = draw_wings(rng, kind, program, public_at_end)
@@ -49,9 +100,7 @@ def draw_floor_plan(rng: np.random.Generator, kind: PlanKind, area_m2: float, wa
         _add_branch(rng, draft, hall, gap, branch, corridor_m, scale)
     if public_at_end:
         add_public_block(rng, draft, hall, program.public, area_m2, kind)
-    _add_loops(rng, draft)
-    check_draft(draft, area_m2)
-    return finish_draft(rng, draft, kind, hall)
+    return draft, hall
 
 
 def _depth_scale(scale: float) -> float:

@@ -8,8 +8,8 @@ from typing import Literal
 from sim.housegen.rectangles import Rect
 from sim.housegen.rooms import PlanKind
 
-JoinKind = Literal["door", "opening", "open"]
-"""A door of 0.8-1.0 m, a wide opening under a lintel, or no wall at all."""
+JoinKind = Literal["door", "opening", "partial", "open"]
+"""A door of 0.8-1.0 m, a wide opening under a lintel, a wall that leaves a wide gap up to the ceiling, or no wall."""
 
 
 class PlanError(ValueError):
@@ -43,7 +43,7 @@ class FloorPlan:
     rooms: tuple[Room, ...]
     joins: tuple[Join, ...]
     entry: int
-    """Index of the hallway that gets the front door if it has an outer wall."""
+    """Index of the room that gets the front door if it has an outer wall."""
 
     @property
     def area_m2(self) -> float:
@@ -57,3 +57,7 @@ class FloorPlan:
         return Rect(
             min(r.x0 for r in rects), min(r.y0 for r in rects), max(r.x1 for r in rects), max(r.y1 for r in rects)
         )
+
+    def stair_hall(self) -> int | None:
+        """Returns the index of the room that is meant for stairs; None without one."""
+        return next((i for i, room in enumerate(self.rooms) if room.kind == "stair_hall"), None)

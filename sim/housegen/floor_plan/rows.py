@@ -38,6 +38,7 @@ class Row:
         usable = self.depth_m if len(rules) == 1 else self.depth_m / 2
         low = max(max(rule.area_m2[0] / usable for rule in rules), max(rule.short_m for rule in rules))
         low = max(low, max(usable / rule.aspect for rule in rules))
+        low = max(low, max(rule.long_m if rule.long_m > usable else 0.0 for rule in rules))
         largest = max(rule.area_m2[2] * (max(self.scale, 1.0) if rule.grows else 1.0) for rule in rules)
         high = min(largest / usable, min(rule.aspect for rule in rules) * usable)
         usual = self.scale * sum(rule.area_m2[1] for rule in rules) / self.depth_m
@@ -103,7 +104,8 @@ def add_row(
             continue
         cut = row.depth_m if column.back is None else round(row.depth_m * float(rng.uniform(0.44, 0.54)), 1)
         front = draft.add(column.front, to_rect(s0, s1, 0.0, cut))
-        draft.join(hall, front, "opening" if column.front == "living_room" and rng.random() < 0.5 else "door")
+        wide = column.front == "stair_hall" or (column.front == "living_room" and rng.random() < 0.5)
+        draft.join(hall, front, "opening" if wide else "door")
         fronts.append(front)
         backs.append(draft.add(column.back, to_rect(s0, s1, cut, row.depth_m)) if column.back else None)
     _join_row(rng, draft, fronts, backs)
