@@ -33,8 +33,6 @@ _SLACK_PX = 0.5
 """Geoms are grown by this much in the image, so that rounding in the rasteriser does not matter."""
 _SLACK_M = 0.01
 """A hidden geom is farther than the wall by at least this: many times the resolution of the depth buffer."""
-_SHADOW_MARGIN_M = 0.05
-"""A shadow must end this far from the image: a pixel of the shadow map is one or two centimetres on the floor."""
 _MIN_SLAB_M = 0.2
 """The near plane may cut floors and ceilings nearer to the eye than this."""
 _BOX = int(mujoco.mjtGeom.mjGEOM_BOX)
@@ -84,7 +82,7 @@ class Visibility:
         self._bound_of = np.full(len(self._ids), -1)  # index into `_bounds`, by index into `_ids`
         self._bound_of[bounded[upright]] = np.arange(len(self._bounds.top))
         solid = self._ids[bounded[upright]]
-        self._boxes = self._bounds.take((model.geom_type[solid] == _BOX) & _opaque(model)[solid])
+        self._boxes = self._bounds.take((model.geom_type[solid] == _BOX) & opaque_geoms(model)[solid])
         self._walls_at = (math.nan, self._boxes)  # height of the eye and its walls
 
     def visible(self, data: mujoco.MjData, eye_m: NDArray, yaw_rad: float) -> NDArray[np.intp]:
@@ -107,32 +105,6 @@ class Visibility:
         upright = np.flatnonzero(self._bound_of[kept] >= 0)
         hidden = self._hidden_by_strip(self._bounds.take(self._bound_of[kept[upright]]), eye_m, yaw, walls)
         return self._ids[np.delete(kept, upright[hidden])]
-
-    def may_shade(self, light_m: NDArray, eye_m: NDArray, axes: NDArray) -> NDArray[np.bool_]:
-        """Returns (visual geoms,) False for geoms that are outside the image together with their shadows.
-
-        It uses the positions of the last call of `visible`. A shadow is the region behind the geom as seen from the
-        light: the hull of the geom's corners and of the rays from the light through them. It misses the image when all
-        of these are beyond the same side of the image.
-
-        Args:
-            light_m: (3,) position of the light.
-            eye_m: (3,) optical centre in the world.
-            axes: (3, 3) the camera's forward, left and up as rows.
-        """
-        ahead, left, up = np.einsum("ai,ikn->akn", axes, self._corners - eye_m[:, None, None])
-        ray_ahead, ray_left, ray_up = np.einsum("ai,ikn->akn", axes, self._corners - light_m[:, None, None])
-        wide, high = self._right_max + self._slack, self._up_max + self._slack
-        missed = np.zeros(len(self._ids), np.bool_)
-        for corner_inside, ray_inside in (
-            (ahead, ray_ahead),
-            (wide * ahead - left, wide * ray_ahead - ray_left),
-            (wide * ahead + left, wide * ray_ahead + ray_left),
-            (high * ahead - up, high * ray_ahead - ray_up),
-            (high * ahead + up, high * ray_ahead + ray_up),
-        ):
-            missed |= (corner_inside < -_SHADOW_MARGIN_M).all(axis=0) & (ray_inside < 0.0).all(axis=0)
-        return ~(missed & self._bounded)
 
     def in_sight(self, eye_m: NDArray, positions_m: NDArray) -> NDArray[np.bool_]:
         """Returns (k,) True for positions (k, 3) without a wall in between in plan; a position on a wall is in sight.
@@ -263,7 +235,7 @@ def _corners(model: mujoco.MjModel, data: mujoco.MjData, ids: NDArray[np.intp]) 
     return world + data.geom_xpos[ids].T[:, None, :]
 
 
-def _opaque(model: mujoco.MjModel) -> NDArray[np.bool_]:
+def opaque_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for geoms whose colour, material and texture are opaque."""
     opaque = model.geom_rgba[:, 3] >= 1.0
     if model.nmat:

@@ -15,6 +15,8 @@ Z_NEAR_M = 0.05
 """Near plane: its farthest corner is 0.07 m from the eye, well inside the robot's radius of 0.18 m."""
 Z_FAR_M = 80.0
 """Far plane: beyond the diagonal of the largest house."""
+DEPTH_SLOPE, DEPTH_OFFSET = (Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M), 1.0 / Z_FAR_M
+"""The depth in metres of a reversed depth buffer is 1 / (DEPTH_SLOPE * value + DEPTH_OFFSET)."""
 _BLOCK_ROWS = 32
 """Rows of a depth image that are converted together, so that they stay in the processor's cache."""
 
@@ -49,7 +51,7 @@ def make_frame_buffer(model: mujoco.MjModel, camera: CameraModel, profile: Rende
     model.vis.quality.numquads = profile.quads
     model.vis.quality.numslices = profile.slices
     model.vis.quality.numstacks = profile.stacks
-    model.vis.quality.shadowsize = profile.shadow_size_px if profile.shadows else 0  # 2048 takes 18 MB, used or not
+    model.vis.quality.shadowsize = 0  # `sim.sensors.shading` computes shadows; a map would take memory, used or not
     context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
     mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, context)
     context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR.value
@@ -110,8 +112,8 @@ def metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np
     depth_m = np.empty_like(buffer)
     for row in range(0, len(buffer), _BLOCK_ROWS):
         block, raw = depth_m[row : row + _BLOCK_ROWS], buffer[::-1][row : row + _BLOCK_ROWS]
-        np.multiply(raw, np.float32((Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M)), out=block)
-        block += np.float32(1.0 / Z_FAR_M)
+        np.multiply(raw, np.float32(DEPTH_SLOPE), out=block)
+        block += np.float32(DEPTH_OFFSET)
         np.reciprocal(block, out=block)
         np.minimum(block, np.float32(camera.max_depth_m), out=block)
         block *= block >= camera.min_depth_m

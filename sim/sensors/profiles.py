@@ -12,7 +12,6 @@ class RenderProfile:
     """Quality settings of the offscreen renderer. Segmentation and depth depend only on `slices` and `stacks`."""
 
     name: str
-    shadows: bool
     reflections: bool
     skybox: bool
     samples: int
@@ -23,18 +22,22 @@ class RenderProfile:
     """Tessellation of round geoms along their axis (`quality/numstacks`)."""
     quads: int
     """Squares along each edge of a box's face in the colour pass; light is computed at their corners."""
-    shadow_size_px: int = 2048
-    """Edge of the shadow map."""
+    occlusion: float = 1.0
+    """Strength of ambient occlusion, which darkens corners and the places under and behind furniture; 0 is off."""
+    shadows: float = 0.0
+    """Strength of the soft shadows of the nearest lamp, 0 (off) to 1."""
+    taps: int = 6
+    """Samples of each point for occlusion, and for shadows (`sim.sensors.shading`)."""
 
 
 PROFILES: dict[str, RenderProfile] = {
     profile.name: profile
     for profile in (
         RenderProfile(
-            name="fast", shadows=False, reflections=False, skybox=False, samples=0, slices=12, stacks=8, quads=2
+            name="fast", reflections=False, skybox=False, samples=0, slices=12, stacks=8, quads=2, shadows=0.9, taps=6
         ),
         RenderProfile(
-            name="good", shadows=True, reflections=True, skybox=True, samples=4, slices=20, stacks=10, quads=3
+            name="good", reflections=True, skybox=True, samples=4, slices=20, stacks=10, quads=3, shadows=0.9, taps=24
         ),
     )
 }
