@@ -13,7 +13,7 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft, named_mesh
+from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, loft, named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -159,19 +159,29 @@ def corner_tub(w: Workbench) -> None:
 
 
 def barrel(w: Workbench) -> None:
-    """Builds a round wooden soaking tub with hoops and a step."""
-    r, high = 0.5 * w.width(1.20, 1.40), w.length(0.62, 0.70)
+    """Builds an oval soaking tub of wooden staves with two hoops and a tap on its rim."""
+    rx, ry, high = 0.5 * w.depth(0.70, 0.78), 0.5 * w.width(1.15, 1.40), w.length(0.60, 0.66)
     wood, metal = w.look("wood"), w.look("iron")
     rings = [
-        Ring(0.0, r - 0.02, r - 0.02),
-        Ring(high, r, r),
-        Ring(high, r - 0.05, r - 0.05),
-        Ring(0.12, r - 0.07, r - 0.07),
+        *(Ring(z * high, (0.93 + 0.07 * z) * rx, (0.95 + 0.05 * z) * ry, power=2.3) for z in (0.0, 1.0)),
+        Ring(high, rx - 0.045, ry - 0.045, power=2.3),
+        Ring(0.14, 0.93 * rx - 0.055, 0.95 * ry - 0.055, power=2.3),
     ]
     w.mesh(loft(rings, 20), (0.0, 0.0, 0.0), wood)
-    for z in (0.12, high - 0.12):
-        w.mesh(hoop(r + 0.004 - 0.02 * (1 - z / high), 0.03, 0.04), (0.0, 0.0, z), metal, solid=False)
-    w.box((r - 0.01, r + 0.24), (-0.25, 0.25), (0.0, 0.22), wood)
+    for share in (0.18, 0.8):
+        grown = 0.004 - 0.07 * rx * (1.0 - share)
+        band = [
+            Ring(share * high + z, rx + grown - inward, ry + grown - inward, power=2.3)
+            for z, inward in ((-0.02, 0.001), (0.02, 0.0), (0.02, 0.03), (-0.02, 0.03))
+        ]
+        w.mesh(loft(band, 20, loop=True), (0.0, 0.0, 0.0), metal, solid=False)
+    groove = parts.darker(wood, 0.4)
+    for i in range(-5, 6):
+        y = 0.16 * i * ry
+        x = rx * (1.0 - abs(y / ry) ** 2.3) ** (1.0 / 2.3)
+        w.bar((0.931 * x, 0.95 * y, 0.0), (x + 0.0015, y, high - 0.002), 0.006, 0.004, groove, solid=False)
+    w.cylinder((0.0, 0.3 * ry), (0.136, 0.146), 0.03, w.look("chrome"), solid=False)
+    parts.mixer_tap(w, (-rx + 0.025, 0.0, high - 0.01), 0.16, 0.14, w.look("chrome"))
 
 
 def clawfoot(w: Workbench) -> None:
@@ -191,14 +201,11 @@ def clawfoot(w: Workbench) -> None:
     w.ellipsoid((0.0, -ry + 0.05, high), (0.50 * rx, 0.05, 0.09), white, solid=False)
     for sx in BOTH_SIDES:
         for sy in BOTH_SIDES:
-            w.rod(
-                (sx * 0.40 * rx, sy * 0.55 * ry, 0.20),
-                (sx * 0.72 * rx, sy * 0.70 * ry, 0.03),
-                0.026,
-                metal,
-                round_ends=True,
-            )
-            w.ball((sx * 0.72 * rx, sy * 0.70 * ry, 0.032), 0.032, metal)
+            knee = (sx * 0.66 * rx, sy * 0.66 * ry, 0.17)
+            ankle = (sx * 0.60 * rx, sy * 0.64 * ry, 0.06)
+            w.rod((sx * 0.50 * rx, sy * 0.58 * ry, 0.26), knee, 0.032, metal, round_ends=True)
+            w.rod(knee, ankle, 0.024, metal, round_ends=True)
+            w.ellipsoid((sx * 0.66 * rx, sy * 0.66 * ry, 0.028), (0.046, 0.04, 0.028), metal)
     for y in (0.22, 0.36):
         w.rod((-rx - 0.04, y, 0.0), (-rx - 0.04, y, high + 0.12), 0.012, metal)
     w.rod((-rx - 0.04, 0.20, high + 0.12), (-rx - 0.04, 0.38, high + 0.12), 0.020, metal, round_ends=True)

@@ -34,10 +34,11 @@ def coffee_drum(w: Workbench) -> None:
 
 
 def coffee_glass(w: Workbench) -> None:
-    """Builds a coffee table with a glass sheet on a brass frame with a lower rim."""
+    """Builds a coffee table with a glass sheet on a brass frame and a wooden shelf below it."""
     width, depth, height, metal = w.width(0.90, 1.20), w.depth(0.55, 0.70), w.length(0.38, 0.45), w.look("brass")
     x, y = parts.slab(w, depth, width, (height - 0.012, height), w.look("glass"))
     w.legs(x, y, (0.0, height - 0.012), 0.02, metal)
+    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.118, 0.13), w.look("wood"))
     for z in (height - 0.022, 0.12):
         for side in BOTH_SIDES:
             w.box(

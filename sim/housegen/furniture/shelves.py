@@ -101,7 +101,7 @@ def pipe_shelf(w: Workbench) -> None:
 def etagere(w: Workbench) -> None:
     """Builds a shelf with glass boards between slim brass posts, with vases and a few books."""
     width, depth, height = w.width(0.60, 0.85), w.depth(0.32, 0.38), w.height(1.60, 1.85)
-    brass, glass = w.look("brass"), w.look("glass")
+    brass, glass = w.look("brass"), parts.tinted_glass(w.look("glass"))
     x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
     w.legs((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.0, height), 0.02, brass, round_=True)
     for i in range(4):

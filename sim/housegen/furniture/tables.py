@@ -98,17 +98,22 @@ def trestle(w: Workbench) -> None:
 
 
 def glass_dining(w: Workbench) -> None:
-    """Builds a table with a glass top on a crossed base of bent metal."""
+    """Builds a table with a glass top in a metal frame on a crossed base of bent metal."""
     width, depth, height = w.width(1.30, 1.80), w.depth(0.85, 0.95), w.length(0.73, 0.75)
-    parts.slab(w, depth, width, (height - 0.015, height), w.look("glass"))
+    x, y = parts.slab(w, depth, width, (height - 0.015, height), w.look("glass"))
     metal = w.look("brass")
+    for side in BOTH_SIDES:
+        edge = side * (0.5 * depth - 0.012)
+        w.box((edge - 0.012, edge + 0.012), y, (height - 0.04, height - 0.015), metal, solid=False)
+        edge = side * (0.5 * width - 0.012)
+        w.box(x, (edge - 0.012, edge + 0.012), (height - 0.04, height - 0.015), metal, solid=False)
     for side in BOTH_SIDES:
         foot, head = (side * 0.30, -0.30 * width), (-side * 0.30, 0.30 * width)
         w.bar((*foot, 0.02), (*head, height - 0.03), 0.05, 0.025, metal)
         w.bar((foot[0], -foot[1], 0.02), (head[0], -head[1], height - 0.03), 0.05, 0.025, metal)
     for y in (-0.30 * width, 0.30 * width):
         w.box((-0.33, 0.33), (y - 0.03, y + 0.03), (0.0, 0.03), metal)
-        w.box((-0.33, 0.33), (y - 0.03, y + 0.03), (height - 0.04, height - 0.015), metal)
+        w.box((x[0], x[1]), (y - 0.03, y + 0.03), (height - 0.04, height - 0.015), metal)
 
 
 def tulip_legs_round(w: Workbench) -> None:

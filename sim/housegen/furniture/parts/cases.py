@@ -7,21 +7,40 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.housegen.furniture.item import Look, MeshShape
-from sim.housegen.furniture.parts.spans import footprint
-from sim.housegen.furniture.shapes import named_mesh
+from sim.housegen.furniture.parts.looks import glass_edge, tinted_glass
+from sim.housegen.furniture.parts.spans import BOTH_SIDES, footprint
+from sim.housegen.furniture.shapes import hoop, named_mesh
 from sim.housegen.furniture.workbench import Range, Workbench
+
+GLASS_EDGE_M = 0.008
+"""Width of the opaque edge of a glass top, which is a pixel or more at 3 m."""
 
 
 def slab(w: Workbench, depth: float, width: float, z: Range, look: Look) -> tuple[Range, Range]:
-    """Adds a rectangular top on which objects may stand, and returns its x and y ranges."""
+    """Adds a rectangular top on which objects may stand, and returns its x and y ranges.
+
+    A top of glass gets a visible tint and an opaque edge, as thick glass has.
+    """
     x, y = footprint(depth, width)
+    if look.rgba[3] < 1.0:
+        look = tinted_glass(look)
+        rim = (z[0] - 0.001, z[1] + 0.001)
+        for end in BOTH_SIDES:
+            a, b = sorted((end * 0.5 * depth, end * (0.5 * depth - GLASS_EDGE_M)))
+            w.box((a, b), y, rim, glass_edge(look), solid=False)
+            a, b = sorted((end * 0.5 * width, end * (0.5 * width - GLASS_EDGE_M)))
+            w.box((x[0] + GLASS_EDGE_M, x[1] - GLASS_EDGE_M), (a, b), rim, glass_edge(look), solid=False)
     w.box(x, y, z, look)
     w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), z[1])
     return x, y
 
 
 def round_top(w: Workbench, radius: float, z: Range, look: Look) -> None:
-    """Adds a round top on which objects may stand."""
+    """Adds a round top on which objects may stand; one of glass is tinted and has an opaque edge."""
+    if look.rgba[3] < 1.0:
+        look = tinted_glass(look)
+        edge = hoop(radius + 0.001, GLASS_EDGE_M, z[1] - z[0] + 0.002)
+        w.mesh(edge, (0.0, 0.0, 0.5 * (z[0] + z[1])), glass_edge(look), solid=False)
     w.cylinder((0.0, 0.0), z, radius, look)
     half = 0.65 * radius
     w.top((-half, half), (-half, half), z[1])

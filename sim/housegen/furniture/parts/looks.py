@@ -16,6 +16,18 @@ def darker(look: Look, factor: float = 0.45) -> Look:
     )
 
 
+def tinted_glass(glass: Look) -> Look:
+    """Returns the look of a horizontal sheet of glass: greener and less transparent than a pane."""
+    r, g, b, _ = glass.rgba
+    return dataclasses.replace(glass, rgba=(round(0.62 * r, 3), round(0.80 * g, 3), round(0.80 * b, 3), 0.55))
+
+
+def glass_edge(glass: Look) -> Look:
+    """Returns the look of the edge of a sheet of glass, which is opaque and darker than the sheet."""
+    r, g, b, _ = glass.rgba
+    return dataclasses.replace(glass, rgba=(round(0.45 * r, 3), round(0.62 * g, 3), round(0.58 * b, 3), 1.0))
+
+
 def wood_look(w: Workbench, painted: float = 0.45) -> Look:
     """Returns lacquer with the probability `painted`, otherwise plain wood."""
     return w.look("lacquer") if w.chance(painted) else w.look("wood")
