@@ -1,4 +1,4 @@
-"""Draws the looks of a home's structure and its lights."""
+"""Draws the looks of a home's structure, and its time of day."""
 
 from __future__ import annotations
 
@@ -9,12 +9,11 @@ import numpy as np
 from sim.housegen import materials
 from sim.housegen.floor_plan import FloorPlan
 from sim.housegen.furniture.item import Look, Pool
-from sim.housegen.mjcf import Lamp
+from sim.housegen.lighting import draw_time, draw_views
 from sim.housegen.structure_parts import StructureLooks
 
 TRIM = {"train": (0.94, 0.94, 0.92, 1.0), "heldout": (0.90, 0.88, 0.83, 1.0)}
 OUTSIDE = {"train": (0.82, 0.80, 0.76, 1.0), "heldout": (0.74, 0.76, 0.78, 1.0)}
-SKY = {"train": (0.42, 0.58, 0.76, 1.0), "heldout": (0.50, 0.62, 0.72, 1.0)}
 WALLPAPER_ROOMS = frozenset(("living_room", "bedroom", "dining_room", "studio"))
 """Rooms that may have patterned wallpaper; one room of a home at most."""
 
@@ -35,11 +34,12 @@ def draw_structure_looks(rng: np.random.Generator, plan: FloorPlan, pool: Pool) 
         walls[room.name] = main_wall if room.kind == "hallway" or i in shared else own
         floors[room.name] = main_floor if room.kind == "hallway" or i in shared or same_floor else floor
     trim = Look(TRIM[paint], specular=0.2)
+    time = draw_time(rng)
     door = materials.look("wood", rng, pool) if rng.random() < 0.5 else materials.look("lacquer", rng, pool)
     frame = trim if rng.random() < 0.6 else door
     return StructureLooks(
         walls, floors, replace(materials.ceiling_look(rng, pool), texture=None), Look(OUTSIDE[paint]), trim, door,
-        frame, materials.look("metal", rng, pool), Look(SKY[paint], specular=0.0, emission=0.75),
+        frame, materials.look("metal", rng, pool), draw_views(rng, pool, time), time,
     )  # fmt: skip
 
 
@@ -59,41 +59,4 @@ def _is_wallpaper(look: Look) -> bool:
 
 def _open_rooms(plan: FloorPlan) -> set[int]:
     """Returns the indices of rooms that are connected to another one without any wall."""
-    return {room for join in plan.joins if join.kind == "open" for room in (join.a, join.b)}
-
-
-def draw_lamps(rng: np.random.Generator, plan: FloorPlan, ceiling_m: float) -> list[Lamp]:
-    """Returns daylight from three sides, a reflection from the floors, and a lamp in each room, the largest room first.
-
-    Fixed-function OpenGL has eight lights. Four are directional; `sim.sensors.camera` chooses the lamps in view for the
-    others, and other viewers take the first ones. Directional lights cast no shadow, because the ceiling would block
-    them. The strengths were chosen by eye.
-    """
-    warm = float(rng.uniform(0.0, 1.0))
-    tint = np.array([1.0, 0.99 - 0.03 * warm, 0.97 - 0.10 * warm])
-    turn = float(rng.uniform(0.0, 2 * np.pi))
-
-    def towards(angle: float, tilt: float) -> tuple[float, float, float]:
-        level = np.cos(tilt)
-        return (
-            round(float(level * np.cos(angle)), 4),
-            round(float(level * np.sin(angle)), 4),
-            round(float(np.sin(tilt)), 4),
-        )
-
-    def light(strength: float) -> tuple[float, float, float]:
-        r, g, b = (round(float(v), 3) for v in strength * tint)
-        return (r, g, b)
-
-    x, y = plan.bounds.centre
-    above = (round(x, 2), round(y, 2), ceiling_m + 2.0)
-    lamps = [
-        Lamp(above, light(0.30), towards(turn, -0.70)),
-        Lamp(above, light(0.22), towards(turn + 2.0, -0.55)),
-        Lamp(above, light(0.16), towards(turn + 4.1, -0.50)),
-        Lamp((above[0], above[1], 0.1), light(0.40), towards(turn + 1.0, 1.2)),
-    ]
-    for room in sorted(plan.rooms, key=lambda room: -room.rect.area_m2):
-        cx, cy = room.rect.centre
-        lamps.append(Lamp((round(cx, 2), round(cy, 2), round(ceiling_m - 0.25, 2)), light(0.42), shadow=True))
-    return lamps
+    return {room for join in plan.joins if join.kind in ("open", "partial") for room in (join.a, join.b)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from sim.housegen.furniture.item import Geom, Item
+from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.mjcf import PlacedItem
 from sim.housegen.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening
 from sim.housegen.structure_parts import CASING_M, Box3, StructureLooks, oriented_box, structure_item, visual_boxes
@@ -27,8 +27,9 @@ class OpeningItems:
 
     def window(self, hole: Opening) -> Item:
         """Returns the window of an opening, in the frame of `place_in_wall`."""
-        key = ("window", _width(hole), hole.bottom_m, hole.top_m)
-        return self._once(key, lambda: _window(_width(hole), hole.bottom_m, hole.top_m, self._looks))
+        view = self._looks.views[hole.side]
+        key = ("window", _width(hole), hole.bottom_m, hole.top_m, view)
+        return self._once(key, lambda: _window(_width(hole), hole.bottom_m, hole.top_m, view, self._looks.trim))
 
     def frame(self, hole: Opening) -> Item:
         """Returns the door frame of an opening, in the frame of `place_in_wall`."""
@@ -51,8 +52,8 @@ def _width(hole: Opening) -> float:
     return round(hole.span[1] - hole.span[0], 3)
 
 
-def _window(width_m: float, z0: float, z1: float, looks: StructureLooks) -> Item:
-    """Returns a window: frame with bars, sill, and a pane that emits daylight."""
+def _window(width_m: float, z0: float, z1: float, view: Look, trim: Look) -> Item:
+    """Returns a window: frame with bars, sill, and a pane that shows what is outside."""
     lo, hi = -0.5 * width_m, 0.5 * width_m
     bar, out = 0.05, OUTER_WALL_M - 0.02
     bars = [((lo, lo + bar), z0, z1), ((hi - bar, hi), z0, z1), ((lo, hi), z0, z0 + bar), ((lo, hi), z1 - bar, z1)]
@@ -63,7 +64,7 @@ def _window(width_m: float, z0: float, z1: float, looks: StructureLooks) -> Item
     frame: list[Box3] = [(*span, out - 0.06, out, b, t) for span, b, t in bars]
     frame.append((lo - 0.04, hi + 0.04, -HALF_WALL_M - 0.03, out, z0 - 0.025, z0))
     pane = (lo, hi, out - 0.02, OUTER_WALL_M, z0, z1)
-    return structure_item("window", "pane", [oriented_box(pane, looks.sky, "north"), *visual_boxes(frame, looks.trim)])
+    return structure_item("window", "pane", [oriented_box(pane, view, "north"), *visual_boxes(frame, trim)])
 
 
 def place_door(hole: Opening, items: OpeningItems) -> list[PlacedItem]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
-from sim.housegen.decoration import draw_lamps, draw_structure_looks
+from sim.housegen.decoration import draw_structure_looks
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
 from sim.housegen.furnishing import FurnishError, furnish
 from sim.housegen.furniture import CATALOGUE
@@ -21,6 +21,7 @@ from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Pool
 from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
+from sim.housegen.lighting import DAYLIGHT, draw_lamps
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
 from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
 from sim.housegen.placement import RoomLayout
@@ -35,8 +36,8 @@ GENERATOR_VERSION = 2
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 800.0)
-MAX_BYTES = 395_000
-"""Largest size of a house file."""
+MAX_BYTES, MAX_ESTATE_BYTES = 395_000, 1_000_000
+"""Largest size of a house file, and of one of the kind `estate`."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
 """Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
 _POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
@@ -172,6 +173,8 @@ class _Draft:
     structure: list[PlacedItem]
     layouts: list[RoomLayout]
     lamps: list[Lamp]
+    time: str
+    """Time of day, a key of `DAYLIGHT`."""
     hazards: tuple[PlacedHazard, ...] = ()
 
 
@@ -192,7 +195,7 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
         furnish(layout, source)
-    draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m))
+    draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m, looks.time), looks.time)
     if not config.hazards:
         return draft
     bare = _build(draft, config, BYTES_PER_GEOM[0])
@@ -256,6 +259,7 @@ def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.Mj
                 builder.add(placement.placed)
     for number, hazard in enumerate(draft.hazards):
         hazard.add_to(builder, number)
+    builder.set_ambient(DAYLIGHT[draft.time].ambient)
     for lamp in draft.lamps:
         builder.add_lamp(lamp)
     return builder.spec

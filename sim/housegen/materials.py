@@ -160,7 +160,9 @@ MATERIALS: dict[str, Material] = {
         "ffffff",
         textures=(("rug_stripes", "rug_diamonds", "rug_lattice", "rug_kilim"), ("rug_medallion", "rug_rings")),
     ),
-    "mirror": _material("cfe0e8 c6d6df", "d9e4e4 bccbd9", specular=0.9, shininess=0.9),
+    "mirror": _material(
+        "e8f2f6 dfeaf0", "f0f5f5 dbe4ec", textures=(("mirror_hall",), ("mirror_room",)), specular=0.9, shininess=0.9
+    ),
     "fire": _material("f08a2a e8641f", "f2a33c d94f2a", emission=0.6),
     "char": _material("17151a 1d1a19", "121416 221d1a"),
 }

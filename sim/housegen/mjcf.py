@@ -131,19 +131,20 @@ class HouseBuilder:
                     self._copies[id(part)] = self._copies.get(id(item), 1)
         return self._splits[id(item)][1]
 
-    def add_ground(self, rect: Rect) -> None:
-        """Adds the invisible slab that carries the wheels, its top at z = 0."""
+    def add_ground(self, rect: Rect, z_m: float = 0.0) -> None:
+        """Adds an invisible slab that carries the wheels, its top at `z_m`."""
         x, y = rect.centre
         self._spec.worldbody.add_geom(
             name=self._label("floor"), type=mujoco.mjtGeom.mjGEOM_BOX, group=3,
-            size=[_r(rect.width_m / 2), _r(rect.depth_m / 2), 0.05], pos=[_r(x), _r(y), -0.05],
+            size=[_r(rect.width_m / 2), _r(rect.depth_m / 2), 0.05], pos=[_r(x), _r(y), _r(z_m - 0.05)],
         )  # fmt: skip
 
-    def add_room(self, room: RoomBox, height_m: float) -> None:
-        """Adds the site that marks a room."""
+    def add_room(self, room: RoomBox, height_m: float, z_m: float = 0.0) -> None:
+        """Adds the site that marks a room, whose floor is at `z_m`."""
         x, y = room.rect.centre
         self._spec.worldbody.add_site(
-            name=room.name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4, pos=[_r(x), _r(y), _r(height_m / 2)],
+            name=room.name, type=mujoco.mjtGeom.mjGEOM_BOX, group=4,
+            pos=[_r(x), _r(y), _r(z_m + height_m / 2)],
             size=[_r(room.rect.width_m / 2), _r(room.rect.depth_m / 2), _r(height_m / 2)],
         )  # fmt: skip
 
@@ -159,6 +160,10 @@ class HouseBuilder:
         """Adds geoms to a body that collide and are not rendered."""
         for geom in geoms:
             self._add_shape(self._spec.body(body).add_geom(self._collision, type=_SHAPES[geom.shape]), geom)
+
+    def set_ambient(self, ambient: tuple[float, float, float]) -> None:
+        """Sets the ambient light of the whole home."""
+        self._spec.visual.headlight.ambient = list(ambient)
 
     def add_lamp(self, lamp: Lamp) -> None:
         """Adds a light; it has no label, because it is not visible itself."""

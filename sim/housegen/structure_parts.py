@@ -32,7 +32,10 @@ class StructureLooks:
     door: Look
     door_frame: Look
     handle: Look
-    sky: Look
+    views: Mapping[Side, Look]
+    """What is visible through the windows of each side."""
+    time: str
+    """Time of day, a key of `sim.housegen.lighting.DAYLIGHT`."""
 
 
 def oriented_box(box: Box3, look: Look, facing: Side | None = None, *, solid: bool = True) -> Geom:

@@ -39,6 +39,7 @@ from sim.housegen.texture_patterns import (
     weave,
     wood,
 )
+from sim.housegen.texture_views import outside, reflection
 
 if TYPE_CHECKING:  # the furniture package imports this module
     from sim.housegen.furniture.item import Pool
@@ -85,7 +86,7 @@ _SMALL_TRAIN = ("f3f2ee", "e6dcc6", "232427", "a9abae", "b98c58", "5c3d28", "557
 _SMALL_HELDOUT = ("f6efe4", "dfd3da", "1d2128", "b9b1a4", "a9743f", "43302b", "3f6f55", "bcd0df", "b08f6a", "7d3a2c")
 """Hexadecimal RGB of the columns of palettes that differ little: white, cream, dark, metal, wood, brown; leaves, glass,
 cardboard, leather."""
-_UPRIGHT = ("brick", "rubble", "tiles", "paper", "motif")
+_UPRIGHT = ("brick", "rubble", "tiles", "paper", "motif", "outside", "reflection")
 """Names of the functions whose pictures are upright on walls."""
 
 
@@ -173,7 +174,18 @@ _ALL = (
     _entry("rug_medallion", "heldout", 0.0, rug, 95, colours=(_PLUM, _GOLD, _ROSE, _PLUM), pattern="medallion"),
     _entry("rug_rings", "heldout", 0.0, rug, 96, colours=(_SKY, _IVORY, _MINT, _INK), pattern="rings"),
 )
+
+_VIEWS = tuple(
+    _entry(f"view_{scene}_{time}", pool, 0.0, outside, seed, scene=scene, time=time)
+    for pool, scene, seed in (("train", "hills", 200), ("train", "street", 201), ("heldout", "roofs", 202),
+                              ("heldout", "garden", 203))
+    for time in ("morning", "noon", "evening", "night")
+)
+_MIRRORS = (
+    _entry("mirror_hall", "train", 0.0, reflection, 210, wall=(0.72, 0.74, 0.74), floor=(0.50, 0.42, 0.34)),
+    _entry("mirror_room", "heldout", 0.0, reflection, 211, wall=(0.78, 0.74, 0.68), floor=(0.45, 0.45, 0.48)),
+)
 # fmt: on
 
-TEXTURES: dict[str, Texture] = {texture.name: texture for texture in _ALL}
+TEXTURES: dict[str, Texture] = {texture.name: texture for texture in (*_ALL, *_VIEWS, *_MIRRORS)}
 """The textures by name; a `Look.texture` is one of these names."""
