@@ -1,4 +1,4 @@
-"""Furnishes rooms (furnish_room): rules by kind of room (room_rules), built from groups of furniture and single steps."""
+"""Furnishes rooms (furnish_room): rules by kind of room (room_rules), built from groups and single steps."""
 
 from __future__ import annotations
 

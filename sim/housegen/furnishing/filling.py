@@ -110,6 +110,7 @@ def _machine(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
 _PLANT = _piece("plant", "floor", front_m=0.0, corner=True, most=2)
 _LAMP = _piece("lighting", "floor", front_m=0.0, corner=True, most=2)
 _BOOKS = _piece("shelving", "bookcase")
+_LINEN = _piece("shelving", "linen", most=3)
 _PLAIN_BENCH = _piece("seating", "plain", front_m=0.4, most=1)
 _OTTOMAN = _piece("seating", "ottoman", front_m=0.3, most=2)
 _BOX = _piece("objects", "floor", front_m=0.0, corner=True, most=2)
@@ -149,8 +150,8 @@ FILL_RULES: Mapping[str, FillRule] = MappingProxyType(
         "office": FillRule(0.26, (_BOOKS, desk_group, reading_corner, _PLANT, console, pictures, middle_rug)),
         "gym": FillRule(0.26, (_machine, _machine, _PLAIN_BENCH, _PLANT, _OTTOMAN, _TOWELS, pictures)),
         "bathroom": FillRule(0.27, (_PLANT, _BIN, _TOWELS, _STOOL, _BASKET), rounds=1),
-        "laundry": FillRule(0.27, (_BOOKS, _BASKET, _BIN), rounds=1),
-        "closet": FillRule(0.30, (_WARDROBE, _RACK, _chest, _BOX, _BOOKS, _OTTOMAN), rounds=1),
+        "laundry": FillRule(0.27, (_BASKET, _BIN), rounds=1),
+        "closet": FillRule(0.30, (_WARDROBE, _RACK, _chest, _BOX, _LINEN, _OTTOMAN), rounds=1),
     }
 )
 """Rules by kind of room; the other kinds get nothing more."""

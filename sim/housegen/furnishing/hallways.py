@@ -24,6 +24,8 @@ KINDS = (
     ("lighting", "floor"),
 )  # fmt: skip
 """Category and use of the furniture of hallways."""
+DECORATION = frozenset(("plant", "lighting", "picture", "floor"))
+"""Categories that are of no use in a hallway; one that has nothing else gets a mirror."""
 
 
 def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:
@@ -31,6 +33,8 @@ def furnish_hallway(layout: RoomLayout, source: FurnitureSource) -> None:
     if layout.inner.short_m > 1.15 and source.chance(0.7):
         hang(layout, source, "clothes", "hooks")
     _place_at_intervals(layout, source)
+    if all(placement.item.category in DECORATION for placement in layout.placements):
+        hang(layout, source, "mirror", "wall")
     if source.chance(0.6):
         _lay_runners(layout, source)
 

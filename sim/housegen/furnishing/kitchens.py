@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim.housegen.furnishing.groups import breakfast_group, dining_group
-from sim.housegen.furnishing.steps import AISLE_M, place_row, put_on_top
+from sim.housegen.furnishing.steps import AISLE_M, place, place_row, put_on_top
 from sim.housegen.furniture.item import Item, Look
 from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.placement import Placement, RoomLayout
@@ -20,6 +20,10 @@ from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 LONG_RUN_M = 3.2
 """Longest worktop along a second wall."""
 CABINET_BOTTOM_M = 1.45
+LEAST_APPLIANCES = 2
+"""Number of cookers, fridges, dishwashers and hobs that every kitchen has."""
+LARGE_M = 0.45
+"""Longest side of the smallest of them."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +59,38 @@ def kitchen_units(layout: RoomLayout, source: FurnitureSource) -> Units:
         return -layout.walls.longest_stretch_m(side) + (0.5 if has_window else 0.0)
 
     looks = source.looks("lacquer", "stone", "metal", "wood", "steel", "curtain", "masonry", "wicker")
+    units = Units(looks, [], [])
     for side in sorted(SIDES, key=score):
         run = _place_run(layout, source, side, looks)
         if run:
             _hang_cabinets(layout, source, side, run, looks)
-            return Units(looks, [side], run)
-    return Units(looks, [], [])
+            units = Units(looks, [side], run)
+            break
+    _complete(layout, source, units)
+    return units
+
+
+def _complete(layout: RoomLayout, source: FurnitureSource, units: Units) -> None:
+    """Places a short worktop with a sink, and large appliances, that a kitchen lacks after its first run."""
+    if not any(unit.item.category == "counter" for unit in units.placed):
+        for width_m in (1.6, 1.3, 1.0, 0.8):
+            hints: dict[str, Any] = {"width_m": width_m, "with_sink": True, "with_hob": width_m > 1.3}
+            counter = place(layout, source, "counter", "run", front_m=0.6, looks=units.looks, tries=1, **hints)
+            if counter is not None and counter.side is not None:
+                units.placed.append(counter)
+                units.sides.append(counter.side)
+                break
+    for use in ("fridge", "dishwasher", "stove"):
+        if _large_appliances(layout) >= LEAST_APPLIANCES:
+            return
+        place(layout, source, "appliances", use, along="corner", front_m=0.55, tries=3)
+
+
+def _large_appliances(layout: RoomLayout) -> int:
+    """Returns the number of cookers, fridges, dishwashers and hobs of a kitchen."""
+    children = [child.item for placement in layout.placements for child in placement.item.children]
+    items = [*(placement.item for placement in layout.placements), *children]
+    return sum(item.category == "appliances" and max(item.size_m) > LARGE_M for item in items)
 
 
 def _place_run(layout: RoomLayout, source: FurnitureSource, side: Side, looks: dict[str, Look]) -> list[Placement]:

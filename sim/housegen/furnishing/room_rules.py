@@ -13,21 +13,23 @@ from sim.housegen.furnishing.kitchens import furnish_kitchen, kitchen_units
 from sim.housegen.furnishing.seating_groups import armchair_circle, reading_corner, sofa_group
 from sim.housegen.furnishing.steps import hang, hang_above, place, place_row, put_on_top
 from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import RoomLayout
+from sim.housegen.placement import Placement, RoomLayout
 from sim.housegen.placement.floor import put_against_wall
 from sim.housegen.rectangles import SIDES
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""
+_DRESSER = ("chest_of_drawers", "dresser")
 
 
 def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
     bed_group(layout, source, large=area > 10.5)
-    for front_m in (0.7, 0.45):
-        if place(layout, source, "cabinet", "wardrobe", along="corner", front_m=front_m):
-            break
-    chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.55) if source.chance(0.8) else None
+    wardrobe = _place_wardrobe(layout, source)
+    wants_chest = source.chance(0.8) or wardrobe is None
+    chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.55) if wants_chest else None
+    if wardrobe is None and chest is None:
+        place(layout, source, "clothes", "rack", front_m=0.3, tries=3)
     if chest is not None:
         put_on_top(layout, source, chest, ("objects", "plant", "objects", "lighting"), (0.6, 0.3, 0.4, 0.2))
         hang_above(layout, source, chest, "mirror" if source.chance(0.5) else "picture")
@@ -42,13 +44,23 @@ def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
     _extras(layout, source, plants=0.5, pictures=(0, 1))
 
 
+def _place_wardrobe(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
+    """Places a wardrobe in a corner, a narrow one where no wide one fits."""
+    for front_m in (0.7, 0.45):
+        wardrobe = place(layout, source, "cabinet", "wardrobe", along="corner", front_m=front_m)
+        if wardrobe is not None:
+            return wardrobe
+    return place(layout, source, "cabinet", "wardrobe", along="corner", front_m=0.45, width_m=1.0)
+
+
 def _living_room(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
     if source.chance(0.7):
         hearth = place(layout, source, "fireplace", along="middle", front_m=0.8, tries=3)
         if hearth is not None:
             hang_above(layout, source, hearth, "picture" if source.chance(0.6) else "mirror")
-    sofa_group(layout, source)
+    if sofa_group(layout, source) is None and reading_corner(layout, source) is None:
+        place(layout, source, "seating", "bench", "ottoman", front_m=0.4)
     _second_groups(layout, source)
     if area > 20 or source.chance(0.4):
         place(layout, source, "shelving", "bookcase", front_m=0.6)
@@ -116,12 +128,16 @@ def _hallway(layout: RoomLayout, source: FurnitureSource) -> None:
     _extras(layout, source, plants=0.5, pictures=(min(1, pictures), min(3, 1 + pictures)), lamp=False)
 
 
+def _stair_hall(layout: RoomLayout, source: FurnitureSource) -> None:
+    _extras(layout, source, plants=0.5, pictures=(1, 2), lamp=False)
+
+
 def _office(layout: RoomLayout, source: FurnitureSource) -> None:
     desk_group(layout, source)
     if layout.inner.area_m2 > 13:
         desk_group(layout, source)
-    place(layout, source, "shelving", "bookcase", front_m=0.6)
-    if source.chance(0.5):
+    books = place(layout, source, "shelving", "bookcase", front_m=0.6)
+    if source.chance(0.5) or books is None:
         place(layout, source, "cabinet", "sideboard", front_m=0.6)
     if source.chance(0.4):
         place(layout, source, "chair", "arm", along="corner", front_m=0.4)
@@ -158,16 +174,27 @@ def _laundry(layout: RoomLayout, source: FurnitureSource) -> None:
         for side in sorted(SIDES, key=lambda s: -layout.walls.longest_stretch_m(s)):
             if place_row(layout, source, machines, side, front_m=0.6):
                 break
-    place(layout, source, "counter", "run", width_m=1.0, with_sink=True, with_hob=False, front_m=0.6)
-    place(layout, source, "shelving", "bookcase", front_m=0.5)
-    place(layout, source, "clothes", "rack", "basket", front_m=0.4)
+        else:
+            place(layout, source, "appliances", "washing_machine", front_m=0.45, tries=3)
+    sink = place(layout, source, "counter", "run", width_m=1.0, with_sink=True, with_hob=False, front_m=0.6)
+    if sink is None:
+        sink = place(layout, source, "sink", "standing", front_m=0.5)
+    rack = place(layout, source, "clothes", "drying", front_m=0.4)
+    if sink is None and rack is None:
+        place(layout, source, "clothes", "floor", along="corner", front_m=0.0, tries=3)
+    place(layout, source, "shelving", "laundry", front_m=0.5)
     _extras(layout, source, plants=0.1, pictures=(0, 0))
 
 
 def _closet(layout: RoomLayout, source: FurnitureSource) -> None:
-    place(layout, source, "clothes", "rack", front_m=0.5)
-    place(layout, source, "chest_of_drawers", "dresser", front_m=0.5)
-    place(layout, source, "shelving", "bookcase", front_m=0.5)
+    """Places clothes racks, shelves with folded clothes and shoes, and a wardrobe or a chest."""
+    pieces = [("clothes", "rack"), ("shelving", "linen"), source.pick((("cabinet", "wardrobe"), _DRESSER))]
+    for n in source.rng.permutation(len(pieces)).tolist():
+        place(layout, source, *pieces[n], front_m=0.5)
+    if layout.inner.area_m2 > 6.0:
+        place(layout, source, *source.pick(pieces), front_m=0.5)
+    if not any(p.item.category in ("clothes", "shelving", "cabinet") for p in layout.placements):
+        place(layout, source, "shelving", "linen", front_m=0.4, tries=3, width_m=0.7)
     if source.chance(0.5):
         place(layout, source, "stool", "low", along="corner", front_m=0.2)
     if source.clutter_chance(0.5):
@@ -207,6 +234,7 @@ RULES: Mapping[str, Callable[[RoomLayout, FurnitureSource], None]] = MappingProx
         "studio": _studio,
         "bathroom": _bathroom,
         "hallway": _hallway,
+        "stair_hall": _stair_hall,
         "office": _office,
         "gym": _gym,
         "laundry": _laundry,

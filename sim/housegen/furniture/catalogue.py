@@ -133,13 +133,13 @@ class Catalogue:
         bed              (none); `width_m` is the largest allowed width of the mattress
         cabinet          wardrobe, sideboard, display, media, kitchen_wall (mount wall), vanity (has its own sink)
         chest_of_drawers dresser, nightstand
-        shelving         bookcase (on the floor), wall
+        shelving         bookcase, laundry (detergents), linen (folded clothes, shoe boxes), on the floor; wall
         counter          run (back to a wall), island (front towards +x, where stools go)
         sink             standing (for bathrooms, laundries; mount floor or wall), vessel and inset (children of others)
         shower           (none): closed back at smallest x; cabins are also closed at smallest y, for a corner
         bathtub          (none): long side along y
         towel            rail (mount wall), floor (ladders, stands), top (stacks and rolls)
-        clothes          rack (on the floor), hooks (mount wall), floor (heaps, baskets), top (folded)
+        clothes          rack, drying (on the floor), hooks (mount wall), floor (heaps, baskets), top (folded)
         tv_monitor       tv (mount top: on a media cabinet), tv_wall, monitor (top: on a desk), tv_floor
         mirror           wall, standing
         plant            floor (on the floor), top (on a table or shelf)
