@@ -11,9 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim.geometry.grid import GridFrame, Window
+from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import (
+    FORWARD_M,
     GOAL_CATEGORIES,
     Action,
     CameraModel,
@@ -37,6 +38,9 @@ from stubborn.planning.untrap import Untrap, UntrapConfig
 from stubborn.target.distances import StopDistances, TargetConfig
 from stubborn.target.seeker import Approach, TargetSeeker
 from stubborn.target.verification import AcceptAll, Verifier
+
+_TREAD_M = 0.10
+"""Half the width of the ground ahead that must not be missing for a forward."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +142,7 @@ class StubbornAgent:
         self._learn_from_last_action(self.pose or pose, pose)
         sighting = self._map(observation, pose)
         self.pose = pose
-        self.last_action = self._decide(pose, sighting)
+        self.last_action = self._kept_from_drops(self._decide(pose, sighting), pose)
         self.step += 1
         return self.last_action
 
@@ -185,6 +189,13 @@ class StubbornAgent:
             return Action.MOVE_FORWARD if self.last_action is Action.TURN_LEFT else Action.TURN_LEFT
         self.route = choice
         return next_action(self.route, pose, self.config.planning)
+
+    def _kept_from_drops(self, action: Action, pose: Pose) -> Action:
+        """Returns the action, or a turn when the action is a forward over a drop: those not planned do not see it."""
+        if action is not Action.MOVE_FORWARD:
+            return action
+        index, ahead = cells_near_segment(self.navmap.frame, pose.xy_m, pose.ahead(FORWARD_M), _TREAD_M)
+        return Action.TURN_LEFT if self.navmap.seen_drop[index][ahead].any() else action
 
     def _inspect(self, approach: Approach, pose: Pose) -> Action:
         """Faces the candidate from a viewpoint, then judges it."""

@@ -15,9 +15,12 @@ from sim.geometry.grid import GridFrame, Window
 _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest first, so that each is aligned
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
-        **{"frames_in_view": np.uint16, "found_step": np.int16, "obstacle_evidence": np.int8},
-        **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_),
-        **dict.fromkeys(("visited", "trail", "rejected", "set_aside"), np.bool_),
+        **{"frames_in_view": np.uint16, "found_step": np.int16},
+        **dict.fromkeys(("obstacle_evidence", "drop_evidence"), np.int8),
+        **dict.fromkeys(
+            ("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_
+        ),
+        **dict.fromkeys(("visited", "trail", "rejected", "set_aside", "seen_drop"), np.bool_),
     }
 )
 
@@ -46,6 +49,10 @@ class NavMap:
     """Evidence for an obstacle, from depth; `seen_obstacle` is True where it suffices."""
     seen_at_eye_level: Bool[np.ndarray, "rows cols"]
     """True: depth saw a surface at the camera's height, so a wall or an object as tall."""
+    drop_evidence: Int8[np.ndarray, "rows cols"]
+    """Evidence that the floor is missing, from depth."""
+    seen_drop: Bool[np.ndarray, "rows cols"]
+    """True: depth saw through the plane of the floor, so that the robot would fall."""
     pessimistic_marks: Bool[np.ndarray, "rows cols"]
     """True: inside a 25 x 25 cm mark in front of a failed move; the pessimistic map [2]."""
     optimistic_marks: Bool[np.ndarray, "rows cols"]

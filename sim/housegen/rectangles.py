@@ -100,6 +100,13 @@ class Rect:
         return Rect(a, span[0], b, span[1]) if side in ("east", "west") else Rect(span[0], a, span[1], b)
 
 
+def frame_around(outer: Rect, hole: Rect) -> list[Rect]:
+    """Returns the rectangles, none of them empty, that cover `outer` without `hole`; two have its whole depth."""
+    west, east = Rect(outer.x0, outer.y0, hole.x0, outer.y1), Rect(hole.x1, outer.y0, outer.x1, outer.y1)
+    south, north = Rect(hole.x0, outer.y0, hole.x1, hole.y0), Rect(hole.x0, hole.y1, hole.x1, outer.y1)
+    return [rect for rect in (west, east, south, north) if rect.width_m > EPS_M and rect.depth_m > EPS_M]
+
+
 def shared_side(a: Rect, b: Rect) -> tuple[Side, Interval] | None:
     """Returns the side of `a` on which `b` lies and the interval that both share; None where they do not touch."""
     for side in SIDES:

@@ -12,6 +12,7 @@ from jaxtyping import Bool, Float32, Int, Int32
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 from stubborn.mapping.projection import GroundPoints, Rays, sight_window_cells
@@ -42,6 +43,8 @@ class MappingConfig:
     """A candidate is removed when a frame sees through it and shows the target only farther than this behind it."""
     occupancy: OccupancyConfig = field(default_factory=OccupancyConfig)
     """Evidence from a noisy depth image."""
+    drops: DropConfig = field(default_factory=DropConfig)
+    """Missing floor, such as a stairwell."""
 
     def __post_init__(self) -> None:
         if min(self.obstacle_stride_px, self.score_stride_px) < 1:
@@ -92,6 +95,7 @@ class Mapper:
         self._obstacle_rays = Rays(camera, stride_px // 2, stride_px, used_top_m)
         self._score_rays: dict[int, Rays] = {}
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
+        self._drops = Drops(camera, self._obstacle_rays, config.drops)
 
     def add_depth(self, navmap: NavMap, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose) -> bool:
         """Enters one depth image in metres into the obstacle layers.
@@ -112,6 +116,7 @@ class Mapper:
         )
         in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
         self._occupancy.add(view, in_band, at_eye_level, sight, self._occupancy.evidence_of_one(surfaces))
+        self._drops.add(view, surfaces.depth, camera_pose)
         return surfaces.exact
 
     def add_scores(

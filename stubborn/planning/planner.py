@@ -105,8 +105,8 @@ class Planner:
         self.proven_ground = proven_ground
 
     def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
-        """Returns a new mask of depth obstacles and of the marks of a layer that the body has not proved wrong."""
-        return view.seen_obstacle | (view.collision_marks(layer) & ~self.proven_ground(view).body)
+        """Returns a new mask of depth obstacles, drops, and the marks of a layer that the body has not proved wrong."""
+        return view.seen_obstacle | view.seen_drop | (view.collision_marks(layer) & ~self.proven_ground(view).body)
 
     def unseen(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""

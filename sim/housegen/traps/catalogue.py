@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from sim.housegen.traps import glass, solid
+from sim.housegen.traps import drops, glass, solid
 from sim.housegen.traps.trap import TrapMaker
 
 TRAPS: Mapping[str, TrapMaker] = MappingProxyType(
@@ -31,7 +31,9 @@ TRAPS: Mapping[str, TrapMaker] = MappingProxyType(
             glass.glass_cell,
             glass.scan_forest,
             glass.glass_comb,
+            drops.stairwell_edge,
+            drops.sunken_area,
         )
     }
 )
-"""The first thirteen are the basic kinds of traps; the others combine them."""
+"""The first thirteen are the basic kinds of traps; six combine them; the last two have a drop."""

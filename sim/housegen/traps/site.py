@@ -6,6 +6,7 @@ The hall extends from (0, 0) to (length along x, width along y), its floor is at
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
-from sim.housegen.rectangles import Rect
+from sim.housegen.rectangles import Rect, frame_around
 
 CEILING_M = 2.5
 WALL_M = 0.1
@@ -36,14 +37,27 @@ Span = tuple[float, float]
 """A coordinate and a larger one."""
 
 
+@dataclass(frozen=True)
+class Pit:
+    """A place where the floor of a hall is lower, or opens to the storey below."""
+
+    rect: Rect
+    depth_m: float
+
+
 class TrapSite:
     """A builder of one scene; every object is labelled with its category and a number."""
 
-    def __init__(self, name: str, length_m: float, width_m: float, *, kind: str = "living_room") -> None:
+    def __init__(
+        self, name: str, length_m: float, width_m: float, *, kind: str = "living_room", pit: Pit | None = None
+    ) -> None:
         self.rect = Rect(0.0, 0.0, length_m, width_m)
+        self.pit = pit
         self._builder = HouseBuilder(name)
         self._rng = np.random.default_rng(0)
-        self._builder.add_ground(self.rect.grown(WALL_M))
+        around = self.rect.grown(WALL_M)
+        for rect in frame_around(around, pit.rect) if pit else [around]:
+            self._builder.add_ground(rect)
         self._builder.add_room(RoomBox(f"room_{kind}_00", self.rect), CEILING_M)
         self._add_shell()
         self._add_lights()
@@ -108,12 +122,23 @@ class TrapSite:
 
     def _add_shell(self) -> None:
         (x0, x1), (y0, y1) = (self.rect.x0, self.rect.x1), (self.rect.y0, self.rect.y1)
-        self.box("floor", (x0, x1), (y0, y1), (-0.1, 0.0), BOARDS, solid=False)
+        for rect in frame_around(self.rect, self.pit.rect) if self.pit else [self.rect]:
+            self.box("floor", (rect.x0, rect.x1), (rect.y0, rect.y1), (-0.1, 0.0), BOARDS, solid=False)
+        if self.pit:
+            self._add_pit(self.pit)
         self.box("ceiling", (x0, x1), (y0, y1), (CEILING_M, CEILING_M + 0.05), WHITE, solid=False)
         for x in ((x0 - WALL_M, x0), (x1, x1 + WALL_M)):
             self.wall(x, (y0 - WALL_M, y1 + WALL_M))
         for y in ((y0 - WALL_M, y0), (y1, y1 + WALL_M)):
             self.wall((x0, x1), y)
+
+    def _add_pit(self, pit: Pit) -> None:
+        """Adds the lower floor and the walls around it, which stand back a little under the upper floor."""
+        self._builder.add_ground(pit.rect, -pit.depth_m)
+        hole, bottom_m = pit.rect.grown(0.02), -pit.depth_m
+        self.box("floor", (hole.x0, hole.x1), (hole.y0, hole.y1), (bottom_m - 0.1, bottom_m), BOARDS, solid=False)
+        for side in frame_around(hole.grown(WALL_M), hole):
+            self.box("wall", (side.x0, side.x1), (side.y0, side.y1), (bottom_m - 0.1, -0.001), PAINT)
 
     def _add_lights(self) -> None:
         """Adds directional daylight from two sides."""
