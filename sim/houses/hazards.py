@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from sim.gl import mujoco
 
 _HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")
-_NEIGHBOURS = np.array([(r, c) for r in (-1, 0, 1) for c in (-1, 0, 1) if r or c])
 
 
 @dataclass(frozen=True)
@@ -64,12 +63,15 @@ def steepest_path(field_m: NDArray[np.float32], begin: tuple[int, int]) -> NDArr
 
     Each cell is the neighbour of the one before with the smallest distance; the path ends where none is smaller.
     """
-    cells = [np.array(begin)]
-    limit = np.array(field_m.shape) - 1
+    cols = field_m.shape[1] + 2
+    values = np.pad(field_m, 1, constant_values=np.inf).ravel()
+    around = np.array([row * cols + col for row in (-1, 0, 1) for col in (-1, 0, 1) if row or col])
+    here = (begin[0] + 1) * cols + begin[1] + 1
+    path = [here]
     while True:
-        near = np.clip(cells[-1] + _NEIGHBOURS, 0, limit)
-        values = field_m[near[:, 0], near[:, 1]]
-        best = int(values.argmin())
-        if not values[best] < field_m[tuple(cells[-1])]:
-            return np.array(cells)
-        cells.append(near[best])
+        best = here + int(around[values[here + around].argmin()])
+        if not values[best] < values[here]:
+            rows, columns = np.divmod(np.array(path), cols)
+            return np.stack([rows - 1, columns - 1], axis=1)
+        here = best
+        path.append(here)

@@ -1,4 +1,4 @@
-"""A hazard: objects that the robot collides with although depth does not show them as obstacles, and their footprint."""
+"""Data types of hazards: objects that block the robot although depth does not show them as obstacles."""
 
 from __future__ import annotations
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 STEP_M, ROBOT_HEIGHT_M = 0.03, 0.88
 """Geoms between these heights block the robot."""
 SITE_HEIGHT_M = 2.0
+Span = tuple[float, float]
+"""A coordinate and a larger one."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ class Sketch:
         looks: Mapping[str, Look],
     ) -> None:
         self.kind, self.x_m, self.y_m, self.yaw_rad = kind, x_m, y_m, yaw_rad
-        self.rng, self.pool, self.looks = rng, pool, looks
+        self.rng, self.looks = rng, looks
+        self._pool: Pool = pool
         self._parts: list[Part] = []
 
     def align(self) -> None:
@@ -117,7 +120,7 @@ class Sketch:
 
     def look(self, material: str) -> Look:
         """Draws a look of a material from the pool of the house."""
-        return look(material, self.rng, self.pool)
+        return look(material, self.rng, self._pool)
 
     def finish(self) -> PlacedHazard:
         """Returns the hazard."""

@@ -62,9 +62,9 @@ def draw_hazards(
         count = int(np.clip(round(area_m2 / FLOOR_M2), FEWEST, MOST))
     looks = {"frame": look("metal", rng, pool), "dots": look("paper", rng, pool)}
     placed: list[PlacedHazard] = []
-    order = [families[n] for n in rng.permutation(len(families)).tolist()]
-    for n in range(count):
-        hazard = _draw_hazard(rng, order[n % len(order)], pool, looks, floor)
+    order = [families[int(n)] for n in rng.permutation(len(families)).tolist()]
+    for n in range(count + len(order)):  # another family takes the turn of one that found no place
+        hazard = _draw_hazard(rng, order[n % len(order)], pool, looks, floor) if len(placed) < count else None
         if hazard is not None:
             placed.append(hazard)
     return tuple(placed)

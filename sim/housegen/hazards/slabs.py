@@ -1,4 +1,4 @@
-"""Slabs below the height at which maps begin: planks, plinths and podiums that block the robot, and thresholds that do not."""
+"""Slabs below the height at which maps begin: boards and podiums block the robot, thresholds do not."""
 
 from __future__ import annotations
 
