@@ -1,12 +1,12 @@
-"""Evaluates a RedNet on labelled views: intersection over union, calibration of its scores, time per frame.
+"""Evaluates a network on labelled views: intersection over union, calibration of its scores, time per frame.
 
     python tools/evaluate_rednet.py --views runs/views_val_fast runs/views_val_good
     python tools/evaluate_rednet.py --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
-        --fit-temperature --card stubborn/segmentation/weights/README.md
+        --calibrate --card stubborn/segmentation/weights/README.md
 
-With --fit-temperature the temperature of the softmax is fitted to the views of every second house, written to the
-file of the weights, and evaluated on the other houses; --block-px sets another resolution. --card writes the model
-card that is shipped with the weights.
+With --calibrate a factor and an offset of each category's logit are fitted to the views of every second house, written
+to the file of the weights, and evaluated on the other houses; --block-px sets another resolution. --card writes the
+model card that is shipped with the weights.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ from torch.utils.data import DataLoader
 from sim import cli
 from sim.composition.segmenters import weights_file
 from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
-from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.calibration import Calibration, fit_calibration
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, stored_block_px
-from stubborn.segmentation.evaluation import Iou, Reliability, evaluate, fit_temperature
-from stubborn.segmentation.network import RedNetSegmenter
-from stubborn.segmentation.rednet import CLASSES, RedNet
+from stubborn.segmentation.evaluation import Iou, Reliability, evaluate
+from stubborn.segmentation.network import NetworkSegmenter
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import NONE, Sampler, Samples
 
 TIMED_FRAMES = 30
@@ -38,7 +40,7 @@ ABOUT = """A RedNet ({parameters:,} parameters, {size_mb:.1f} MB) for images of 
 the categories of mpcat40; MIT licence.
 It was trained from random weights on views of this repository's houses only (pools train and wide). It was evaluated
 on houses of `val`, whose furniture styles and textures are in no train house, and its calibration on the half of them
-to which the temperature was not fitted. Checkpoint and resolution were chosen by mIoU on views of these houses as
+to which it was not fitted. Checkpoint and resolution were chosen by mIoU on views of these houses as
 well, so that the mIoU is slightly optimistic."""
 
 
@@ -50,12 +52,12 @@ class Args:
     """Folders of shards of one size (tools/generate_views.py), of houses that the network was not trained on."""
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
-    fit_temperature: bool = False
-    """Fit the softmax temperature and write it to the file of the weights."""
+    calibrate: bool = False
+    """Fit the calibration and write it to the file of the weights."""
     card: Path | None = None
     """File of the model card to write."""
     block_px: int | None = None
-    """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --fit-temperature stores it."""
+    """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
     threads: int = 2
     """Number of threads of PyTorch."""
 
@@ -69,10 +71,10 @@ class Measured:
     """mIoU over the goal categories of each folder of views."""
     views: int
     before: Reliability
-    """On the houses to which the temperature was not fitted, with temperature 1."""
+    """On the houses to which the calibration was not fitted, without one."""
     after: Reliability
-    """The same with the network's temperature."""
-    temperature: float
+    """The same with the network's calibration."""
+    calibration: Calibration
     frame_ms: float
 
 
@@ -84,13 +86,14 @@ def main(args: Args) -> int:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     file = weights_file(args.weights)
-    model, metadata = load_rednet(file)
+    model, metadata = load_network(file)
     if args.block_px is not None:
         metadata["block_px"] = args.block_px
     measured = measure(args, model, metadata)
-    if args.fit_temperature:
-        metadata["temperature"] = round(measured.temperature, 4)
-        save_rednet(file, model, metadata)
+    if args.calibrate:
+        metadata.pop("temperature", None)
+        metadata["calibration"] = measured.calibration.to_metadata()
+        save_network(file, model, metadata)
     text = card(args, file, metadata, measured)
     print(text)
     if args.card is not None:
@@ -98,7 +101,7 @@ def main(args: Args) -> int:
     return 0
 
 
-def measure(args: Args, model: RedNet, metadata: dict[str, Any]) -> Measured:
+def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
     """Returns the results of a network on the views of some folders."""
     block_px = int(metadata.get("block_px", 1))
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
@@ -107,22 +110,23 @@ def measure(args: Args, model: RedNet, metadata: dict[str, Any]) -> Measured:
         shards = list_shards(folder)
         found = [view for shard in shards for view in read_shard(shard)]
         iou, _ = evaluate(
-            model, loader(found, block_px, stored_block_px(shards)), device=torch.device("cpu"), into=matrix
+            model, loader(model, found, block_px, stored_block_px(shards)), device=torch.device("cpu"), into=matrix
         )
         by_folder[folder.name] = iou.goals
         views += [(view, stored_block_px(shards)) for view in found]
     fitted, others = split_by_house(views)
-    temperature = float(metadata.get("temperature", 1.0))
-    if args.fit_temperature:
-        temperature = fit_temperature(*sampled_logits(model, fitted, block_px))
+    calibration = Calibration.from_metadata(metadata)
+    if args.calibrate:
+        calibration = fit_calibration(*sampled_logits(model, fitted, block_px))
     logits, truth = sampled_logits(model, others, block_px)
     before, after = Reliability.empty(), Reliability.empty()
-    for reliability, t in ((before, 1.0), (after, temperature)):
-        reliability.add((logits / t).softmax(dim=1).T.numpy(), truth.numpy())
-    return Measured(Iou.of(matrix), by_folder, len(views), before, after, temperature, frame_ms(model, block_px))
+    for reliability, used in ((before, Calibration.of_temperature(1.0)), (after, calibration)):
+        scores = (logits * used.scale + used.offset).softmax(dim=1)
+        reliability.add(scores.T.numpy(), truth.numpy())
+    return Measured(Iou.of(matrix), by_folder, len(views), before, after, calibration, frame_ms(model, block_px))
 
 
-def loader(views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
+def loader(model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
     """Returns batches of views at the network's resolution.
 
     Raises:
@@ -132,7 +136,8 @@ def loader(views: Sequence[LabelledView], block_px: int, stored_px: int) -> Data
         raise ConfigError(
             f"The network needs blocks of {block_px} pixels, but the views are stored in blocks of {stored_px}."
         )
-    return DataLoader(Samples(views, Sampler(CameraModel(), block_px // stored_px, NONE)), batch_size=8)
+    sampler = Sampler(CameraModel(), block_px // stored_px, NONE, second=model.config.second)
+    return DataLoader(Samples(views, sampler), batch_size=8)
 
 
 def split_by_house(views: Sequence[tuple[LabelledView, int]]) -> tuple[list, list]:
@@ -150,12 +155,13 @@ def split_by_house(views: Sequence[tuple[LabelledView, int]]) -> tuple[list, lis
     return [v for v in views if v[0].record["house"] in first], [v for v in views if v[0].record["house"] not in first]
 
 
-def sampled_logits(model: RedNet, views: Sequence[tuple[LabelledView, int]], block_px: int) -> tuple[Tensor, Tensor]:
+def sampled_logits(model: Network, views: Sequence[tuple[LabelledView, int]], block_px: int) -> tuple[Tensor, Tensor]:
     """Returns logits (k, classes) and class channels (k,) of the labelled pixels in every eighth row and column."""
     logits, truth = [], []
     with torch.inference_mode():
         for stored_px in sorted({px for _, px in views}):
-            for rgb, depth, target in loader([view for view, px in views if px == stored_px], block_px, stored_px):
+            some_views = [view for view, px in views if px == stored_px]
+            for rgb, depth, target in loader(model, some_views, block_px, stored_px):
                 some = model(rgb, depth)[:, :, 2::8, 2::8].permute(0, 2, 3, 1).reshape(-1, CLASSES)
                 kept = target[:, 2::8, 2::8].reshape(-1)
                 logits.append(some[kept >= 0])
@@ -163,9 +169,9 @@ def sampled_logits(model: RedNet, views: Sequence[tuple[LabelledView, int]], blo
     return torch.cat(logits).clone(), torch.cat(truth).clone()  # a clone is not an inference tensor
 
 
-def frame_ms(model: RedNet, block_px: int) -> float:
+def frame_ms(model: Network, block_px: int) -> float:
     """Returns the median time of one frame in milliseconds, from 640 x 480 images to scores."""
-    segmenter = RedNetSegmenter(model, block_px=block_px, score_block_px=max(4, block_px))
+    segmenter = NetworkSegmenter(model, block_px=block_px)
     rng = np.random.default_rng(0)
     frame = {
         "rgb": rng.integers(0, 255, (480, 640, 3), np.uint8),
@@ -181,7 +187,7 @@ def frame_ms(model: RedNet, block_px: int) -> float:
 
 def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -> str:
     """Returns the model card, Markdown."""
-    parameters = sum(tensor.numel() for tensor in load_rednet(file)[0].parameters())
+    parameters = sum(tensor.numel() for tensor in load_network(file)[0].parameters())
     iou, px = measured.iou, int(metadata.get("block_px", 1))
     stages = list(training_stages(metadata))
     rows = [f"| {name} | {iou.by_category[name]:.3f} |" for name in GOAL_CATEGORIES if name in iou.by_category]
@@ -203,8 +209,8 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             f"| number of views | {measured.views} |",
             f"| time per frame, {args.threads} threads | {measured.frame_ms:.0f} ms |",
             *(f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages),
-            f"| calibration error, temperature 1 | {measured.before.error:.3f} |",
-            f"| calibration error, temperature {measured.temperature:.2f} | {measured.after.error:.3f} |",
+            f"| calibration error without calibration | {measured.before.error:.3f} |",
+            f"| calibration error, calibrated | {measured.after.error:.3f} |",
             "",
             "```sh",
             *(_command(stage) for stage in stages),
@@ -215,7 +221,7 @@ def card(args: Args, file: Path, metadata: dict[str, Any], measured: Measured) -
             *rows,
             "",
             *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
-            "Share of correct pixels by the score of a goal category, before and after the temperature:",
+            "Share of correct pixels by the score of a goal category, before and after calibration:",
             "",
             "| mean score | share correct | pixels | mean score | share correct | pixels |",
             "|---|---|---|---|---|---|",

@@ -33,7 +33,7 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.viewers.palette import with_legend
 from sim.world.world import World
 from stubborn.segmentation.dataset import tile
-from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.network import NetworkSegmenter
 
 Picture = NDArray[np.uint8]
 PANEL_PX = 320
@@ -64,7 +64,7 @@ def main(args: Args) -> int:
     if run.config.get("semantics") != "rednet":
         raise ConfigError(f"'{args.run}' was run with --semantics {run.config.get('semantics')}, not with rednet.")
     weights = run.config.get("weights")
-    network = RedNetSegmenter.from_file(weights_file(Path(weights) if weights else None))
+    network = NetworkSegmenter.from_file(weights_file(Path(weights) if weights else None))
     split = split_of(run)
     picked = [
         line
@@ -105,7 +105,7 @@ def render_at(world: World, pose: Sequence[float] | NDArray[np.floating]) -> dic
     return images
 
 
-def draw(images: dict[str, NDArray], network: RedNetSegmenter, goal: str) -> tuple[Picture, str]:
+def draw(images: dict[str, NDArray], network: NetworkSegmenter, goal: str) -> tuple[Picture, str]:
     """Returns one row of panels, and a text with the true categories where the network sees the goal."""
     size = (PANEL_PX, PANEL_PX * images["rgb"].shape[0] // images["rgb"].shape[1])
     guess = (network.logits(images["rgb"], images["depth"]).argmax(dim=0).numpy() + 1).astype(np.uint8)

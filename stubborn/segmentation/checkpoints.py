@@ -1,4 +1,4 @@
-"""Reads and writes the weights of a RedNet: our safetensors files, and published PyTorch checkpoints.
+"""Reads and writes the weights of a network: our safetensors files, and published PyTorch checkpoints.
 
 A checkpoint may wrap its tensors as `{"model_state": {...}}` and prefix each name with `module.`. No pickled code is
 run: PyTorch files are read with `torch.load(weights_only=True)`.
@@ -20,14 +20,15 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from sim.interface import ConfigError
-from stubborn.segmentation.rednet import PUBLISHED, RedNet, RedNetConfig
+from stubborn.segmentation.networks import FAMILIES, Network, NetworkConfig, build_network, family
+from stubborn.segmentation.rednet import PUBLISHED
 
 _WRAPPERS = ("model_state", "state_dict", "model")
 _PARALLEL_PREFIX = "module."
-_CONFIG_KEY = "rednet_config"
+_CONFIG_KEY = "{family}_config"
 
 
-def save_rednet(file: Path, model: RedNet, metadata: Mapping[str, Any] | None = None, *, half: bool = True) -> None:
+def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None = None, *, half: bool = True) -> None:
     """Writes weights and the size of the network as safetensors. The file is replaced in one step.
 
     Args:
@@ -40,17 +41,17 @@ def save_rednet(file: Path, model: RedNet, metadata: Mapping[str, Any] | None = 
         name: (tensor.half() if half and tensor.is_floating_point() else tensor).contiguous().cpu()
         for name, tensor in model.state_dict().items()
     }
-    header = {_CONFIG_KEY: json.dumps(asdict(model.config))}
+    header = {_CONFIG_KEY.format(family=family(model)): json.dumps(asdict(model.config))}
     header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
     part = file.with_name(file.name + ".part")
     save_file(tensors, part, metadata=header)
     os.replace(part, file)
 
 
-def load_rednet(file: Path) -> tuple[RedNet, dict[str, Any]]:
+def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
 
-    A `.safetensors` file of ours holds the size of its network; any other file must hold the published network.
+    A `.safetensors` file of ours holds the configuration of its network; any other file must hold the published RedNet.
 
     Raises:
         ConfigError: the file does not exist, is broken, or holds another network (the first different name is given).
@@ -61,8 +62,7 @@ def load_rednet(file: Path) -> tuple[RedNet, dict[str, Any]]:
         tensors, metadata = _read_safetensors(file)
     else:
         tensors, metadata = _read_checkpoint(file), {}
-    config = _config(file, metadata.pop(_CONFIG_KEY, None))
-    model = RedNet(config)
+    model = build_network(_config(file, metadata))
     tensors = unwrap(tensors, file)
     _check(file, tensors, model.state_dict())
     model.load_state_dict({name: tensors[name] for name in model.state_dict()})
@@ -117,15 +117,22 @@ def _read_checkpoint(file: Path) -> Mapping[str, Any]:
     return content
 
 
-def _config(file: Path, stored: Any) -> RedNetConfig:
-    """Returns the size of the network: the stored one, else the published one."""
-    if stored is None:
-        return PUBLISHED
-    try:
-        fields: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
-        return RedNetConfig(**fields)
-    except (TypeError, AttributeError):
-        raise ConfigError(f"Weights '{file}' describe no RedNet of ours: {stored!r}.") from None
+def _config(file: Path, metadata: dict[str, Any]) -> NetworkConfig:
+    """Takes the configuration of the network out of the metadata and returns it; the published one where there is none.
+
+    Raises:
+        ConfigError: the stored configuration is of no network of ours.
+    """
+    for name, (config_class, _) in FAMILIES.items():
+        stored = metadata.pop(_CONFIG_KEY.format(family=name), None)
+        if stored is None:
+            continue
+        try:
+            fields: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
+            return config_class(**fields)
+        except (TypeError, AttributeError):
+            raise ConfigError(f"Weights '{file}' describe no network of ours: {stored!r}.") from None
+    return PUBLISHED
 
 
 def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:

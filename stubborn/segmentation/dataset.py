@@ -21,8 +21,10 @@ import torch
 from jaxtyping import Float32, Float64, Shaped, UInt8
 from torch.utils.data import IterableDataset, get_worker_info
 
-from sim.interface import MPCAT40, ConfigError
+from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
 
+GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
+"""mpcat40 ids of the goal categories."""
 _PARTS = ("rgb", "depth", "semantic", "json")
 
 
@@ -84,6 +86,7 @@ class ViewDataset(IterableDataset):
         shards: files.
         transform: converts a view to a sample; each worker has a random generator of its own.
         buffer: number of views among which the next one is drawn.
+        repeats: returns how often a view is used in an epoch on average, at least once; None: once.
         seed: seeds the order and the transform, together with the epoch.
         shuffle: False reads in order, for evaluation.
     """
@@ -94,10 +97,12 @@ class ViewDataset(IterableDataset):
         transform: Callable[[LabelledView, np.random.Generator], Any],
         *,
         buffer: int = 1000,
+        repeats: Callable[[LabelledView], float] | None = None,
         seed: int = 0,
         shuffle: bool = True,
     ) -> None:
         super().__init__()
+        self.repeats = repeats
         self.shards = list(shards)
         self.transform = transform
         self.buffer = buffer
@@ -112,9 +117,19 @@ class ViewDataset(IterableDataset):
         order = np.random.default_rng([self.seed, self.epoch])
         shards = [self.shards[i] for i in order.permutation(len(self.shards))] if self.shuffle else self.shards
         rng = np.random.default_rng([self.seed, self.epoch, worker])
-        views = (view for shard in shards[worker::workers] for view in read_shard(shard))
+        once = (view for shard in shards[worker::workers] for view in read_shard(shard))
+        views = once if self.repeats is None else _repeated(once, self.repeats, rng)
         for view in _shuffled(views, rng, self.buffer) if self.shuffle else views:
             yield self.transform(view, rng)
+
+
+def _repeated(
+    views: Iterator[LabelledView], repeats: Callable[[LabelledView], float], rng: np.random.Generator
+) -> Iterator[LabelledView]:
+    """Yields each view as often as `repeats` says; fractions are rounded at random."""
+    for view in views:
+        for _ in range(int(repeats(view) + rng.random())):
+            yield view
 
 
 def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: int) -> Iterator[LabelledView]:
@@ -146,6 +161,52 @@ def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
             for view in read_shard(shard):
                 counts += np.bincount(view.semantic.reshape(-1), minlength=len(MPCAT40))
     return counts
+
+
+def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
+    """Returns the share of the views that show each mpcat40 category, from the JSON notes beside the shards.
+
+    Raises:
+        ConfigError: a shard has no note.
+    """
+    counts, total = np.zeros(len(MPCAT40)), 0
+    for shard in shards:
+        note = shard.with_suffix(".json")
+        if not note.is_file():
+            raise ConfigError(
+                f"Shard '{shard}' has no note '{note.name}' beside it; tools/generate_views.py writes it."
+            )
+        content = json.loads(note.read_text(encoding="utf-8"))
+        counts += [content["views_with"].get(name, 0) for name in MPCAT40]
+        total += int(content["views"])
+    return counts / max(total, 1)
+
+
+@dataclass(frozen=True)
+class RareObjectRepeats:
+    """A function from a view to how often it is used: views that show rare goal categories are used more often.
+
+    A category that a share f of the views show gives max(1, sqrt(wanted / f)), and a view takes the largest value of
+    the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). It counts objects
+    and not pixels, so that a large object is not preferred to a small one.
+    """
+
+    share: Float64[np.ndarray, " 41"]
+    """Share of the views that show each mpcat40 category."""
+    wanted: float = 0.15
+    """Share of the views below which a category is rare."""
+    most: float = 4.0
+    """Largest number of repetitions."""
+    pixels: int = 30
+    """A view shows a category of which it has at least this many pixels."""
+
+    def __call__(self, view: LabelledView) -> float:
+        """Returns the mean number of uses of a view in an epoch."""
+        seen = np.bincount(view.semantic.reshape(-1), minlength=len(MPCAT40)) >= self.pixels
+        shares = self.share[GOAL_IDS[seen[GOAL_IDS]]]
+        if shares.size == 0:
+            return 1.0
+        return float(np.clip(np.sqrt(self.wanted / max(float(shares.min()), 1e-6)), 1.0, self.most))
 
 
 def stored_block_px(shards: Sequence[Path]) -> int:

@@ -1,4 +1,4 @@
-"""Evaluation of a RedNet: intersection over union, calibration of its scores, and the softmax temperature."""
+"""Evaluation of a network: intersection over union, and how often its scores are right."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from jaxtyping import Float32, Float64, Int64
-from torch import Tensor, nn
+from torch import Tensor
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
-from stubborn.segmentation.rednet import CLASSES, RedNet
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.rednet import CLASSES
 
 GOAL_CHANNELS = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
 """Output channels of the goal categories."""
@@ -101,28 +102,8 @@ class Reliability:
         return float(sum(n * abs(score - right) for n, score, right in self.rows()) / total)
 
 
-def fit_temperature(logits: Float32[Tensor, "k classes"], truth: Int64[Tensor, " k"]) -> float:
-    """Returns the temperature that maximises the likelihood of the softmax of the logits (Guo et al. 2017).
-
-    Args:
-        logits: of the pixels that count.
-        truth: their class channels.
-    """
-    log_t = torch.zeros((), requires_grad=True)
-    optimiser = torch.optim.LBFGS([log_t], lr=0.1, max_iter=50)
-
-    def closure() -> Tensor:
-        optimiser.zero_grad()
-        loss = nn.functional.cross_entropy(logits / log_t.exp(), truth)
-        loss.backward()
-        return loss
-
-    optimiser.step(closure)
-    return float(log_t.detach().exp())
-
-
 def evaluate(
-    model: RedNet,
+    model: Network,
     batches: Iterable[tuple[Tensor, Tensor, Tensor]],
     *,
     device: torch.device,

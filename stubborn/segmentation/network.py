@@ -1,8 +1,9 @@
-"""A segmenter that scores each frame with a RedNet."""
+"""A segmenter that scores each frame with a network."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -10,68 +11,106 @@ from jaxtyping import Float, Float32, UInt8
 from torch import Tensor
 
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError, Observation, Scores, SegmenterSpec
-from stubborn.segmentation.checkpoints import load_rednet
-from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
+from stubborn.segmentation.calibration import Calibration
+from stubborn.segmentation.checkpoints import load_network
+from stubborn.segmentation.inputs import INPUTS
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import RedNet, folded
 
 
-class RedNetSegmenter:
-    """A segmenter whose scores are the softmax of a RedNet's logits.
+class _Frame(NamedTuple):
+    """The posteriors of the last frame, so that scores and posteriors of one frame cost one pass of the network."""
+
+    rgb: UInt8[np.ndarray, "h w 3"]
+    posteriors: Float32[np.ndarray, "classes rows cols"]
+
+
+class NetworkSegmenter:
+    """A segmenter whose scores are the calibrated softmax of a network's logits.
 
     Args:
         model: the network, in evaluation mode.
-        camera: gives the range by which depth is scaled.
+        camera: gives the field of view, the height and the range of the depth image.
         block_px: the network's input is the image shrunk by this factor.
-        score_block_px: edge of the image block that one score stands for; a multiple of `block_px`.
-        temperature: divides the logits before the softmax.
+        score_block_px: edge of the image block of one score; None: 4, or the network's own if it is larger.
+        calibration: applied to the logits before the softmax; None changes nothing.
         threads: number of PyTorch's threads in this process; None does not change it.
 
     Raises:
-        ConfigError: `score_block_px` is not a multiple of `block_px`, or the temperature is not positive.
+        ConfigError: `score_block_px` is not a multiple of the block of one logit of the network.
     """
 
     spec = SegmenterSpec(sensors=("rgb",))
 
     def __init__(
         self,
-        model: RedNet,
+        model: Network,
         *,
         camera: CameraModel | None = None,
         block_px: int = 2,
-        score_block_px: int = 4,
-        temperature: float = 1.0,
+        score_block_px: int | None = None,
+        calibration: Calibration | None = None,
         threads: int | None = None,
     ) -> None:
-        if block_px < 1 or score_block_px % block_px:
-            raise ConfigError(f"score_block_px must be a multiple of block_px >= 1, got {score_block_px}, {block_px}.")
-        if temperature <= 0:
-            raise ConfigError(f"The softmax temperature must be > 0, got {temperature}.")
+        finest_px = block_px * model.stride_px
+        score_block_px = score_block_px or max(4, finest_px)
+        if block_px < 1 or score_block_px % finest_px:
+            raise ConfigError(
+                f"score_block_px must be a multiple of the block of one logit, {finest_px} pixels for block_px "
+                f"{block_px}; got {score_block_px}."
+            )
         if threads is not None:
             torch.set_num_threads(threads)
+        self.second = INPUTS[model.config.second]
+        self.stride_px = model.stride_px
         self.model = folded(model)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.camera = camera or CameraModel()
         self.block_px = block_px
-        self.temperature = temperature
-        every = score_block_px // block_px
+        self.calibration = calibration or Calibration.of_temperature(1.0)
+        every = score_block_px // finest_px
         self._middle = slice(every // 2, None, every)
+        self._last: _Frame | None = None
 
     @classmethod
-    def from_file(cls, file: Path, **options: object) -> RedNetSegmenter:
-        """Returns a segmenter with the weights of a file, and with the resolution and temperature stored in it.
+    def from_file(
+        cls,
+        file: Path,
+        *,
+        temperature: float | None = None,
+        camera: CameraModel | None = None,
+        block_px: int | None = None,
+        score_block_px: int | None = None,
+        threads: int | None = None,
+    ) -> NetworkSegmenter:
+        """Returns a segmenter with the weights of a file, and with the resolution and calibration stored in it.
 
         Args:
-            file: weights; see `load_rednet`.
-            options: arguments of the class that replace the stored values.
+            file: weights; see `load_network`.
+            temperature: of the softmax, in place of the stored calibration.
+            camera: see the class.
+            block_px: in place of the stored one.
+            score_block_px: see the class.
+            threads: see the class.
 
         Raises:
-            ConfigError: see `load_rednet` and the class.
+            ConfigError: see `load_network`, `Calibration` and the class.
         """
-        model, metadata = load_rednet(file)
-        stored = {key: metadata[key] for key in ("block_px", "temperature") if key in metadata}
-        if model.config.bottleneck and "block_px" not in stored:
-            stored["block_px"] = 1  # the published network was trained on whole images
-        return cls(model, **{**stored, **options})  # pyright: ignore[reportArgumentType]
+        model, metadata = load_network(file)
+        whole = isinstance(model, RedNet) and model.config.bottleneck  # the published network saw whole images
+        stored_px = int(metadata.get("block_px", 1 if whole else 2))
+        calibration = (
+            Calibration.from_metadata(metadata) if temperature is None else Calibration.of_temperature(temperature)
+        )
+        return cls(
+            model,
+            camera=camera,
+            block_px=block_px or stored_px,
+            score_block_px=score_block_px,
+            calibration=calibration,
+            threads=threads,
+        )
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of one frame, float32 (h / score_block_px, w / score_block_px).
@@ -81,24 +120,33 @@ class RedNetSegmenter:
         """
         if goal not in MPCAT40_ID or goal == "void":
             raise ConfigError(f"No category {goal!r} that a network knows. There is: {', '.join(MPCAT40_ID)}.")
-        logits = self.logits(observation["rgb"], observation["depth"])[:, self._middle, self._middle]
-        return _scores(logits / self.temperature, MPCAT40_ID[goal] - 1)
+        posteriors, channel = self.posteriors(observation), MPCAT40_ID[goal] - 1
+        others = np.maximum(
+            posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
+        )
+        return Scores(posteriors[channel].copy(), others)
+
+    def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes rows cols"]:
+        """Returns the probability of each mpcat40 category but void, in their order, at the resolution of `scores`.
+
+        The array must not be changed: the scores of the same frame are read from it.
+        """
+        if self._last is None or self._last.rgb is not observation["rgb"]:
+            logits = self.logits(observation["rgb"], observation["depth"])[:, self._middle, self._middle]
+            probabilities = torch.softmax(self.calibration.applied(logits), dim=0).numpy()
+            self._last = _Frame(observation["rgb"], probabilities)
+        return self._last.posteriors
 
     def logits(
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:
-        """Returns the logits of one frame; rows and columns are those of the image divided by `block_px`."""
+        """Returns the logits of one frame; one for each square of `block_px` times the network's stride."""
         small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
+        channels = self.second.of(small_depth, self.camera)
         with torch.inference_mode():
             colour = torch.from_numpy(normalise_rgb(small_rgb))[None].to(memory_format=torch.channels_last)
-            metres = torch.from_numpy(normalise_depth(small_depth, self.camera))[None]
-            out = self.model(colour, metres)[0]
-        return out[:, *padding(*small_depth.shape).inner]
-
-
-def _scores(logits: Float[Tensor, "classes h w"], goal_channel: int) -> Scores:
-    """Returns the softmax of the goal's channel and the highest of the other channels."""
-    probability = torch.softmax(logits, dim=0)
-    target = probability[goal_channel].clone()
-    probability[goal_channel] = 0.0
-    return Scores(target.numpy(), probability.amax(dim=0).numpy())
+            second = torch.from_numpy(self.second.normalised(channels, self.camera))[None]
+            second = second.to(memory_format=torch.channels_last)
+            out = self.model.pyramid(colour, second, sides=False)[0][0]  # pyright: ignore[reportCallIssue]
+        pad = padding(*small_depth.shape)
+        return out[:, *(pad.inner if self.stride_px == 1 else pad.inner_half)]

@@ -32,11 +32,17 @@ class Padding(NamedTuple):
         """Rows and columns of the image in the padded image."""
         return slice(self.top, -self.bottom or None), slice(self.left, -self.right or None)
 
+    @property
+    def inner_half(self) -> tuple[slice, slice]:
+        """Rows and columns of the image in the padded image at half its size."""
+        return slice(self.top // 2, -(self.bottom // 2) or None), slice(self.left // 2, -(self.right // 2) or None)
+
 
 def padding(height_px: int, width_px: int) -> Padding:
-    """Returns the padding that an image of this size needs, in equal parts on opposite sides."""
+    """Returns the padding that an image of this size needs: even numbers at the top and the left, about half of it."""
     rows, cols = -height_px % STRIDE_PX, -width_px % STRIDE_PX
-    return Padding(rows // 2, rows - rows // 2, cols // 2, cols - cols // 2)
+    top, left = rows // 4 * 2, cols // 4 * 2
+    return Padding(top, rows - top, left, cols - left)
 
 
 def shrink(image: Shaped[np.ndarray, "h w *channels"], block_px: int) -> Shaped[np.ndarray, "rows cols *channels"]:
@@ -63,8 +69,7 @@ def shrink(image: Shaped[np.ndarray, "h w *channels"], block_px: int) -> Shaped[
 def normalise_rgb(rgb: UInt8[np.ndarray, "h w 3"]) -> Float32[np.ndarray, "3 padded_h padded_w"]:
     """Returns normalised colour, padded by repeating the edge."""
     scaled = (rgb.astype(np.float32) / 255.0 - RGB_MEAN) / RGB_STD
-    pad = padding(*rgb.shape[:2])
-    return np.pad(scaled.transpose(2, 0, 1), ((0, 0), pad[:2], pad[2:]), mode="edge")
+    return pad_edges(scaled.transpose(2, 0, 1))
 
 
 def normalise_depth(
@@ -79,5 +84,10 @@ def normalise_depth(
         raise ConfigError(f"A network needs a depth camera with a finite range, got max_depth_m {camera.max_depth_m}.")
     scaled = np.clip((depth_m - camera.min_depth_m) / (camera.max_depth_m - camera.min_depth_m), 0.0, 1.0)
     scaled = ((scaled - DEPTH_MEAN) / DEPTH_STD).astype(np.float32)
-    pad = padding(*depth_m.shape)
-    return np.pad(scaled[None], ((0, 0), pad[:2], pad[2:]), mode="edge")
+    return pad_edges(scaled[None])
+
+
+def pad_edges(channels: Float32[np.ndarray, "c h w"]) -> Float32[np.ndarray, "c padded_h padded_w"]:
+    """Returns an image of a size that a network takes, padded by repeating the edge."""
+    pad = padding(*channels.shape[1:])
+    return np.pad(channels, ((0, 0), pad[:2], pad[2:]), mode="edge")

@@ -11,15 +11,15 @@ from __future__ import annotations
 
 import copy
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from sim.interface import MPCAT40, ConfigError
+from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.preprocess import STRIDE_PX
 
 CLASSES = len(MPCAT40) - 1
@@ -41,6 +41,8 @@ class RedNetConfig:
     final_blocks: int = 3
     """Residual blocks at half the input's resolution, before the last upsampling."""
     classes: int = CLASSES
+    second: InputKind = "depth"
+    """Kind of the second input; the published network takes depth."""
 
     def __post_init__(self) -> None:
         counts = (self.width, self.classes, self.final_blocks, *self.encoder_blocks, *self.decoder_blocks)
@@ -54,7 +56,6 @@ COMPACT = RedNetConfig(
     width=32, encoder_blocks=(2, 2, 2, 2), bottleneck=False, decoder_blocks=(2, 2, 2, 2), final_blocks=1
 )
 """A narrow and shallow network that a CPU can run beside a simulator."""
-SIZES: Mapping[str, RedNetConfig] = MappingProxyType({"compact": COMPACT, "published": PUBLISHED})
 
 
 class BasicBlock(nn.Module):
@@ -131,7 +132,10 @@ class DecoderBlock(nn.Module):
 
 
 class RedNet(nn.Module):
-    """A network that computes class logits from colour and depth, normalised by `stubborn.segmentation.preprocess`."""
+    """A network that computes class logits from colour and depth (or geometric channels), normalised."""
+
+    stride_px = 1
+    """Edge of the square of input pixels that one logit of the finest output stands for."""
 
     def __init__(self, config: RedNetConfig = PUBLISHED) -> None:
         super().__init__()
@@ -141,7 +145,7 @@ class RedNet(nn.Module):
         widths = (w, 2 * w, 4 * w, 8 * w)
         self.conv1, self.bn1 = _stem(3, w)
         self.layer1, self.layer2, self.layer3, self.layer4 = _stages(block, w, widths, config.encoder_blocks)
-        self.conv1_d, self.bn1_d = _stem(1, w)
+        self.conv1_d, self.bn1_d = _stem(INPUTS[config.second].channels, w)
         self.layer1_d, self.layer2_d, self.layer3_d, self.layer4_d = _stages(block, w, widths, config.encoder_blocks)
         self.relu = nn.ReLU(inplace=True)
         self.maxpool = nn.MaxPool2d(3, stride=2, padding=1)
@@ -165,12 +169,12 @@ class RedNet(nn.Module):
         self.out2_conv_custom = nn.Conv2d(ends[3], config.classes, 1)
         self._initialise()
 
-    def forward(self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n 1 h w"]) -> Float[Tensor, "n classes h w"]:
+    def forward(self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n c h w"]) -> Float[Tensor, "n classes h w"]:
         """Returns the logits at full size."""
         return self.pyramid(rgb, depth, sides=False)[0]
 
     def pyramid(
-        self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n 1 h w"], *, sides: bool = True
+        self, rgb: Float[Tensor, "n 3 h w"], depth: Float[Tensor, "n c h w"], *, sides: bool = True
     ) -> tuple[Float[Tensor, "n classes _ _"], ...]:
         """Returns the logits at full size and, with `sides`, at 1/2, 1/4, 1/8 and 1/16 of it.
 
@@ -218,7 +222,7 @@ class RedNet(nn.Module):
                     nn.init.zeros_(module.bias)
 
 
-def folded(model: RedNet) -> RedNet:
+def folded(model: nn.Module) -> nn.Module:
     """Returns a copy for inference whose batch normalisations are part of the convolutions before them.
 
     The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only.

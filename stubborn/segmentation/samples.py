@@ -1,4 +1,4 @@
-"""Training samples of a RedNet: labels, random windows and augmentation of labelled views."""
+"""Training samples of a network: labels, random windows and augmentation of labelled views."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from torch.utils.data import Dataset
 
 from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.dataset import LabelledView
-from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
+from stubborn.segmentation.inputs import INPUTS, InputKind
+from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 
 IGNORED = -100
 """Label of pixels that do not count: void and padding."""
 
-Sample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "1 h w"], Int64[Tensor, "h w"]]
-"""Normalised colour, normalised depth, and class channels or `IGNORED`."""
+Sample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "c h w"], Int64[Tensor, "h w"]]
+"""Normalised colour, the normalised second input, and class channels or `IGNORED`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,21 +69,24 @@ class Sampler:
     """Samples are windows of this width, see `random_window`; None: whole views."""
     whole_share: float = 0.0
     """Share of the windows that show the whole view, shrunk, as in the input of a network that works on such images."""
+    second: InputKind = "depth"
+    """Kind of the network's second input. It is computed from the whole view, before the window is cut out."""
 
     def __call__(self, view: LabelledView, rng: np.random.Generator) -> Sample:
         """Returns a sample of a view."""
-        rgb = shrink(view.rgb, self.block_px)
-        depth_m = shrink(view.depth_m, self.block_px)
-        semantic = shrink(view.semantic, self.block_px)
+        augmentation, second = self.augmentation, INPUTS[self.second]
+        rgb, semantic = shrink(view.rgb, self.block_px), shrink(view.semantic, self.block_px)
+        channels = second.of(jitter_depth(shrink(view.depth_m, self.block_px), augmentation, rng), self.camera)
         if self.window_px is not None:
-            rgb, depth_m, semantic = random_window(rgb, depth_m, semantic, self.window_px, self.whole_share, rng)
-        augmentation = self.augmentation
+            height, width = semantic.shape
+            window = random_window(height, width, self.window_px, self.whole_share, rng)
+            rgb, semantic = window.colour(rgb), window.labels(semantic)
+            channels = second.zoomed(channels[window.cut], window.width_px, window.height_px)
         if augmentation.mirror and rng.random() < 0.5:
-            rgb, depth_m, semantic = _mirrored(rgb), _mirrored(depth_m), _mirrored(semantic)
-        rgb, depth_m = jitter_colour(rgb, augmentation, rng), jitter_depth(depth_m, augmentation, rng)
+            rgb, channels, semantic = _mirrored(rgb), second.mirrored(channels), _mirrored(semantic)
         return (
-            torch.from_numpy(normalise_rgb(rgb)),
-            torch.from_numpy(normalise_depth(depth_m, self.camera)),
+            torch.from_numpy(normalise_rgb(jitter_colour(rgb, augmentation, rng))),
+            torch.from_numpy(second.normalised(channels, self.camera)),
             torch.from_numpy(labels(semantic)),
         )
 
@@ -113,36 +117,46 @@ def labels(semantic: UInt8[np.ndarray, "h w"]) -> Int64[np.ndarray, "padded_h pa
     return np.pad(channel, (pad[:2], pad[2:]), constant_values=IGNORED)
 
 
-def random_window(
-    rgb: UInt8[np.ndarray, "h w 3"],
-    depth_m: Float32[np.ndarray, "h w"],
-    semantic: UInt8[np.ndarray, "h w"],
-    window_px: int,
-    whole_share: float,
-    rng: np.random.Generator,
-) -> tuple[UInt8[np.ndarray, "rows cols 3"], Float32[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
-    """Returns a window of the view at a random position and scale: fewer pixels per step, objects in several sizes.
+@dataclass(frozen=True)
+class Window:
+    """A rectangle of a view, and the resolution at which it is used."""
 
-    The window has the proportions of the view and is `window_px` wide. Its scale is between that of the whole view,
+    cut: tuple[slice, slice]
+    """Rows and columns of the view."""
+    width_px: int
+    height_px: int
+
+    def colour(self, rgb: UInt8[np.ndarray, "h w 3"]) -> UInt8[np.ndarray, "rows cols 3"]:
+        """Returns the window of a colour image; pixels are averaged."""
+        return cv2.resize(rgb[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_AREA).astype(
+            np.uint8, copy=False
+        )
+
+    def labels(self, semantic: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "rows cols"]:
+        """Returns the window of an image of labels; each pixel takes one pixel of the view."""
+        return cv2.resize(semantic[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST).astype(
+            np.uint8, copy=False
+        )
+
+
+def random_window(
+    height_px: int, width_px: int, window_px: int, whole_share: float, rng: np.random.Generator
+) -> Window:
+    """Returns a window at a random position and scale: fewer pixels per step, objects in several sizes.
+
+    A window has the proportions of the view and is `window_px` wide. Its scale is between that of the whole view,
     shrunk, and that of the view's own pixels. With a probability of `whole_share` it is the whole view.
 
     Raises:
         ConfigError: the view is narrower than the window.
     """
-    height, width = semantic.shape
-    if window_px > width:
-        raise ConfigError(f"A view of {width} columns has no window of {window_px}.")
-    smallest = 0.0 if rng.random() < whole_share else np.log(window_px / width)
-    cols = round(width * float(np.exp(rng.uniform(smallest, 0.0))))
-    rows, window_rows = round(height * cols / width), round(height * window_px / width)
-    top, left = rng.integers(0, height - rows + 1), rng.integers(0, width - cols + 1)
-    cut = (slice(top, top + rows), slice(left, left + cols))
-    shape = (window_px, window_rows)
-    return (
-        cv2.resize(rgb[cut], shape, interpolation=cv2.INTER_AREA).astype(np.uint8, copy=False),
-        cv2.resize(depth_m[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.float32, copy=False),
-        cv2.resize(semantic[cut], shape, interpolation=cv2.INTER_NEAREST).astype(np.uint8, copy=False),
-    )
+    if window_px > width_px:
+        raise ConfigError(f"A view of {width_px} columns has no window of {window_px}.")
+    smallest = 0.0 if rng.random() < whole_share else np.log(window_px / width_px)
+    cols = round(width_px * float(np.exp(rng.uniform(smallest, 0.0))))
+    rows, window_rows = round(height_px * cols / width_px), round(height_px * window_px / width_px)
+    top, left = int(rng.integers(0, height_px - rows + 1)), int(rng.integers(0, width_px - cols + 1))
+    return Window((slice(top, top + rows), slice(left, left + cols)), window_px, window_rows)
 
 
 def turn_hue(image: Float32[np.ndarray, "h w 3"], angle_rad: float) -> Float32[np.ndarray, "h w 3"]:

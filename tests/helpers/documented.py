@@ -258,11 +258,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
         f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/evaluate_rednet.py --views views_val --fit-temperature --card card.md "
+    f"{PYTHON} tools/evaluate_rednet.py --views views_val --calibrate --card card.md "
     "--weights runs/rednet/rednet.safetensors": (
         f"{_VIEWS} --views-per-shard 2",
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
-        f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --fit-temperature --card {{tmp}}/card.md "
+        f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --calibrate --card {{tmp}}/card.md "
         "--weights {tmp}/rednet.safetensors",
     ),
     f"{_RUN} --episodes 50 --record --out runs/looked": (

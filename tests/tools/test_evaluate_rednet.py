@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
 from sim.interface import ConfigError
-from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from tests.tools.test_train_rednet import write_views
 from tools import evaluate_rednet
@@ -24,19 +25,19 @@ def weights(tmp_path: Path) -> Path:
     model = RedNet(TINY)
     with torch.no_grad():
         model.final_deconv_custom.weight *= 5.0
-    save_rednet(tmp_path / "tiny.safetensors", model, {"block_px": 1, "step": 7})
+    save_network(tmp_path / "tiny.safetensors", model, {"block_px": 1, "step": 7})
     return tmp_path / "tiny.safetensors"
 
 
-def test_a_temperature_is_fitted_written_and_improves_calibration(tmp_path: Path, weights: Path) -> None:
+def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
     card = tmp_path / "card.md"
-    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, fit_temperature=True, card=card, threads=1)
-    before = load_rednet(weights)[0].state_dict()
+    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, calibrate=True, card=card, threads=1)
+    before = load_network(weights)[0].state_dict()
     assert evaluate_rednet.main(args) == 0
-    model, metadata = load_rednet(weights)
-    assert metadata["temperature"] > 2.0
+    model, metadata = load_network(weights)
+    assert np.mean(metadata["calibration"]["scale"]) < 0.5
     assert metadata["step"] == 7
     assert all(torch.equal(before[name], tensor) for name, tensor in model.state_dict().items())
     measured = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1), model, metadata)
@@ -44,18 +45,17 @@ def test_a_temperature_is_fitted_written_and_improves_calibration(tmp_path: Path
     assert measured.after.error < 0.5 * measured.before.error
     assert 0.0 <= measured.iou.goals <= 1.0
     text = card.read_text()
-    assert f"temperature {metadata['temperature']:.2f}" in text
     assert "| number of views | 8 |" in text
 
 
-def test_another_resolution_is_evaluated_and_written_with_the_temperature(tmp_path: Path, weights: Path) -> None:
+def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_path: Path, weights: Path) -> None:
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
     views = (tmp_path / "one", tmp_path / "two")
     assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1)) == 0
-    assert load_rednet(weights)[1]["block_px"] == 1
-    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1, fit_temperature=True)) == 0
-    assert load_rednet(weights)[1]["block_px"] == 2
+    assert load_network(weights)[1]["block_px"] == 1
+    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1, calibrate=True)) == 0
+    assert load_network(weights)[1]["block_px"] == 2
 
 
 def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path: Path, weights: Path) -> None:
@@ -64,7 +64,7 @@ def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path
         view for shard in evaluate_rednet.list_shards(tmp_path / "one") for view in evaluate_rednet.read_shard(shard)
     ]
     with pytest.raises(ConfigError, match="needs blocks of 1 pixels, but the views are stored in blocks of 2"):
-        evaluate_rednet.loader(views, 1, 2)
+        evaluate_rednet.loader(RedNet(TINY), views, 1, 2)
     with pytest.raises(ConfigError, match="one house"):
         evaluate_rednet.split_by_house([(views[0], 1)])
     with pytest.raises(ConfigError, match="--threads must be at least 1"):

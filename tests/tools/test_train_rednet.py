@@ -14,7 +14,7 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40_ID, ConfigError
-from stubborn.segmentation.checkpoints import load_rednet
+from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.rednet import COMPACT
 from tools import evaluate_rednet
 from tools.train_rednet import Args, main
@@ -60,7 +60,7 @@ def test_training_writes_curves_and_weights_and_continues_a_run(tmp_path: Path) 
     assert main(options(tmp_path, views=folders)) == 0
     first = rows(tmp_path / "out/val.csv")
     assert [row["step"] for row in first] == ["2", "4"]
-    model, card = load_rednet(tmp_path / "out/rednet.safetensors")
+    model, card = load_network(tmp_path / "out/rednet.safetensors")
     assert model.config == COMPACT
     assert card["block_px"] == 1
     assert card["options"]["views"] == [str(folder) for folder in folders]
@@ -84,7 +84,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         "evaluate_every": 1,
     }
     assert main(options(tmp_path, out=tmp_path / "finer", **slow)) == 0
-    (before, earlier), (after, card) = load_rednet(first), load_rednet(tmp_path / "finer/rednet.safetensors")
+    (before, earlier), (after, card) = load_network(first), load_network(tmp_path / "finer/rednet.safetensors")
     assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options")}
     assert card["options"]["window_px"] == "32"
     assert (earlier["block_px"], card["block_px"]) == (1, 2)
@@ -92,7 +92,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     assert (
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
-    _, last = load_rednet(tmp_path / "finest/rednet.safetensors")
+    _, last = load_network(tmp_path / "finest/rednet.safetensors")
     folders = [stage["options"]["out"] for stage in evaluate_rednet.training_stages(last)]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
 
@@ -102,7 +102,7 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
     write_views(tmp_path / "val", 1)
     with pytest.raises(ConfigError, match="fewer views than one batch of 2"):
         main(options(tmp_path))
-    with pytest.raises(ConfigError, match="--size must be one of compact, published, got 'huge'"):
+    with pytest.raises(ConfigError, match="--size must be one of compact, compact-geometry, .*, got 'huge'"):
         main(options(tmp_path, size="huge"))
     with pytest.raises(ConfigError, match=r"--window-px must be at least 32 .*, got 16"):
         main(options(tmp_path, window_px=16))

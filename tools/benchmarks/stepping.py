@@ -14,7 +14,7 @@ from sim.task.objectnav import Task
 from sim.world.world import World
 from stubborn.mapping.mapper import Mapper
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.network import NetworkSegmenter
 from tools.benchmarks.figures import Figure, Goal, stopwatch
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
@@ -29,7 +29,7 @@ _WORLD = {
 }
 _AGENT = {
     "mapping": [(Mapper, "add_depth"), (Mapper, "add_scores")],
-    "detection": [(GroundTruthSegmenter, "scores"), (RedNetSegmenter, "scores")],
+    "detection": [(GroundTruthSegmenter, "scores"), (NetworkSegmenter, "scores")],
 }
 
 

@@ -15,8 +15,8 @@ from sim.composition.options import RunOptions, check_options
 from sim.composition.run_config import configuration_of, record_of
 from sim.composition.segmenters import NetworkConfig, make_segmenter
 from sim.interface import CameraModel, ConfigError
-from stubborn.segmentation.checkpoints import save_rednet
-from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.checkpoints import save_network
+from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -31,14 +31,15 @@ class Eyes:
 @pytest.fixture
 def weights(tmp_path: Path) -> Path:
     torch.manual_seed(0)
-    save_rednet(tmp_path / "tiny.safetensors", RedNet(TINY), {"block_px": 4, "temperature": 1.5})
+    save_network(tmp_path / "tiny.safetensors", RedNet(TINY), {"block_px": 4, "temperature": 1.5})
     return tmp_path / "tiny.safetensors"
 
 
 def test_rednet_is_made_of_the_weights_that_are_given(weights: Path) -> None:
     segmenter = make_segmenter("rednet", Eyes(), NetworkConfig(weights=weights))  # type: ignore[arg-type]
-    assert isinstance(segmenter, RedNetSegmenter)
-    assert (segmenter.block_px, segmenter.temperature) == (4, 1.5)
+    assert isinstance(segmenter, NetworkSegmenter)
+    assert segmenter.block_px == 4
+    assert float(segmenter.calibration.scale[0]) == pytest.approx(1 / 1.5)
     rng = np.random.default_rng(0)
     rgb, depth = rng.integers(0, 255, (480, 640, 3), np.uint8), np.full((480, 640), 2.0, np.float32)
     scores = segmenter.scores({"rgb": rgb, "depth": depth}, "chair")
@@ -65,7 +66,7 @@ def test_the_checksum_of_the_weights_is_part_of_a_run(weights: Path, tmp_path: P
 
     first = checksums(weights)
     other = tmp_path / "other.safetensors"
-    save_rednet(other, RedNet(TINY), {"block_px": 4})
+    save_network(other, RedNet(TINY), {"block_px": 4})
     assert first != checksums(other)
     assert json.dumps(first)
 

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from sim.interface import ConfigError
-from stubborn.segmentation.checkpoints import load_rednet, save_rednet
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
 TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -28,7 +28,7 @@ def test_a_checkpoint_in_the_published_wrapper_loads_into_the_published_network(
 ) -> None:
     file = tmp_path / "rednet_semmap_mp3d_40.pth"
     torch.save({"model_state": {f"module.{name}": value for name, value in published_state.items()}}, file)
-    model, _ = load_rednet(file)
+    model, _ = load_network(file)
     loaded = model.state_dict()
     assert list(loaded) == list(published_state)
     assert all(bool((loaded[name] == published_state[name]).all()) for name in loaded)
@@ -41,17 +41,17 @@ def test_a_different_shape_is_refused_with_its_name(published_state: dict[str, t
     wrong["out2_conv_custom.bias"] = torch.zeros(21)
     torch.save(wrong, tmp_path / "wrong.pth")
     with pytest.raises(ConfigError, match=r"'layer2\.0\.conv1\.weight' is \(128, 255, 1, 1\), not \(128, 256, 1, 1\)"):
-        load_rednet(tmp_path / "wrong.pth")
+        load_network(tmp_path / "wrong.pth")
 
 
 def test_a_missing_and_an_unknown_name_are_refused(published_state: dict[str, torch.Tensor], tmp_path: Path) -> None:
     missing = {name: value for name, value in published_state.items() if name != "agant3.1.bias"}
     torch.save(missing, tmp_path / "missing.pth")
     with pytest.raises(ConfigError, match=r"'agant3\.1\.bias' is missing"):
-        load_rednet(tmp_path / "missing.pth")
+        load_network(tmp_path / "missing.pth")
     torch.save({**published_state, "head.weight": torch.zeros(1)}, tmp_path / "foreign.pth")
     with pytest.raises(ConfigError, match=r"'head\.weight' is not in it"):
-        load_rednet(tmp_path / "foreign.pth")
+        load_network(tmp_path / "foreign.pth")
 
 
 class _Malicious:
@@ -62,7 +62,7 @@ class _Malicious:
 def test_pickled_code_is_not_run(tmp_path: Path) -> None:
     torch.save({"model_state": _Malicious()}, tmp_path / "evil.pth")
     with pytest.raises(ConfigError, match="cannot be read as a PyTorch checkpoint"):
-        load_rednet(tmp_path / "evil.pth")
+        load_network(tmp_path / "evil.pth")
     assert not Path("/tmp/a-pickle-was-run").exists()
 
 
@@ -70,27 +70,27 @@ def test_pickled_code_is_not_run(tmp_path: Path) -> None:
 def test_a_broken_file_is_refused(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_bytes(b"not weights at all")
     with pytest.raises(ConfigError, match=f"{name}' cannot be read"):
-        load_rednet(tmp_path / name)
+        load_network(tmp_path / name)
 
 
 def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "net.safetensors"
-    save_rednet(file, RedNet(TINY))
+    save_network(file, RedNet(TINY))
     file.write_bytes(file.read_bytes()[:-100])
     with pytest.raises(ConfigError, match="cannot be read"):
-        load_rednet(file)
+        load_network(file)
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"No weights at '.*nowhere\.pth'"):
-        load_rednet(tmp_path / "nowhere.pth")
+        load_network(tmp_path / "nowhere.pth")
 
 
 def test_a_saved_network_loads_with_the_same_size_and_weights(tmp_path: Path) -> None:
     torch.manual_seed(1)
     model = RedNet(TINY).eval()
-    save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.25, "command": "none"}, half=False)
-    loaded, metadata = load_rednet(tmp_path / "net.safetensors")
+    save_network(tmp_path / "net.safetensors", model, {"temperature": 1.25, "command": "none"}, half=False)
+    loaded, metadata = load_network(tmp_path / "net.safetensors")
     rgb, depth = torch.randn(1, 3, 32, 64), torch.randn(1, 1, 32, 64)
     assert loaded.config == TINY
     assert metadata == {"temperature": 1.25, "command": "none"}

@@ -7,7 +7,8 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40_ID
-from stubborn.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, confusion, fit_temperature
+from stubborn.segmentation.calibration import fit_temperature
+from stubborn.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, confusion
 from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import IGNORED
 

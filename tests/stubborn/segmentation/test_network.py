@@ -9,8 +9,9 @@ import pytest
 import torch
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError
-from stubborn.segmentation.checkpoints import save_rednet
-from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.calibration import Calibration
+from stubborn.segmentation.checkpoints import save_network
+from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.preprocess import normalise_depth, normalise_rgb, padding, shrink
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 
@@ -33,7 +34,7 @@ def frame() -> dict[str, np.ndarray]:
 
 
 def test_scores_are_the_softmax_at_the_middle_pixels_of_blocks(model: RedNet, frame: dict[str, np.ndarray]) -> None:
-    segmenter = RedNetSegmenter(model, temperature=2.0)
+    segmenter = NetworkSegmenter(model, calibration=Calibration.of_temperature(2.0))
     scores = segmenter.scores(frame, "sofa")
     logits = segmenter.logits(frame["rgb"], frame["depth"]).numpy()[:, 1::2, 1::2] / 2.0
     probability = np.exp(logits - logits.max(axis=0))
@@ -45,7 +46,7 @@ def test_scores_are_the_softmax_at_the_middle_pixels_of_blocks(model: RedNet, fr
 
 @pytest.mark.parametrize("goal", GOAL_CATEGORIES)
 def test_scores_of_every_goal_are_probabilities(model: RedNet, frame: dict[str, np.ndarray], goal: str) -> None:
-    target, best_other = RedNetSegmenter(model).scores(frame, goal)
+    target, best_other = NetworkSegmenter(model).scores(frame, goal)
     assert target.shape == best_other.shape == (120, 160)
     assert target.dtype == best_other.dtype == np.float32
     assert target.min() >= 0.0
@@ -56,7 +57,7 @@ def test_the_frame_is_not_changed_and_the_same_frame_gives_the_same_scores(
     model: RedNet, frame: dict[str, np.ndarray]
 ) -> None:
     before = {name: image.copy() for name, image in frame.items()}
-    segmenter = RedNetSegmenter(model)
+    segmenter = NetworkSegmenter(model)
     first, second = segmenter.scores(frame, "bed"), segmenter.scores(frame, "bed")
     assert np.array_equal(first.target, second.target)
     assert all(np.array_equal(before[name], frame[name]) for name in frame)
@@ -88,14 +89,15 @@ def test_shrinking_takes_the_middle_label_of_a_block() -> None:
 
 def test_unknown_goals_and_wrong_block_sizes_are_refused(model: RedNet, frame: dict[str, np.ndarray]) -> None:
     with pytest.raises(ConfigError, match="No category 'unicorn'"):
-        RedNetSegmenter(model).scores(frame, "unicorn")
-    with pytest.raises(ConfigError, match="multiple of block_px"):
-        RedNetSegmenter(model, block_px=3, score_block_px=4)
+        NetworkSegmenter(model).scores(frame, "unicorn")
+    with pytest.raises(ConfigError, match="multiple of the block of one logit, 3 pixels"):
+        NetworkSegmenter(model, block_px=3, score_block_px=4)
     with pytest.raises(ConfigError, match="temperature must be > 0"):
-        RedNetSegmenter(model, temperature=0.0)
+        Calibration.of_temperature(0.0)
 
 
 def test_resolution_and_temperature_are_stored_with_the_weights(model: RedNet, tmp_path: Path) -> None:
-    save_rednet(tmp_path / "net.safetensors", model, {"temperature": 1.5, "block_px": 4})
-    segmenter = RedNetSegmenter.from_file(tmp_path / "net.safetensors")
-    assert (segmenter.temperature, segmenter.block_px) == (1.5, 4)
+    save_network(tmp_path / "net.safetensors", model, {"temperature": 1.5, "block_px": 4})
+    segmenter = NetworkSegmenter.from_file(tmp_path / "net.safetensors")
+    assert float(segmenter.calibration.scale[3]) == pytest.approx(1 / 1.5)
+    assert segmenter.block_px == 4

@@ -9,6 +9,7 @@ import pytest
 import torch
 
 from sim.interface import CameraModel, ConfigError
+from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.samples import (
     IGNORED,
     NONE,
@@ -30,8 +31,8 @@ def test_labels_are_channels_and_void_and_padding_are_ignored() -> None:
     assert channel[0, 0] == IGNORED
     assert (channel[0, 31], channel[31, 0], channel[31, 31]) == (0, 2, 39)
     padded = labels(np.full((30, 32), 5, np.uint8))
-    assert (padded[0] == IGNORED).all()
-    assert (padded[1:31] == 4).all()
+    assert (padded[30:] == IGNORED).all()
+    assert (padded[:30] == 4).all()
 
 
 def test_a_mirrored_sample_is_mirrored_in_all_its_images() -> None:
@@ -65,31 +66,34 @@ def test_jitter_changes_images_within_bounds_and_NONE_changes_nothing() -> None:
 
 def test_windows_have_one_size_and_all_positions_and_scales() -> None:
     row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
-    depth = (1000 * row.astype(np.float32)) + col
+    depth = (1000 * row.astype(np.float32) + col)[..., None]
     spans, corners = [], []
     for seed in range(300):
-        rgb, depth_m, semantic = random_window(
-            np.stack([row, row, row], axis=2), depth, col, 40, 0.0, np.random.default_rng(seed)
-        )
+        window = random_window(60, 80, 40, 0.0, np.random.default_rng(seed))
+        rgb, semantic = window.colour(np.stack([row, row, row], axis=2)), window.labels(col)
+        cut = depth[window.cut]
+        nearer = INPUTS["depth"].zoomed(cut, window.width_px, window.height_px)
         assert rgb.shape == (30, 40, 3)
-        assert (rgb.dtype, depth_m.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
-        assert (depth_m % 1000 == semantic).all()  # depth and labels are of the same pixels
-        assert np.abs(rgb[..., 0] - depth_m // 1000).max() <= 1  # colour is an average around them
+        assert (rgb.dtype, nearer.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
+        metres = np.round(
+            nearer[..., 0] * (40 / cut.shape[1])
+        )  # half the depth at twice the size
+        assert (metres % 1000 == semantic).all()  # depth and labels are of the same pixels
+        assert np.abs(rgb[..., 0] - metres // 1000).max() <= 1  # colour is an average around them
         spans.append(float(semantic[0, -1]) - semantic[0, 0])
-        corners.append((depth_m[0, 0] // 1000, semantic[0, 0]))
+        corners.append((metres[0, 0] // 1000, semantic[0, 0]))
     assert 38 <= min(spans) <= 41  # a cut-out
     assert 74 <= max(spans) <= 79  # the whole view
     assert np.median(spans) == pytest.approx(80 / np.sqrt(2), abs=4)  # a zoom in is as likely as one out
     assert np.min(corners, axis=0).tolist() == [0, 0]
     assert np.max(corners, axis=0).tolist() >= [25, 35]
     with pytest.raises(ConfigError, match="80 columns has no window of 81"):
-        random_window(np.stack([row, row, row], axis=2), depth, col, 81, 0.0, np.random.default_rng(0))
+        random_window(60, 80, 81, 0.0, np.random.default_rng(0))
 
 
 def test_a_share_of_the_windows_is_the_whole_view() -> None:
-    row, col = np.mgrid[0:60, 0:80].astype(np.uint8)
-    rgb, depth = np.stack([row, row, row], axis=2), row.astype(np.float32)
-    windows = [random_window(rgb, depth, col, 40, 0.6, np.random.default_rng(seed))[2] for seed in range(300)]
+    col = np.mgrid[0:60, 0:80].astype(np.uint8)[1]
+    windows = [random_window(60, 80, 40, 0.6, np.random.default_rng(seed)).labels(col) for seed in range(300)]
     whole = np.mean([window[0, 0] == 0 and window[0, -1] >= 78 for window in windows])
     assert whole == pytest.approx(0.6, abs=0.09)
 

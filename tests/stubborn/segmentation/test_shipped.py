@@ -9,15 +9,15 @@ from sim.env.scene import Scene
 from sim.episodes.splits import load_split
 from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
-from stubborn.segmentation.checkpoints import load_rednet
-from stubborn.segmentation.network import RedNetSegmenter
+from stubborn.segmentation.checkpoints import load_network
+from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.rednet import COMPACT
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 
 def test_it_is_small_and_its_card_agrees_with_it() -> None:
     assert SHIPPED_REDNET.stat().st_size <= 20_000_000
-    model, metadata = load_rednet(SHIPPED_REDNET)
+    model, metadata = load_network(SHIPPED_REDNET)
     assert model.config == COMPACT
     card = SHIPPED_REDNET.with_name("README.md").read_text(encoding="utf-8")
     assert f"temperature {metadata['temperature']:.2f}" in card
@@ -37,7 +37,7 @@ def test_it_is_right_at_most_pixels_in_a_house_of_val() -> None:
         views = list(sample_views(scene, np.random.default_rng(0), 6, stem="v", record={}))
     finally:
         scene.close()
-    segmenter = RedNetSegmenter.from_file(SHIPPED_REDNET, threads=1)
+    segmenter = NetworkSegmenter.from_file(SHIPPED_REDNET, threads=1)
     right = total = 0
     for view in views:
         predicted = segmenter.logits(view.rgb, (view.depth_mm / 1000).astype(np.float32)).argmax(dim=0).numpy() + 1

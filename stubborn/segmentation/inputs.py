@@ -1,0 +1,109 @@
+"""The kinds of second input of a network beside colour: the depth of the published RedNet, or geometric channels.
+
+Both are computed from the whole image before any crop. A network names the kind that it takes; training and the agent
+use the same functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Literal, Protocol
+
+import cv2
+import numpy as np
+from jaxtyping import Float32
+
+from sim.interface import CameraModel
+from stubborn.segmentation import geometry
+from stubborn.segmentation.preprocess import normalise_depth, pad_edges
+
+InputKind = Literal["depth", "geometry"]
+
+
+class SecondInput(Protocol):
+    """One kind of input beside colour."""
+
+    channels: int
+    """Number of channels."""
+
+    def of(self, depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w c"]:
+        """Returns the channels of a whole depth image, not yet normalised.
+
+        Raises:
+            ConfigError: the camera's range is not finite, or the image is not the whole image of this camera.
+        """
+        ...
+
+    def mirrored(self, channels: Float32[np.ndarray, "h w c"]) -> Float32[np.ndarray, "h w c"]:
+        """Returns the channels of the scene mirrored left to right."""
+        ...
+
+    def zoomed(
+        self, channels: Float32[np.ndarray, "h w c"], width_px: int, height_px: int
+    ) -> Float32[np.ndarray, "rows cols c"]:
+        """Returns a window at another resolution, with distances for which its objects keep their metric size."""
+        ...
+
+    def normalised(
+        self, channels: Float32[np.ndarray, "h w c"], camera: CameraModel
+    ) -> Float32[np.ndarray, "c padded_h padded_w"]:
+        """Returns the network's input: scaled, channels first, padded by repeating the edge."""
+        ...
+
+
+class DepthInput:
+    """Depth along the optical axis, scaled over the sensor's range as in the published network."""
+
+    channels = 1
+
+    def of(self, depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w 1"]:
+        """Returns the depth in metres."""
+        return depth_m[..., None]
+
+    def mirrored(self, channels: Float32[np.ndarray, "h w 1"]) -> Float32[np.ndarray, "h w 1"]:
+        """Returns the depth of the mirrored scene."""
+        return np.ascontiguousarray(channels[:, ::-1])
+
+    def zoomed(
+        self, channels: Float32[np.ndarray, "h w 1"], width_px: int, height_px: int
+    ) -> Float32[np.ndarray, "rows cols 1"]:
+        """Returns a window whose depth is divided by its enlargement."""
+        resized = cv2.resize(channels[..., 0], (width_px, height_px), interpolation=cv2.INTER_NEAREST)
+        return (resized * np.float32(channels.shape[1] / width_px))[..., None]
+
+    def normalised(
+        self, channels: Float32[np.ndarray, "h w 1"], camera: CameraModel
+    ) -> Float32[np.ndarray, "1 padded_h padded_w"]:
+        """Returns the normalised depth; 0 (no return or too near) counts as the nearest depth."""
+        return normalise_depth(np.ascontiguousarray(channels[..., 0]), camera)
+
+
+class GeometryInput:
+    """Inverse depth, validity, height above the floor and surface normal."""
+
+    channels = len(geometry.CHANNELS)
+
+    def of(self, depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w 6"]:
+        """Returns the geometric channels."""
+        return geometry.geometry_image(depth_m, camera)
+
+    def mirrored(self, channels: Float32[np.ndarray, "h w 6"]) -> Float32[np.ndarray, "h w 6"]:
+        """Returns the geometric channels of the mirrored scene."""
+        return geometry.mirrored(channels)
+
+    def zoomed(
+        self, channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int
+    ) -> Float32[np.ndarray, "rows cols 6"]:
+        """Returns a window whose inverse depth is multiplied by its enlargement."""
+        return geometry.zoomed(channels, width_px, height_px)
+
+    def normalised(
+        self, channels: Float32[np.ndarray, "h w 6"], camera: CameraModel
+    ) -> Float32[np.ndarray, "6 padded_h padded_w"]:
+        """Returns the normalised geometric channels."""
+        return pad_edges(geometry.normalised(channels))
+
+
+INPUTS: Mapping[InputKind, SecondInput] = MappingProxyType({"depth": DepthInput(), "geometry": GeometryInput()})
+"""Kinds of second input by name."""

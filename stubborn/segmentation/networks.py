@@ -1,0 +1,50 @@
+"""The networks that can be trained, by name, and how one is built from its configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from sim.interface import ConfigError
+from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
+from stubborn.segmentation.unet import MobileEncoder, UNet, UNetConfig
+
+Network = RedNet | UNet
+"""A network with `forward` (logits at full size), `pyramid` (logits at several sizes) and `config`."""
+NetworkConfig = RedNetConfig | UNetConfig
+FAMILIES: Mapping[str, tuple[type[RedNetConfig], type[RedNet]] | tuple[type[UNetConfig], type[UNet]]] = (
+    MappingProxyType({"rednet": (RedNetConfig, RedNet), "unet": (UNetConfig, UNet)})
+)
+"""Class of configuration and class of network, by the name that files of weights store."""
+NETWORKS: Mapping[str, NetworkConfig] = MappingProxyType(
+    {
+        "compact": COMPACT,
+        "compact-geometry": replace(COMPACT, second="geometry"),
+        "published": PUBLISHED,
+        "unet": UNetConfig(),
+        "lite0": UNetConfig(encoder="lite0", widths=(8, 16, 24, 48, 96), decoder=(16, 32, 48, 80)),
+    }
+)
+"""Networks by the name that `--size` of tools/train_rednet.py takes."""
+
+
+def build_network(config: NetworkConfig) -> Network:
+    """Returns a network with random weights."""
+    return UNet(config) if isinstance(config, UNetConfig) else RedNet(config)
+
+
+def family(network: Network) -> str:
+    """Returns the name of a network's family."""
+    return next(name for name, (_, made) in FAMILIES.items() if isinstance(network, made))
+
+
+def load_imagenet(network: Network) -> None:
+    """Loads ImageNet weights into the colour encoder of a network that has such an encoder.
+
+    Raises:
+        ConfigError: the network has none, or the package of the weights is not installed.
+    """
+    if not isinstance(network, UNet) or not isinstance(network.encoder, MobileEncoder):
+        raise ConfigError("Only the network 'lite0' has an encoder for which there are ImageNet weights.")
+    network.encoder.colour.load_imagenet()
