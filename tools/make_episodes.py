@@ -1,13 +1,16 @@
 """Generates the episodes of a split, beside its house files or its list of houses, in Habitat's ObjectNav layout.
 
-    python tools/make_episodes.py --split assets/mjcf_houses/val --episodes 1000 --workers 2
-    python tools/make_episodes.py --split assets/mjcf_houses/train --episodes 2000 --view-points 2 --workers 2
+    python tools/make_episodes.py --split assets/mjcf_houses/val --workers 2
+    python tools/make_episodes.py --split my_houses --episodes 100 --recipe large
+
+The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
+distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
 The order goes round the houses; the next goal of a house is the one with the fewest episodes so far, so that the first
-N episodes are balanced for any N. A start is uniform over the free space, 2 m to 30 m (geodesic) from the goal, its
-heading uniform, and the robot has been placed there without contact. Goals are categories with an instance that can be
-reached; instances that cannot are listed in `unreachable.json`. The same seed, houses, version and success rule give
-the same bytes.
+N episodes are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as
+reachable on the storey of the start only. A start is uniform over the free space that the recipe allows, and the robot
+has been placed there without contact. Goals are categories with an instance that can be reached; instances that cannot
+are listed in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
 """
 
 from __future__ import annotations
@@ -23,12 +26,11 @@ from pathlib import Path
 import numpy as np
 
 from sim import cli
-from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M, draw_start
-from sim.episodes.reachable_goals import MAX_VIEW_POINTS, HouseGoals, find_reachable_goals
+from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks
+from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
 from sim.episodes.splits import Episode, write_split
 from sim.errors import EpisodeError
 from sim.evaluation.parallel import ordered_map
-from sim.geometry.pose import Pose
 from sim.housegen.house_list import has_house_list, read_house_list
 from sim.housegen.split_recipes import SPLIT_VERSION
 from sim.houses.load import load_house
@@ -37,10 +39,8 @@ from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
 
-MAX_REDRAWS = 20
-"""Attempts to find a start at an allowed distance; a house can be too small for one."""
-NumberedGoal = tuple[int, str]
-"""Number of an episode in its split, and its goal."""
+Turn = tuple[int, int, Ask]
+"""An episode to draw: its number in the split, its number in the house, and its goal."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,14 @@ class Args:
 
     split: Path
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
-    episodes: int = 100
-    """Number of episodes of all houses."""
+    episodes: int | None = None
+    """Number of episodes of all houses; by default the recipe's number for each house."""
+    recipe: str | None = None
+    """Name of the recipe (val, test, large, hazards, train); by default the one with the folder's name."""
     seed: int = 0
     """Seed of starts and headings."""
     version: str = SPLIT_VERSION
     """Version of the split."""
-    view_points: int = MAX_VIEW_POINTS
-    """Largest number of view points of a goal instance."""
     workers: int = 1
     """Number of processes."""
     success: SuccessRule = field(default_factory=SuccessRule)
@@ -69,18 +69,22 @@ def main(args: Args) -> int:
     Raises:
         ConfigError, EpisodeError, HouseError: there are no houses, or a house cannot be used.
     """
-    files = house_files(args.split)
-    if args.episodes < 1 or args.view_points < 1 or args.workers < 1:
-        raise ConfigError("--episodes, --view-points and --workers must be at least 1.")
+    files, recipe = house_files(args.split), recipe_of(args)
+    count = args.episodes if args.episodes is not None else recipe.per_house * len(files)
+    if count < 1 or args.workers < 1:
+        raise ConfigError("--episodes and --workers must be at least 1.")
     began_s = time.perf_counter()
-    find_goals = functools.partial(_find_goals, args)
-    goals_found = ordered_map(find_goals, list(files), workers=args.workers)
-    goals: dict[str, HouseGoals] = {}
+    goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
+    goals: dict[str, HouseAsks] = {}
     for house, found in zip(files, goals_found, strict=True):
         goals[house] = found
-        instances = sum(map(len, found.listed.values()))
-        print(f"{house}: {len(found.listed)} goals, {instances} instances, {len(found.unreachable)} unreachable")
-    order = balanced_goals({house: tuple(found.listed) for house, found in goals.items()}, args.episodes)
+        instances, asked = sum(map(len, found.listed.values())), len({ask.goal for ask in found.asks})
+        print(
+            f"{house}: {len(found.listed)} goals, {asked} of them asked for, {instances} instances, "
+            f"{len(found.unreachable)} unreachable",
+            flush=True,
+        )
+    order = balanced_goals({house: found.asks for house, found in goals.items()}, count)
     episodes = draw_episodes(args, order)
     write_split(
         args.split,
@@ -108,39 +112,58 @@ def house_files(folder: Path) -> tuple[str, ...]:
     return names
 
 
-def balanced_goals(goals_of: Mapping[str, Sequence[str]], count: int) -> list[tuple[str, str]]:
-    """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
+def recipe_of(args: Args) -> EpisodeRecipe:
+    """Returns the recipe that the options name.
 
     Raises:
-        EpisodeError: a house has no goal that can be reached.
+        ConfigError: there is no such recipe.
     """
-    for house, goals in goals_of.items():
-        if not goals:
-            raise EpisodeError(f"House '{house}' has no goal that can be reached.")
+    if args.recipe is None:
+        return EPISODE_RECIPES.get(args.split.resolve().name, DEFAULT_RECIPE)
+    if args.recipe not in EPISODE_RECIPES:
+        raise ConfigError(f"No recipe '{args.recipe}'. There is: {', '.join(EPISODE_RECIPES)}.")
+    return EPISODE_RECIPES[args.recipe]
+
+
+def balanced_goals(asks_of: Mapping[str, Sequence[Ask]], count: int) -> list[tuple[str, Ask]]:
+    """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
+
+    The episodes of a house take turns on its storeys.
+
+    Raises:
+        EpisodeError: a house has no goal that can be asked for.
+    """
+    for house, asks in asks_of.items():
+        if not asks:
+            raise EpisodeError(f"House '{house}' has no goal that can be reached from a start of the recipe.")
     asked, asked_here = collections.Counter[str](), collections.Counter[tuple[str, str]]()
-    order: list[tuple[str, str]] = []
-    houses = sorted(goals_of)
+    order: list[tuple[str, Ask]] = []
+    houses = sorted(asks_of)
     for i in range(count):
         house = houses[i % len(houses)]
-        goal = min(goals_of[house], key=lambda g: (asked[g], asked_here[house, g], goals_of[house].index(g)))
-        asked[goal] += 1
-        asked_here[house, goal] += 1
-        order.append((house, goal))
+        storeys = sorted({ask.floor_z_m for ask in asks_of[house]})
+        storey = storeys[i // len(houses) % len(storeys)]
+        asks = [ask for ask in asks_of[house] if ask.floor_z_m == storey]
+        ask = min(asks, key=lambda a: (asked[a.goal], asked_here[house, a.goal], asks_of[house].index(a)))
+        asked[ask.goal] += 1
+        asked_here[house, ask.goal] += 1
+        order.append((house, ask))
     return order
 
 
-def draw_episodes(args: Args, order: Sequence[tuple[str, str]]) -> list[Episode]:
+def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]:
     """Returns the episodes, in order; each has a random stream of its own, so that it does not depend on the others."""
-    goals_in: dict[str, list[NumberedGoal]] = {house: [] for house in sorted({house for house, _ in order})}
-    for i, (house, goal) in enumerate(order):
-        goals_in[house].append((i, goal))
+    turns: dict[str, list[Turn]] = {house: [] for house in sorted({house for house, _ in order})}
+    for i, (house, ask) in enumerate(order):
+        turns[house].append((i, len(turns[house]), ask))
     digits = max(4, len(str(len(order) - 1)))
-    draw = functools.partial(_draw, args, digits)
-    drawn = ordered_map(draw, list(goals_in.items()), workers=args.workers)
+    work = [(number, house, of_house) for number, (house, of_house) in enumerate(turns.items())]
+    drawn = ordered_map(functools.partial(_draw, args, digits), work, workers=args.workers)
     episodes: dict[int, Episode] = {}
-    for house, found in zip(goals_in, drawn, strict=True):
+    for house, (found, relaxed) in zip(turns, drawn, strict=True):
         episodes |= dict(found)
-        print(f"{house}: {len(found)} episodes", flush=True)
+        note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
+        print(f"{house}: {len(found)} episodes{note}", flush=True)
     return [episodes[i] for i in range(len(order))]
 
 
@@ -150,33 +173,24 @@ def _task(args: Args, house: str) -> Task:
     return Task(World(load_house(path), rule=args.success), TaskConfig(success=args.success))
 
 
-def _find_goals(args: Args, house: str) -> HouseGoals:
-    return find_reachable_goals(_task(args, house), max_view_points=args.view_points)
+def _find_asks(args: Args, house: str) -> HouseAsks:
+    return find_house_asks(_task(args, house), recipe_of(args))
 
 
-def _draw(args: Args, digits: int, work: tuple[str, list[NumberedGoal]]) -> list[tuple[int, Episode]]:
-    """Returns the episodes of one house, each with its number."""
-    house, numbered_goals = work
-    task = _task(args, house)
-    episodes = []
-    for i, goal in numbered_goals:
-        start, distance_m = _draw_start(task, goal, np.random.default_rng([args.seed, i]))
-        episodes.append((i, Episode(f"{args.split.resolve().name}_{i:0{digits}d}", house, goal, start, distance_m)))
-    return episodes
+def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[list[tuple[int, Episode]], int]:
+    """Returns the episodes of one house, each with its number, and how many do not meet the rule of the recipe."""
+    number_of_house, house, turns = work
+    drawer = StartDrawer(_task(args, house), recipe_of(args), house=number_of_house, seed=args.seed)
+    name, episodes, relaxed = args.split.resolve().name, [], 0
+    for i, number, ask in turns:
+        drawn = drawer.draw(ask, number, np.random.default_rng([args.seed, i]))
+        relaxed += not drawn.meets_rule
+        episodes.append((i, Episode(f"{name}_{i:0{digits}d}", house, ask.goal, drawn.pose, drawn.distance_m)))
+    drawer.close()
+    return episodes, relaxed
 
 
-def _draw_start(task: Task, goal: str, rng: np.random.Generator) -> tuple[Pose, float | None]:
-    """Returns a start and its distance to the goal, within the limits for the exact start, not only for its cell."""
-    start = draw_start(task, goal, rng)
-    for _ in range(MAX_REDRAWS):
-        distance_m = task.distance_from(goal, start)
-        if distance_m is not None and MIN_DISTANCE_M <= distance_m <= MAX_DISTANCE_M:
-            break
-        start = draw_start(task, goal, rng)
-    return start, task.distance_from(goal, start)
-
-
-def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseGoals], took_s: float) -> None:
+def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s: float) -> None:
     """Prints statistics of the episodes."""
     distances = np.array([episode.shortest_path_m for episode in episodes], dtype=np.float64)
     print(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES
+from sim.interface import GOAL_CATEGORIES, wrap_angle
 from sim.task.objectnav import Task
 from sim.world.world import World
 
@@ -56,23 +56,41 @@ def sample_episode(
     raise refusals[0]
 
 
-def draw_start(task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: float = 0.0) -> Pose:
+def draw_start(
+    task: Task,
+    goal: str,
+    rng: np.random.Generator,
+    *,
+    floor_z_m: float = 0.0,
+    cells: NDArray[np.bool_] | None = None,
+    headings_rad: tuple[float, float] = (-np.pi, np.pi),
+) -> Pose:
     """Returns a pose, uniform over the cells of the largest connected free space that are far enough from the goal.
+
+    Args:
+        task: of the house.
+        goal: the goal category.
+        rng: source of randomness.
+        floor_z_m: height of the floor of the start's storey.
+        cells: mask (rows, cols) of other cells to draw from.
+        headings_rad: limits of the heading.
 
     Raises:
         EpisodeError: the goal is not in the house, or there is no place to start from.
     """
     space = task.truth.space(floor_z_m)
-    distance_m = task.truth.target(goal, floor_z_m).distance_m
-    cells = np.argwhere(far_enough(np.where(space.largest_part(), distance_m, np.inf)))
-    for _ in range(MAX_TRIES if len(cells) else 0):
+    if cells is None:
+        distance_m = task.truth.target(goal, floor_z_m).distance_m
+        cells = far_enough(np.where(space.largest_part(), distance_m, np.inf))
+    allowed = np.argwhere(cells)
+    for _ in range(MAX_TRIES if len(allowed) else 0):
         x_m, y_m = (
-            space.frame.to_metres(cells[rng.integers(len(cells))]) + rng.uniform(-0.5, 0.5, 2) * space.frame.cell_m
+            space.frame.to_metres(allowed[rng.integers(len(allowed))]) + rng.uniform(-0.5, 0.5, 2) * space.frame.cell_m
         )
         start = Pose(
             round(float(x_m), _ROUND_M),
             round(float(y_m), _ROUND_M),
-            round(float(rng.uniform(-np.pi, np.pi)), _ROUND_M),
+            round(wrap_angle(float(rng.uniform(*headings_rad))), _ROUND_M),
             floor_z_m,
         )
         if space.is_free(start.x_m, start.y_m) and _fits(task.world, start):
@@ -82,14 +100,16 @@ def draw_start(task: Task, goal: str, rng: np.random.Generator, *, floor_z_m: fl
     )
 
 
-def far_enough(distance_m: NDArray[np.float32]) -> NDArray[np.bool_]:
+def far_enough(
+    distance_m: NDArray[np.floating], min_m: float = MIN_DISTANCE_M, max_m: float = MAX_DISTANCE_M
+) -> NDArray[np.bool_]:
     """Returns (rows, cols) the cells that are far enough from a goal.
 
-    These are the cells between `MIN_DISTANCE_M` and `MAX_DISTANCE_M`; in a house without such a cell, those farther
-    than half the largest distance.
+    These are the cells with a distance between two limits; in a house without such a cell, those farther than half the
+    largest distance.
     """
     reachable = np.isfinite(distance_m)
-    far = reachable & (distance_m >= MIN_DISTANCE_M) & (distance_m <= MAX_DISTANCE_M)
+    far = reachable & (distance_m >= min_m) & (distance_m <= max_m)
     if far.any() or not reachable.any():
         return far
     return reachable & (distance_m >= 0.5 * distance_m[reachable].max())

@@ -25,7 +25,7 @@ _DECIMALS = 3
 
 @dataclass(frozen=True)
 class HouseGoals:
-    """The goals of one house."""
+    """The goals of one storey of a house."""
 
     listed: Mapping[str, list[habitat.Json]]
     """For each goal category with an instance that can be reached, Habitat's goals with their view points."""
@@ -33,15 +33,25 @@ class HouseGoals:
     """Names of goal instances for which no place of the free space satisfies success."""
 
 
-def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS) -> HouseGoals:
-    """Returns the goals of a house that a robot in its largest free space can reach, and those it cannot."""
-    rooms, space = task.world.rooms, task.truth.space()
+def storeys_of(task: Task) -> tuple[float, ...]:
+    """Returns the heights of the floors of a house's storeys, by its rooms, the lowest first; (0.0,) without rooms."""
+    heights: list[float] = []
+    for floor_z_m in sorted({round(room.floor_z_m, _DECIMALS) + 0.0 for room in task.world.rooms}):
+        if not heights or floor_z_m - heights[-1] >= task.config.success.same_storey_m:
+            heights.append(floor_z_m)
+    return tuple(heights) or (0.0,)
+
+
+def find_reachable_goals(task: Task, *, max_view_points: int = MAX_VIEW_POINTS, floor_z_m: float = 0.0) -> HouseGoals:
+    """Returns the goals of a storey that a robot in its largest free space can reach, and those it cannot."""
+    rooms = [room for room in task.world.rooms if abs(room.floor_z_m - floor_z_m) < task.config.success.same_storey_m]
+    space = task.truth.space(floor_z_m)
     inside = space.largest_part()
     coarse_m = space.frame.to_metres(_spread(inside))
     listed: dict[str, list[habitat.Json]] = {}
     unreachable: list[str] = []
     for goal in task.truth.goals():
-        region = task.truth.region(goal)
+        region = task.truth.region(goal, floor_z_m)
         for footprint in region.footprints:
             views = view_points(region, footprint, coarse_m, at_most=max_view_points)
             if not len(views):

@@ -50,6 +50,7 @@ class GroundTruth:
         self._spaces: dict[float, FreeSpace] = {}
         self._floors: dict[float, tuple[GridFrame, NDArray[np.bool_]]] = {}
         self._surroundings: dict[float, Surroundings] = {}
+        self._regions: dict[tuple[str, float], GoalRegion] = {}
         self._targets: dict[tuple[str, float], Target] = {}
 
     def space(self, floor_z_m: float = 0.0) -> FreeSpace:
@@ -95,7 +96,9 @@ class GroundTruth:
         Raises:
             EpisodeError: there is no such goal category.
         """
-        return self._region(goal, floor_z_m, self._at_rest)
+        if (goal, floor_z_m) not in self._regions:
+            self._regions[goal, floor_z_m] = self._region(goal, floor_z_m, self._at_rest)
+        return self._regions[goal, floor_z_m]
 
     def goals(self) -> tuple[str, ...]:
         """Returns the goal categories that the house has an instance of, in the contract's order."""

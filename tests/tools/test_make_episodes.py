@@ -8,13 +8,15 @@ from pathlib import Path
 import pytest
 
 from sim.episodes import habitat
+from sim.episodes.house_episodes import Ask
+from sim.episodes.recipes import DEFAULT_RECIPE
 from sim.episodes.splits import load_split, read_unreachable
 from sim.errors import EpisodeError
 from sim.interface import ConfigError, SuccessRule
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import room, two_storeys, with_box
 from tools.make_episodes import Args, balanced_goals, main
 
 
@@ -35,17 +37,24 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("count", [3, 7, 20, 60])
 def test_the_first_episodes_are_balanced_over_houses_and_goals(count):
     goals = {"a": ("bed", "sofa", "sink"), "b": ("bed", "sofa"), "c": ("sink", "bed", "sofa", "plant")}
-    turns = balanced_goals(goals, count)
+    turns = balanced_goals({house: [Ask(goal) for goal in of] for house, of in goals.items()}, count)
     houses = collections.Counter(house for house, _ in turns)
-    asked = collections.Counter(goal for _, goal in turns)
-    assert all(goal in goals[house] for house, goal in turns)
+    asked = collections.Counter(ask.goal for _, ask in turns)
+    assert all(ask.goal in goals[house] for house, ask in turns)
     assert max(houses.values()) - min(houses.values()) <= 1
     assert max(asked[g] for g in ("bed", "sofa", "sink")) - min(asked[g] for g in ("bed", "sofa", "sink")) <= 1
 
 
+def test_the_episodes_of_a_house_take_turns_on_its_storeys():
+    asks = {"a": [Ask("bed"), Ask("sofa"), Ask("sink"), Ask("bed", 3.0)], "b": [Ask("bed")]}
+    in_a = [ask for house, ask in balanced_goals(asks, 16) if house == "a"]
+    assert [ask.floor_z_m for ask in in_a] == [0.0, 3.0] * 4
+    assert {ask.goal for ask in in_a if ask.floor_z_m == 0.0} == {"bed", "sofa", "sink"}
+
+
 def test_a_house_without_goals_is_refused():
     with pytest.raises(EpisodeError, match="'b' has no goal"):
-        balanced_goals({"a": ("bed",), "b": ()}, 4)
+        balanced_goals({"a": (Ask("bed"),), "b": ()}, 4)
 
 
 def test_the_episodes_can_be_run_and_goals_that_cannot_be_reached_are_listed(folder, capsys):
@@ -120,3 +129,26 @@ def test_the_success_rule_decides_the_recorded_distances(folder):
         assert by_default is not None
         assert with_rule == pytest.approx(episode.shortest_path_m, abs=1e-6)
         assert with_rule - by_default == pytest.approx(0.5, abs=0.1)
+
+
+def test_without_a_number_each_house_has_as_many_episodes_as_the_recipe_says(folder):
+    main(Args(split=folder))
+    houses = collections.Counter(episode.house for episode in load_split(folder).episodes)
+    assert set(houses.values()) == {DEFAULT_RECIPE.per_house}
+    with pytest.raises(ConfigError, match="No recipe 'huge'"):
+        main(Args(split=folder, recipe="huge"))
+
+
+def test_starts_of_a_two_storey_house_are_on_both_and_ask_for_goals_of_their_own(tmp_path):
+    folder = tmp_path / "tiny"
+    folder.mkdir()
+    (folder / "duplex.xml").write_text(two_storeys().spec.to_xml())
+    main(Args(split=folder, episodes=6))
+    episodes = load_split(folder).episodes
+    assert {(episode.start.floor_z_m, episode.goal) for episode in episodes} == {(0.0, "bed"), (3.0, "sofa")}
+    world = World(load_split(folder).load_house("duplex"))
+    for episode in episodes:
+        world.reset(episode.start)
+        assert Task(world).distance_from(episode.goal, episode.start) == pytest.approx(
+            episode.shortest_path_m, abs=1e-6
+        )
