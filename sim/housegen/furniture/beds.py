@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import chamfered_box, pillow
@@ -33,12 +34,11 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float) -
     linen, duvet = w.look("linen"), w.look("bedding")
     w.mesh(chamfered_box((length, width, _MATTRESS), 0.04), (x0 + 0.5 * length, 0.0, top - 0.5 * _MATTRESS), linen)
     cover = w.length(0.60, 0.75) * length
-    w.mesh(
-        chamfered_box((cover, width + 0.04, 0.20), 0.05), (x0 + length - 0.5 * cover + 0.015, 0.0, top - 0.055), duvet
-    )
+    shape = parts.duvet(w, cover, width + 0.05, 0.19)
+    w.mesh(shape, (x0 + length - 0.5 * cover + 0.015, 0.0, top - 0.145), duvet)
     fold = w.length(0.18, 0.28)
     w.mesh(
-        chamfered_box((fold, width + 0.045, 0.08), 0.03),
+        chamfered_box((fold, width + 0.06, 0.09), 0.035),
         (x0 + length - cover + 0.5 * fold - 0.02, 0.0, top + 0.02),
         w.new_look("linen"),
     )

@@ -10,8 +10,9 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import MeshShape
-from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import chamfered_box, drape, hoop, named_mesh, pillow
+from sim.housegen.furniture.parts import BOTH_SIDES, darker
+from sim.housegen.furniture.parts.leaves import bush, joined
+from sim.housegen.furniture.shapes import Ring, chamfered_box, drape, hoop, loft, named_mesh, pillow
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -39,23 +40,27 @@ def _garment(high: float, *, dress: bool = False) -> MeshShape:
         (0.20, high - 0.05),
         (0.28, high - 0.30),
         (0.21, high - 0.34),
-        (0.15, high - 0.37),
-        (0.15, 0.45 * high),
+        (0.15, high - 0.20),
+        (0.14, 0.45 * high),
         (hem, 0.0),
+        (0.33 * hem, 0.02),
     ]
-    outline = [(-y, z) for y, z in reversed(right)] + right
-    return named_mesh("garment", *_extruded(outline[::-1], (0.0, high - 0.25), 0.05))
+    outline = [*((-y, z) for y, z in reversed(right)), (0.0, high - 0.05), *right]
+    return named_mesh("garment", *_extruded(outline[::-1], (0.0, high - 0.22), 0.035, 0.03))
 
 
 def _extruded(
-    outline: list[tuple[float, float]], centre: tuple[float, float], thick: float
+    outline: list[tuple[float, float]], centre: tuple[float, float], thick: float, bulge: float
 ) -> tuple[list[tuple[float, float, float]], list[tuple[int, int, int]]]:
-    """Returns vertices and faces of a (y, z) outline extruded along x by `thick`.
+    """Returns vertices and faces of a (y, z) outline extruded along x by `thick`, and by `bulge` more at its centre.
 
     The outline is star-shaped about `centre` and counter-clockwise as seen from +x.
     """
     n = len(outline)
-    vertices = [(x, y, z) for x in (-0.5 * thick, 0.5 * thick) for y, z in (*outline, centre)]
+    vertices = []
+    for side in BOTH_SIDES:
+        vertices += [(0.5 * side * thick, y, z) for y, z in outline]
+        vertices.append((side * (0.5 * thick + bulge), *centre))
     faces = []
     for i in range(n):
         j = (i + 1) % n
@@ -158,13 +163,9 @@ def laundry_basket(w: Workbench) -> None:
     w.mesh(hoop(r + 0.008, 0.03, 0.04), (0.0, 0.0, high - 0.01), w.look("wood"), solid=False)
     for i in range(4):
         a = 1.7 * i
-        w.ellipsoid(
-            (0.45 * r * math.cos(a), 0.45 * r * math.sin(a), high + 0.01 + 0.015 * i),
-            (0.55 * r, 0.45 * r, 0.07),
-            w.new_look("bright"),
-            solid=False,
-            turn=a,
-        )
+        at = (0.42 * r * math.cos(a), 0.42 * r * math.sin(a), high + 0.005 + 0.012 * i)
+        cloth = w.new_look("denim") if i == 1 else w.new_look("bright")
+        w.mesh(joined("cloth", [bush(at, (0.55 * r, 0.45 * r, 0.07), w.rng, 8)]), (0.0, 0.0, 0.0), cloth, solid=False)
     w.mesh(drape(0.16, 0.24, 0.05, 2), (r - 0.012, 0.03, high - 0.20), w.new_look("denim"), solid=False)
     w.ellipsoid((0.75 * r, 0.03, high + 0.03), (0.28 * r, 0.08, 0.03), w.look("denim"), solid=False)
 
@@ -225,13 +226,15 @@ def wall_pegs_dress(w: Workbench) -> None:
 
 
 def sweater(w: Workbench) -> None:
-    """Builds a folded sweater with its sleeves crossed and a cap on it."""
-    cloth = w.new_look("bright")
-    w.mesh(pillow((0.36, 0.32, 0.09), 6.0), (0.0, 0.0, 0.045), cloth)
+    """Builds a sweater folded on trousers, with its sleeves crossed over it and its collar towards the wall."""
+    trousers, cloth = w.new_look("denim"), w.new_look("bright")
+    for i in range(2):
+        w.mesh(chamfered_box((0.36, 0.27, 0.028), 0.012), (0.0, 0.0, 0.014 + 0.026 * i), trousers)
+    w.mesh(pillow((0.34, 0.31, 0.07), 6.0), (0.0, 0.0, 0.085), cloth)
     for side in BOTH_SIDES:
-        w.rod((-0.12, side * 0.11, 0.085), (0.10, side * 0.05, 0.095), 0.028, cloth, solid=False, round_ends=True)
-    w.ellipsoid((0.04, 0.03, 0.12), (0.09, 0.09, 0.05), w.new_look("denim"), solid=False)
-    w.ellipsoid((0.12, 0.03, 0.105), (0.08, 0.07, 0.010), w.look("dark"), solid=False)
+        w.bar((-0.11, side * 0.13, 0.116), (0.12, -side * 0.03, 0.122), 0.07, 0.02, cloth, solid=False)
+    collar = [Ring(z, s * 0.035, s * 0.065) for z, s in ((0.0, 1.0), (0.028, 0.9), (0.028, 0.6), (0.0, 0.7))]
+    w.mesh(loft(collar, 12, loop=True), (-0.13, 0.0, 0.108), darker(cloth, 0.8), solid=False)
 
 
 def clothes_heap(w: Workbench) -> None:

@@ -9,7 +9,7 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.shapes import Ring, loft, pillow
+from sim.housegen.furniture.shapes import Ring, loft, pillow, puffed
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -43,13 +43,8 @@ def floor_cushion(w: Workbench) -> None:
 def floor_round(w: Workbench) -> None:
     """Builds a round meditation cushion."""
     r, high = 0.5 * w.length(0.45, 0.60), w.length(0.14, 0.20)
-    rings = [
-        Ring(0.0, 0.85 * r, 0.85 * r),
-        Ring(0.3 * high, r, r),
-        Ring(0.7 * high, r, r),
-        Ring(high, 0.85 * r, 0.85 * r),
-    ]
-    w.mesh(loft(rings, 16, hull=True), (0.0, 0.0, 0.0), w.look("bright"))
+    w.mesh(puffed(r, high, firm=2.6), (0.0, 0.0, 0.0), w.look("bright"))
+    w.cylinder((0.0, 0.0), (high - 0.002, high + 0.004), 0.02, w.look("dark"), solid=False)
 
 
 def rug(w: Workbench) -> None:

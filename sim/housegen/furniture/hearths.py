@@ -11,6 +11,7 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts.fire import flames
 from sim.housegen.furniture.shapes import Ring, loft
 from sim.housegen.furniture.workbench import Range, Workbench
 
@@ -39,8 +40,8 @@ def _logs(w: Workbench, x: float, z: float, half: float) -> None:
     w.rod((x, -0.6 * half, z + 0.05), (x, 0.6 * half, z + 0.05), 0.05, wood)
     w.rod((x - 0.06, -0.5 * half, z + 0.13), (x + 0.05, 0.5 * half, z + 0.13), 0.042, wood)
     if w.chance(0.6):
-        for y, high in ((-0.2 * half, 0.12), (0.15 * half, 0.17)):
-            w.ellipsoid((x - 0.01, y, z + 0.12 + high), (0.04, 0.05, high), w.look("fire"), solid=False)
+        tongues = ((-0.35 * half, 0.17, 0.05), (-0.08 * half, 0.30, 0.065), (0.28 * half, 0.22, 0.055))
+        flames(w, x - 0.01, z + 0.12, tongues)
 
 
 def mantel(w: Workbench) -> None:
@@ -68,13 +69,9 @@ def stove_iron(w: Workbench) -> None:
     )
     w.box((-0.5 * depth - 0.02, 0.5 * depth + 0.03), (-0.5 * width - 0.03, 0.5 * width + 0.03), (0.82, 0.85), iron)
     w.box((0.5 * depth, 0.5 * depth + 0.02), (-0.38 * width, 0.38 * width), (0.30, 0.74), iron, solid=False)
-    w.box(
-        (0.5 * depth + 0.02, 0.5 * depth + 0.026),
-        (-0.29 * width, 0.29 * width),
-        (0.37, 0.67),
-        w.look("fire"),
-        solid=False,
-    )
+    front = 0.5 * depth + 0.02
+    w.box((front, front + 0.006), (-0.29 * width, 0.29 * width), (0.37, 0.67), w.look("char"), solid=False)
+    flames(w, front, 0.38, ((-0.15 * width, 0.15, 0.035), (0.0, 0.24, 0.045), (0.14 * width, 0.18, 0.035)))
     w.rod(
         (0.5 * depth + 0.035, 0.34 * width, 0.46),
         (0.5 * depth + 0.035, 0.34 * width, 0.58),
@@ -115,14 +112,7 @@ def linear(w: Workbench) -> None:
     half, z = 0.82 * outer, (0.32, 0.62)
     _opening(w, (0.0, depth), half, z, outer, top, body)
     w.box((0.05, depth - 0.03), (-half + 0.02, half - 0.02), (z[0], z[0] + 0.03), w.look("char"), solid=False)
-    fire = w.look("fire")
-    for i in range(5):
-        w.ellipsoid(
-            (0.5 * depth, (i - 2) * half / 3, z[0] + 0.065 + 0.012 * (i % 3)),
-            (0.03, 0.07, 0.05 + 0.015 * (i % 3)),
-            fire,
-            solid=False,
-        )
+    flames(w, 0.5 * depth, z[0] + 0.02, [((i - 3) * 0.27 * half, 0.13 + 0.04 * (i % 3), 0.04) for i in range(7)])
     w.top((0.04, depth - 0.04), (-outer + 0.05, outer - 0.05), top)
 
 
@@ -155,10 +145,7 @@ def electric(w: Workbench) -> None:
         w.box((0.015, depth), (c - 0.0125, c + 0.0125), (0.08, top - 0.04), wood)
     w.box((0.015, depth), (-half, half), (0.08 + high, top - 0.04), wood)
     w.box((0.015, depth - 0.03), (-half, half), (0.08, 0.08 + high), w.look("char"))
-    for i in range(4):
-        w.ellipsoid(
-            (depth - 0.03, (i - 1.5) * 0.15, 0.24), (0.008, 0.06, 0.10 + 0.04 * (i % 2)), w.look("fire"), solid=False
-        )
+    flames(w, depth - 0.04, 0.14, [((i - 2) * 0.11, 0.18 + 0.07 * ((2 * i) % 3), 0.045) for i in range(5)])
     w.rod((depth - 0.03, -0.28, 0.13), (depth - 0.03, 0.28, 0.13), 0.028, w.look("wood"), solid=False)
     for side in BOTH_SIDES:
         low, high_ = sorted((side * (half + 0.025), side * (outer - 0.025)))
@@ -209,7 +196,7 @@ def suspended(w: Workbench) -> None:
             wood,
             solid=False,
         )
-    w.ellipsoid((0.0, 0.0, 0.60), (0.08, 0.08, 0.14), w.look("fire"), solid=False)
+    flames(w, 0.0, 0.46, ((-0.09, 0.2, 0.055), (0.0, 0.34, 0.075), (0.1, 0.24, 0.055)))
 
 
 def tiled_stove(w: Workbench) -> None:
@@ -228,7 +215,8 @@ def tiled_stove(w: Workbench) -> None:
         c = -half + i * width / 4
         w.box((depth - 0.003, depth + 0.003), (c - 0.006, c + 0.006), (0.42, 1.35), grout, solid=False)
     w.box((depth + 0.20, depth + 0.23), (-0.15, 0.15), (0.10, 0.34), w.look("iron"), solid=False)
-    w.box((depth + 0.225, depth + 0.236), (-0.10, 0.10), (0.15, 0.29), w.look("fire"), solid=False)
+    w.box((depth + 0.225, depth + 0.233), (-0.11, 0.11), (0.13, 0.31), w.look("char"), solid=False)
+    flames(w, depth + 0.225, 0.135, ((-0.05, 0.11, 0.022), (0.01, 0.15, 0.026), (0.06, 0.1, 0.02)))
 
 
 STYLES = (

@@ -9,6 +9,8 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts.flat_pictures import Page, photograph
+from sim.housegen.furniture.parts.leaves import Body, arch, blade, blossom, joined, tube
 from sim.housegen.furniture.shapes import Ring, chamfered_box, hoop, loft
 from sim.housegen.furniture.workbench import Workbench
 
@@ -38,11 +40,16 @@ def vase(w: Workbench) -> None:
         (0.0, 0.0, 0.0),
         w.look("pot"),
     )
-    for i in range(3):
-        a = math.tau * i / 3
-        tip = (0.07 * math.cos(a), 0.07 * math.sin(a), high + 0.13 + 0.02 * i)
-        w.rod((0.0, 0.0, 0.9 * high), tip, 0.003, w.look("foliage"), solid=False)
-        w.ball(tip, 0.028, w.look("flower"), solid=False)
+    green: list[Body] = []
+    flowers: list[Body] = []
+    for i in range(5):
+        a = math.tau * i / 5
+        tip = (0.07 * math.cos(a), 0.07 * math.sin(a), high + 0.13 + 0.025 * i)
+        green.append(tube([(0.0, 0.0, 0.9 * high), tip], (0.003, 0.002), 3))
+        green.append(blade(arch((0.0, 0.0, 0.95 * high), a + 0.9, 0.09, 0.10, 0.01), 0.04))
+        flowers.append(blossom(tip, (1.5 * tip[0], 1.5 * tip[1], 0.06), 0.042))
+    w.mesh(joined("leaves", green), (0.0, 0.0, 0.0), w.look("foliage"), solid=False)
+    w.mesh(joined("flowers", flowers), (0.0, 0.0, 0.0), w.look("flower"), solid=False)
 
 
 def box_crate(w: Workbench) -> None:
@@ -106,7 +113,10 @@ def clock(w: Workbench) -> None:
 def photo_stand(w: Workbench) -> None:
     """Builds a framed photograph on a stand beside a candle."""
     w.box((-0.01, 0.008), (-0.09, 0.09), (0.005, 0.23), w.look("wood"), tilt=-0.22)
-    w.box((0.004, 0.012), (-0.07, 0.07), (0.03, 0.205), w.look("paint"), tilt=-0.22, solid=False)
+    w.box((0.004, 0.011), (-0.07, 0.07), (0.03, 0.205), w.look("paper"), tilt=-0.22, solid=False)
+    page = Page(0.011, (-0.055, 0.055), (0.045, 0.19), -0.22)
+    photograph(w, page)
+    page.put(w, emission=0.0)
     w.bar((-0.10, 0.0, 0.0), (-0.015, 0.0, 0.15), 0.03, 0.008, w.look("wood"))
     w.cylinder((0.0, 0.17), (0.0, 0.10), 0.035, w.look("linen"))
 
@@ -150,23 +160,22 @@ def place_setting(w: Workbench) -> None:
 def bottles(w: Workbench) -> None:
     """Builds two bottles and a jar on a tray."""
     w.box((-0.10, 0.10), (-0.17, 0.17), (0.0, 0.015), w.look("wood"))
-    glass = w.new_look("paint")
+    glass = w.new_look("book")
     for y, high in ((-0.10, 0.26), (0.0, 0.30)):
         w.mesh(
             loft(
                 [
-                    Ring(0.015, 0.036, 0.036),
-                    Ring(0.6 * high, 0.036, 0.036),
-                    Ring(0.75 * high, 0.014, 0.014),
-                    Ring(high, 0.014, 0.014),
+                    *(Ring(0.015 + z * (high - 0.015), r, r) for z, r in ((0.0, 0.035), (0.52, 0.036), (0.62, 0.031))),
+                    *(Ring(0.015 + z * (high - 0.015), r, r) for z, r in ((0.70, 0.016), (0.75, 0.013), (1.0, 0.013))),
                 ],
                 12,
-                hull=True,
             ),
             (0.0, y, 0.0),
             glass,
         )
-        glass = w.new_look("paint")
+        w.cylinder((0.0, y), (0.3 * high, 0.5 * high), 0.0372, w.look("paper"), solid=False)
+        w.cylinder((0.0, y), (high - 0.03, high + 0.002), 0.0145, w.look("dark"), solid=False)
+        glass = w.new_look("book")
     w.cylinder((0.0, 0.10), (0.015, 0.13), 0.05, w.look("ceramic"))
     w.cylinder((0.0, 0.10), (0.13, 0.145), 0.045, w.look("wood"), solid=False)
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts.flat_pictures import Page, photograph
+from sim.housegen.furniture.parts.palette_mesh import PaletteMesh
 from sim.housegen.furniture.shapes import named_mesh
 from sim.housegen.furniture.workbench import Workbench
 
@@ -20,6 +22,15 @@ def frame(w: Workbench, width: float, height: float, border: float, thick: float
     for side in BOTH_SIDES:
         c = side * (y - 0.5 * border)
         w.box((0.0, thick), (c - 0.5 * border, c + 0.5 * border), (border, height - border), look)
+
+
+def distinct_looks(w: Workbench, material: str, count: int) -> list[Look]:
+    """Draws looks of a material that differ from each other as long as there are enough of them."""
+    looks = [w.new_look(material)]
+    while len(looks) < count:
+        drawn = [w.new_look(material) for _ in range(8)]
+        looks.append(next((look for look in drawn if look not in looks), drawn[0]))
+    return looks
 
 
 def framed_abstract(w: Workbench) -> None:
@@ -51,19 +62,23 @@ def canvas_landscape(w: Workbench) -> None:
     """Builds an unframed canvas with a sky, a sun and bands of hills."""
     width, height = w.width(0.60, 1.20), w.height(0.45, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
-    w.box((0.0, 0.032), (-0.5 * width, 0.5 * width), (0.0, height), w.new_look("paint"))
-    level, x = 0.55 * height, 0.034
+    sky, sun, *hills = distinct_looks(w, "paint", 5)
+    w.box((0.0, 0.032), (-0.5 * width, 0.5 * width), (0.0, height), sky)
+    x = 0.034
     w.rod(
         (0.03, 0.22 * width, 0.70 * height),
         (x, 0.22 * width, 0.70 * height),
         0.12 * height,
-        w.new_look("paint"),
+        sun,
         solid=False,
     )
-    for _ in range(3):
+    for i, look in enumerate(hills):
         x += 0.002
-        w.box((0.03, x), (-0.5 * width, 0.5 * width), (0.0, level), w.new_look("paint"), solid=False)
-        level *= w.length(0.5, 0.75)
+        low, peak, at = 0.16 * height * (2 - i), (0.62 - 0.17 * i) * height, w.length(-0.3, 0.3)
+        ridge = [(at - 0.2, peak - 0.06), (at, peak), (at + 0.2, peak - 0.05)]
+        outline = [(-0.5, 0.0), (-0.5, low), *((min(max(y, -0.5), 0.5), z) for y, z in ridge), (0.5, low), (0.5, 0.0)]
+        hill = named_mesh("hill", [(dx, y * width, z) for dx in (0.03, x) for y, z in outline])
+        w.mesh(hill, (0.0, 0.0, 0.0), look, solid=False)
 
 
 def triptych(w: Workbench) -> None:
@@ -71,7 +86,7 @@ def triptych(w: Workbench) -> None:
     width, height = w.width(0.80, 1.40), w.height(0.45, 0.75)
     w.mount_height_m = 1.52 - 0.5 * height
     each, gap = (width - 0.08) / 3, 0.04
-    ground, bands = w.new_look("paint"), [w.new_look("paint") for _ in range(2)]
+    ground, *bands = distinct_looks(w, "paint", 3)
     for i in range(3):
         y0 = -0.5 * width + i * (each + gap)
         w.box((0.0, 0.030), (y0, y0 + each), (0.0, height), ground)
@@ -112,7 +127,7 @@ def photo_group(w: Workbench) -> None:
     width, height = w.width(0.70, 1.10), w.height(0.60, 0.80)
     w.mount_height_m = 1.52 - 0.5 * height
     frame, paper = w.look("dark") if w.chance(0.5) else w.look("wood"), w.look("paper")
-    cell_y, cell_z = width / columns, height / rows
+    cell_y, cell_z, photos = width / columns, height / rows, PaletteMesh()
     for i in range(columns):
         for j in range(rows):
             y0, z0 = -0.5 * width + i * cell_y, j * cell_z
@@ -123,9 +138,9 @@ def photo_group(w: Workbench) -> None:
             )
             w.box((0.0, 0.022), y, z, frame)
             w.box((0.018, 0.024), (y[0] + 0.018, y[1] - 0.018), (z[0] + 0.018, z[1] - 0.018), paper, solid=False)
-            w.box(
-                (0.020, 0.026), (y[0] + 0.06, y[1] - 0.06), (z[0] + 0.06, z[1] - 0.06), w.new_look("paint"), solid=False
-            )
+            inner = (y[0] + 0.055, y[1] - 0.055), (z[0] + 0.055, z[1] - 0.055)
+            photograph(w, Page(0.024, *inner, mesh=photos))
+    photos.put(w)
 
 
 def still_life(w: Workbench) -> None:

@@ -7,11 +7,16 @@ from __future__ import annotations
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts.flat_pictures import show_computer, show_television
 from sim.housegen.furniture.shapes import chamfered_box
 from sim.housegen.furniture.workbench import Range, Workbench
 
+SHARE_ON = 0.45
+"""Share of the televisions and computers that are on."""
 
-def _panel(w: Workbench, x: float, width: float, z: Range) -> None:
+
+def _panel(w: Workbench, x: float, width: float, z: Range, *, computer: bool = False) -> None:
+    """Adds a flat screen in a dark case, which shows a picture if it is on."""
     w.box((x - 0.022, x + 0.012), (-0.5 * width, 0.5 * width), z, w.look("dark"))
     w.box(
         (x + 0.012, x + 0.016),
@@ -20,6 +25,9 @@ def _panel(w: Workbench, x: float, width: float, z: Range) -> None:
         w.look("screen"),
         solid=False,
     )
+    if w.chance(SHARE_ON):
+        y, inner = (-0.5 * width + 0.02, 0.5 * width - 0.02), (z[0] + 0.028, z[1] - 0.02)
+        (show_computer if computer else show_television)(w, x + 0.016, y, inner)
 
 
 def tv_stand(w: Workbench) -> None:
@@ -43,7 +51,7 @@ def tv_wall(w: Workbench) -> None:
 def monitor(w: Workbench) -> None:
     """Builds a computer monitor with a keyboard."""
     width, dark = w.length(0.52, 0.62), w.look("dark")
-    _panel(w, 0.0, width, (0.11, 0.11 + 0.58 * width))
+    _panel(w, 0.0, width, (0.11, 0.11 + 0.58 * width), computer=True)
     w.box((-0.05, -0.02), (-0.03, 0.03), (0.01, 0.30), dark)
     w.box((-0.11, 0.09), (-0.12, 0.12), (0.0, 0.012), dark)
     w.box((0.14, 0.27), (-0.21, 0.21), (0.0, 0.018), dark, solid=False)
@@ -100,6 +108,8 @@ def tv_arm(w: Workbench) -> None:
         tilt=0.06,
         solid=False,
     )
+    if w.chance(SHARE_ON):
+        show_television(w, 0.255, (-0.5 * width + 0.02, 0.5 * width - 0.02), (0.025, h - 0.02), tilt=0.06)
 
 
 def tv_pole(w: Workbench) -> None:
@@ -123,6 +133,8 @@ def laptop(w: Workbench) -> None:
     w.box((-0.08, 0.03), (-half + 0.03, half - 0.03), (0.016, 0.020), w.look("dark"), solid=False)
     w.box((-0.128, -0.118), (-half, half), (0.01, 0.25), metal, tilt=-0.25)
     w.box((-0.121, -0.115), (-half + 0.012, half - 0.012), (0.03, 0.24), w.look("screen"), tilt=-0.25, solid=False)
+    if w.chance(SHARE_ON):
+        show_computer(w, -0.115, (-half + 0.02, half - 0.02), (0.04, 0.23), tilt=-0.25)
     w.ellipsoid((0.04, half + 0.07, 0.012), (0.05, 0.03, 0.014), w.look("dark"), solid=False)
 
 
@@ -153,6 +165,9 @@ def dual_monitor(w: Workbench) -> None:
             turn=turn,
             solid=False,
         )
+        if w.chance(SHARE_ON):
+            y = (c - 0.455 * width, c + 0.455 * width)
+            show_computer(w, 0.014, y, (0.145, 0.097 + high), turn=turn)
     w.box((0.16, 0.29), (-0.22, 0.22), (0.0, 0.018), dark, solid=False)
 
 

@@ -6,10 +6,12 @@ Sizes follow Panero & Zelnik, Human Dimension and Interior Space (benches 0.42-0
 
 from __future__ import annotations
 
+import math
+
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import Ring, chamfered_box, loft
+from sim.housegen.furniture.shapes import Ring, chamfered_box, loft, puffed
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -51,20 +53,12 @@ def pouf(w: Workbench) -> None:
     """Builds a round knitted pouf."""
     w.mass_kg = 4.0
     r, height = 0.5 * w.length(0.45, 0.60), w.length(0.34, 0.42)
-    w.mesh(
-        loft(
-            [
-                Ring(0.0, 0.75 * r, 0.75 * r),
-                Ring(0.25 * height, r, r),
-                Ring(0.75 * height, r, r),
-                Ring(height, 0.7 * r, 0.7 * r),
-            ],
-            16,
-            hull=True,
-        ),
-        (0.0, 0.0, 0.0),
-        w.look("bright"),
-    )
+    cloth = w.look("bright")
+    w.mesh(puffed(r, height), (0.0, 0.0, 0.0), cloth)
+    for i in range(6):
+        a = math.pi * i / 6
+        seam = [(s * 0.5 * r * math.cos(a), s * 0.5 * r * math.sin(a), height + 0.001) for s in (-1, 1)]
+        w.bar(seam[0], seam[1], 0.008, 0.004, parts.darker(cloth, 0.6), solid=False)
     w.cylinder((0.0, 0.0), (height, height + 0.008), 0.03, w.look("dark"), solid=False)
 
 
@@ -92,14 +86,18 @@ def beanbag(w: Workbench) -> None:
     w.mass_kg = 4.0
     r, cloth = 0.5 * w.length(0.72, 0.90), w.look("bright")
     rings = [
-        Ring(0.0, 0.85 * r, 0.85 * r),
+        Ring(0.0, 0.86 * r, 0.86 * r),
+        Ring(0.05, 0.97 * r, 0.97 * r),
         Ring(0.14, r, r),
-        Ring(0.30, 0.92 * r, 0.92 * r, -0.04),
-        Ring(0.46, 0.62 * r, 0.75 * r, -0.13),
-        Ring(0.68, 0.30 * r, 0.50 * r, -0.22),
-        Ring(0.74, 0.10 * r, 0.2 * r, -0.24),
+        Ring(0.26, 0.94 * r, 0.95 * r, -0.02),
+        Ring(0.36, 0.72 * r, 0.84 * r, -0.1),
+        Ring(0.44, 0.46 * r, 0.7 * r, -0.2),
+        Ring(0.60, 0.32 * r, 0.56 * r, -0.25),
+        Ring(0.72, 0.22 * r, 0.4 * r, -0.27),
+        Ring(0.77, 0.08 * r, 0.16 * r, -0.27),
     ]
-    w.mesh(loft(rings, 14), (0.0, 0.0, 0.0), cloth)
+    w.mesh(loft(rings, 18), (0.0, 0.0, 0.0), cloth)
+    w.bar((-0.27, -0.03, 0.77), (-0.27, 0.03, 0.77), 0.01, 0.02, parts.darker(cloth, 0.6), solid=False)
 
 
 def tufted_bench(w: Workbench) -> None:

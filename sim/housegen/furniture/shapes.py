@@ -159,6 +159,15 @@ def pillow(size_m: tuple[float, float, float], power: float = 4.5) -> MeshShape:
     return loft([Ring(z * dz, s * dx, s * dy, power=power) for z, s in levels], 16, hull=True)
 
 
+def puffed(radius_m: float, height_m: float, *, firm: float = 3.0, segments: int = 18) -> MeshShape:
+    """Returns a round stuffed body that stands on z = 0: a pouf or a cushion; a larger `firm` gives a flatter top."""
+    rings = []
+    for level in (-1.0, -0.92, -0.7, -0.3, 0.3, 0.7, 0.92, 1.0):
+        r = radius_m * max(0.55, (1.0 - abs(level) ** firm) ** (1.0 / firm))
+        rings.append(Ring(0.5 * height_m * (1.0 + level), r, r))
+    return loft(rings, min(segments, MAX_VERTICES // len(rings)), hull=True)
+
+
 def strip(path_m: Sequence[tuple[float, float]], thickness_m: float, width_m: float) -> MeshShape:
     """Returns a sheet bent along a path in the (x, z) plane: `thickness_m` to its left, `width_m` along y about 0."""
     path = np.asarray(path_m, dtype=np.float64)

@@ -25,7 +25,8 @@ def gas_hob(w: Workbench) -> None:
     w.box((-0.25, 0.25), (-0.29, 0.29), (0.0, 0.010), steel)
     for x in (-0.14, 0.08):
         for side in BOTH_SIDES:
-            w.cylinder((x, side * 0.14), (0.010, 0.025), 0.045, iron, solid=False)
+            w.cylinder((x, side * 0.14), (0.010, 0.022), 0.055, w.look("chrome"), solid=False)
+            w.cylinder((x, side * 0.14), (0.022, 0.034), 0.04, iron, solid=False)
     for side in BOTH_SIDES:
         w.box((-0.23, 0.17), (side * 0.14 - 0.006, side * 0.14 + 0.006), (0.010, 0.045), iron, solid=False)
         w.cylinder((0.21, side * 0.10), (0.010, 0.035), 0.018, w.look("chrome"), solid=False)

@@ -10,7 +10,7 @@ import math
 
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
-from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, strip
+from sim.housegen.furniture.shapes import Ring, chamfered_box, frustum, loft, puffed, strip
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -112,15 +112,7 @@ def vanity_stool(w: Workbench) -> None:
     """Builds a round upholstered seat on a ring of brass legs."""
     w.mass_kg = 5.0
     seat, r, metal = w.length(0.43, 0.47), 0.5 * w.length(0.36, 0.42), w.look("brass")
-    w.mesh(
-        loft(
-            [Ring(-0.09, 0.94 * r, 0.94 * r), Ring(-0.08, r, r), Ring(-0.02, r, r), Ring(0.0, 0.88 * r, 0.88 * r)],
-            16,
-            hull=True,
-        ),
-        (0.0, 0.0, seat),
-        w.look("bright"),
-    )
+    w.mesh(puffed(r, 0.10, firm=4.0), (0.0, 0.0, seat - 0.10), w.look("bright"))
     for i in range(4):
         a = math.tau * (i + 0.5) / 4
         w.rod(
@@ -157,12 +149,10 @@ def stump(w: Workbench) -> None:
     w.mesh(
         loft(
             [
-                Ring(0.0, r, r),
-                Ring(0.4 * high, 0.68 * r, 0.68 * r),
-                Ring(0.6 * high, 0.68 * r, 0.68 * r),
-                Ring(high, r, r),
+                *(Ring(z * high, s * r, s * r) for z, s in ((0.0, 0.97), (0.03, 1.0), (0.25, 0.82), (0.5, 0.7))),
+                *(Ring(z * high, s * r, s * r) for z, s in ((0.75, 0.82), (0.97, 1.0), (1.0, 0.97))),
             ],
-            14,
+            20,
         ),
         (0.0, 0.0, 0.0),
         w.look("wood"),

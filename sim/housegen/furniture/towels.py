@@ -9,7 +9,7 @@ import itertools
 import math
 
 from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts import BOTH_SIDES, darker
 from sim.housegen.furniture.shapes import chamfered_box, drape
 from sim.housegen.furniture.workbench import Workbench
 
@@ -154,7 +154,12 @@ def towel_rolls(w: Workbench) -> None:
     """Builds three rolled towels in a pile."""
     r = 0.062
     for y, z in ((-r, r), (r, r), (0.0, r + 1.732 * r)):
-        w.rod((-0.17, y, z), (0.17, y, z), r, w.new_look("towel"))
+        cloth = w.new_look("towel")
+        w.rod((-0.17, y, z), (0.17, y, z), r, cloth)
+        for i, share in enumerate((0.82, 0.7, 0.48, 0.36)):
+            ring = cloth if i % 2 else darker(cloth, 0.55)
+            at = (0.0006 * (i + 1), y + 0.006 * (i // 2), z)
+            w.rod((0.16, *at[1:]), (0.17 + at[0], *at[1:]), share * r, ring, solid=False)
 
 
 STYLES = (

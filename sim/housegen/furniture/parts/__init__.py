@@ -39,7 +39,7 @@ from sim.housegen.furniture.parts.looks import (
 from sim.housegen.furniture.parts.plumbing import any_tap, basin, hollow_rings, mixer_tap
 from sim.housegen.furniture.parts.spans import BOTH_SIDES, centred, footprint, on_side
 from sim.housegen.furniture.parts.supports import FeetKind, feet, star_base
-from sim.housegen.furniture.parts.textiles import crumpled_cloth, leather_pad, pad, towel_over_bar
+from sim.housegen.furniture.parts.textiles import crumpled_cloth, duvet, leather_pad, pad, towel_over_bar
 
 __all__ = [
     "BOTH_SIDES",
@@ -58,6 +58,7 @@ __all__ = [
     "crumpled_cloth",
     "curved_board",
     "darker",
+    "duvet",
     "feet",
     "fitting_look",
     "footprint",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,10 +74,10 @@ class PaletteMesh:
         points, faces = _revolved(rings, sides)
         self._add(points[:, [1, 2, 0]] + (x, 0.0, z), faces, column)
 
-    def cup(self, at: tuple[float, float], z: Range, radius: float, column: int, *, sides: int = 8) -> None:
+    def cup(self, at: tuple[float, float], z: Range, radius: float, column: int, *, sides: int = 6) -> None:
         """Adds a cup, glass or bowl that is open at its top."""
         low, high = z
-        rings = [(low, 0.8 * radius), (high, radius), (high, 0.86 * radius), (low + 0.15 * (high - low), 0.66 * radius)]
+        rings = [(low, 0.8 * radius), (high, radius), (low + 0.25 * (high - low), 0.7 * radius)]
         self.round(at, rings, column, sides=sides)
 
     def ball(self, at: tuple[float, float, float], radius: float, column: int, *, sides: int = 6) -> None:
@@ -86,9 +87,10 @@ class PaletteMesh:
         rings += [(2 * z - height, r) for height, r in reversed(rings)]
         self.round((x, y), rings, column, sides=sides)
 
-    def put(self, w: Workbench, *, solid: bool = False) -> None:
+    def put(self, w: Workbench, *, solid: bool = False, emission: float = 0.0) -> None:
         """Adds the mesh to an item as one geom of the material `small`; a solid mesh collides as its convex hull."""
-        w.add("mesh", (), (0.0, 0.0, 0.0), np.eye(3), w.look("small"), solid=solid, mesh=self._shape())
+        look = replace(w.look("small"), emission=emission)
+        w.add("mesh", (), (0.0, 0.0, 0.0), np.eye(3), look, solid=solid, mesh=self._shape())
 
     def _add(self, vertices: NDArray[np.float64], faces: NDArray[np.int64], column: int) -> None:
         self._faces.append(faces + sum(len(part) for part in self._vertices))

@@ -10,6 +10,7 @@ from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look, MeshShape
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.parts.fire import flames
 from sim.housegen.furniture.shapes import Ring, frustum, loft, named_mesh
 from sim.housegen.furniture.workbench import Point, Range, Workbench
 
@@ -50,10 +51,8 @@ def _logs(w: Workbench, at: Point, half: float, *, burning: float = 0.7) -> None
     w.rod((x + 0.05, y - 0.9 * half, z + r), (x + 0.05, y + 0.8 * half, z + r), r, wood)
     w.rod((x - 0.04, y - 0.6 * half, z + 2.4 * r), (x + 0.04, y + 0.7 * half, z + 2.4 * r), 0.9 * r, wood)
     if w.chance(burning):
-        for _ in range(w.whole(1, 3)):
-            high = w.length(0.09, 0.18)
-            c = y + w.length(-0.6, 0.6) * half
-            w.ellipsoid((x, c, z + 2 * r + 0.8 * high), (0.035, 0.045, high), w.look("fire"), solid=False)
+        tongues = [(y + w.length(-0.6, 0.6) * half, w.length(0.18, 0.36), 0.05) for _ in range(w.whole(1, 3))]
+        flames(w, x, z + 2 * r, tongues)
 
 
 def _fire_chamber(w: Workbench, x: Range, y: Range, z: Range, thick: float, look: Look) -> None:
@@ -90,7 +89,7 @@ def kiva(w: Workbench) -> None:
         y = 0.35 * (i - 1) * mouth
         w.rod((front + 0.06, 2.0 * y, ledge), (front, 0.6 * y, ledge + 1.2 * high), 0.028, w.look("wood"))
     if w.chance(0.6):
-        w.ellipsoid((front + 0.05, 0.0, ledge + 0.09), (0.03, 0.07, 0.10), w.look("fire"), solid=False)
+        flames(w, front + 0.05, ledge, ((-0.05, 0.16, 0.035), (0.03, 0.22, 0.04)))
     if w.chance(0.5):
         w.box((0.0, 1.75 * deep), (-0.75 * half, 0.75 * half), (belly - 0.03, belly + 0.03), w.look("wood"))
 
@@ -220,7 +219,7 @@ def overmantel(w: Workbench) -> None:
     w.box((0.03, deep - 0.04), (-mouth, mouth), (0.06, 0.10), iron)
     w.ellipsoid((0.5 * deep, 0.0, 0.13), (0.07, 0.8 * mouth, 0.07), w.look("char"))
     if w.chance(0.6):
-        w.ellipsoid((0.5 * deep, 0.0, 0.22), (0.04, 0.4 * mouth, 0.10), w.look("fire"), solid=False)
+        flames(w, 0.5 * deep, 0.17, ((-0.3 * mouth, 0.14, 0.04), (0.0, 0.22, 0.05), (0.3 * mouth, 0.16, 0.04)))
     rise = w.length(0.65, 1.05)
     if w.chance(0.75):
         over = half - w.length(0.06, 0.25)
@@ -302,11 +301,9 @@ def bioethanol(w: Workbench) -> None:
     z += 0.07
     high, long = w.length(0.30, 0.50), w.length(0.45, 0.75) * half
     w.box((-0.07, 0.07), (-long, long), (z, z + 0.03), w.look("char"))
-    flames = w.whole(3, 6)
-    for i in range(flames):
-        y = long * (2 * (i + 0.5) / flames - 1)
-        rise = w.length(0.06, 0.13)
-        w.ellipsoid((0.0, y, z + 0.02 + 0.9 * rise), (0.03, 0.9 * long / flames, rise), w.look("fire"), solid=False)
+    count = w.whole(3, 6)
+    tongues = [(long * (2 * (i + 0.5) / count - 1), w.length(0.12, 0.26), 0.04) for i in range(count)]
+    flames(w, 0.0, z + 0.02, tongues)
     for side in BOTH_SIDES:
         x = side * (0.5 * deep - 0.03)
         w.box((x - 0.004, x + 0.004), (-0.9 * half, 0.9 * half), (z, z + high), w.look("glass"))
