@@ -32,6 +32,8 @@ BLOCKS = frozenset(("sink",))
 
 _Part = tuple[Box, Geom | None]
 """A box, and the geom that it surrounds unless the box itself is the collision geom."""
+_Filled = dict[tuple[int, int], tuple[float, Box, Box]]
+"""The volume that one box would add to two, and both, by their ids: an id is reused once its box is deleted."""
 
 
 def collision_boxes(solid: Sequence[Geom], item: Item) -> list[Geom]:
@@ -42,8 +44,8 @@ def collision_boxes(solid: Sequence[Geom], item: Item) -> list[Geom]:
     if item.category in BLOCKS:
         return [box_geom(functools.reduce(union, (box for box, _ in parts)))]
     parts = _join_under_plate(parts, item)
-    out_of_reach = item.mount != "floor"
-    while (pair := _best_pair(parts, item.surfaces, out_of_reach)) is not None:
+    filled: _Filled = {}
+    while (pair := _best_pair(parts, item, filled)) is not None:
         i, j = pair
         joined = union(parts[i][0], parts[j][0])
         parts = [part for n, part in enumerate(parts) if n not in pair] + [(joined, None)]
@@ -79,24 +81,34 @@ def _cylinder(block: Box, plate: Geom) -> Geom | None:
     return replace(box, shape="cylinder", size_m=(max(box.size_m[:2]), box.size_m[2]))
 
 
-def _best_pair(parts: Sequence[_Part], surfaces: Sequence[Surface], out_of_reach: bool) -> tuple[int, int] | None:
+def _best_pair(parts: Sequence[_Part], item: Item, filled: _Filled) -> tuple[int, int] | None:
     """Returns the two parts whose common box adds the least volume; None where every box would add too much.
 
-    With `out_of_reach` any volume may be added, but not above a surface.
+    `filled` keeps the volumes that were computed before.
     """
-    best, pair = math.inf if out_of_reach else MAX_FILLED_M3, None
+    best, pair = math.inf, None
     for i, j in itertools.combinations(range(len(parts)), 2):
         a, b = parts[i][0], parts[j][0]
-        joined = union(a, b)
-        filled_m3 = volume_m3(joined) - volume_m3(a) - volume_m3(b)
-        filled_m2 = plan_m2(joined) - plan_m2(a) - plan_m2(b) + plan_m2(overlap(a, b))
-        if (
-            filled_m3 < best
-            and (out_of_reach or filled_m2 < MAX_FILLED_M2)
-            and not _covers_a_top(joined, (a, b), surfaces)
-        ):
-            best, pair = filled_m3, (i, j)
+        key = id(a), id(b)
+        if key not in filled:
+            filled[key] = (_filled_m3(a, b, item), a, b)
+        if filled[key][0] < best:
+            best, pair = filled[key][0], (i, j)
     return pair
+
+
+def _filled_m3(a: Box, b: Box, item: Item) -> float:
+    """Returns the volume that one box would add to two that it replaces; inf where it must not replace them.
+
+    For an item out of reach any volume may be added, but not above a surface.
+    """
+    joined = union(a, b)
+    filled_m3 = volume_m3(joined) - volume_m3(a) - volume_m3(b)
+    if item.mount == "floor":
+        filled_m2 = plan_m2(joined) - plan_m2(a) - plan_m2(b) + plan_m2(overlap(a, b))
+        if filled_m3 >= MAX_FILLED_M3 or filled_m2 >= MAX_FILLED_M2:
+            return math.inf
+    return math.inf if _covers_a_top(joined, (a, b), item.surfaces) else filled_m3
 
 
 def _covers_a_top(joined: Box, parts: tuple[Box, Box], surfaces: Sequence[Surface]) -> bool:

@@ -24,6 +24,8 @@ SLAT_HALF_M, ROD_HALF_M = 0.045, 0.07
 """Textured boards and rods narrower than twice this lose their texture in a mesh: its grain would not be visible."""
 BYTES_PER_GEOM = 300
 """Bytes by which the file may grow for each geom that is saved."""
+GEOM_BYTES = 100
+"""Usual size of a geom in the file."""
 MAX_JOINED_VERTICES = 400
 BUILDING = frozenset(("wall", "floor", "ceiling", "door", "window", "column"))
 """Categories that keep their exact geoms, because lines of sight and free space depend on them."""
@@ -47,16 +49,71 @@ def assemble(item: Item, bytes_per_geom: int = BYTES_PER_GEOM) -> Assembly:
         bytes_per_geom: bytes by which the file may grow for each geom saved; more for an item that a house has
             several times.
     """
-    visual_only = [geom for geom in item.geoms if not geom.solid]
-    solid = [geom for geom in item.geoms if geom.solid]
-    exact = Assembly((*_join(visual_only, item, bytes_per_geom), *solid), ())
-    small = _joinable(item)
-    if item.category in BUILDING or sum(geom.solid for geom in small) < 2:
-        return exact
-    rest = [geom for geom in item.geoms if not any(geom is other for other in small)]
-    meshes = _join([replace(geom, solid=False) for geom in small], item, bytes_per_geom)
-    boxed = Assembly((*meshes, *rest), tuple(collision_boxes([geom for geom in small if geom.solid], item)))
-    return min(exact, boxed, key=lambda a: len(a.visual) + len(a.collision_only))
+    return Assembler().assemble(item, bytes_per_geom)
+
+
+class Assembler:
+    """Assembles items for several limits on bytes; what does not depend on the limit is computed once for each item."""
+
+    def __init__(self) -> None:
+        self._parts: dict[int, _Parts] = {}
+
+    def assemble(self, item: Item, bytes_per_geom: int) -> Assembly:
+        """Returns the same as `assemble`."""
+        parts = self._parts_of(item)
+        exact = Assembly((*_join(parts.visual_only, parts, bytes_per_geom), *parts.solid), ())
+        if item.category in BUILDING or parts.boxes is None:
+            return exact
+        boxed = Assembly((*_join(parts.small, parts, bytes_per_geom), *parts.rest), parts.boxes)
+        return min(exact, boxed, key=lambda a: len(a.visual) + len(a.collision_only))
+
+    def saved_bytes(self, item: Item, copies: int, bytes_per_geom: int, fewer: int) -> int:
+        """Returns about how many bytes a file saves with the limit `fewer` instead of `bytes_per_geom`.
+
+        Args:
+            item: the item.
+            copies: how often the house has it.
+            bytes_per_geom: the larger limit.
+            fewer: the smaller limit.
+        """
+        parts = self._parts_of(item)
+        kept = [extra for extra in parts.extra_bytes.values() if copies * fewer < extra <= copies * bytes_per_geom]
+        return sum(extra - (copies - 1) * GEOM_BYTES for extra in kept)
+
+    def _parts_of(self, item: Item) -> _Parts:
+        if id(item) not in self._parts:
+            self._parts[id(item)] = _Parts(item)
+        return self._parts[id(item)]
+
+
+class _Parts:
+    """The geoms of an item in the groups that are assembled, and what was computed about each."""
+
+    def __init__(self, item: Item) -> None:
+        self.item = item
+        self.visual_only = [geom for geom in item.geoms if not geom.solid]
+        self.solid = [geom for geom in item.geoms if geom.solid]
+        joinable = _joinable(item)
+        ids = {id(geom) for geom in joinable}
+        self.small = [replace(geom, solid=False) for geom in joinable]
+        self.rest = [geom for geom in item.geoms if id(geom) not in ids]
+        solid = [geom for geom in joinable if geom.solid]
+        self.boxes = tuple(collision_boxes(solid, item)) if len(solid) > 1 and item.category not in BUILDING else None
+        every = [*self.visual_only, *self.small]
+        self.looks = {id(geom): _plain(geom) for geom in every}
+        self.extra_bytes = {id(geom): _extra_bytes(geom) for geom in every if self.looks[id(geom)] is not None}
+        self._facets: dict[int, Facets] = {}
+        self._blocks = [
+            geom_box(geom)
+            for geom in item.geoms
+            if geom.shape == "box" and _is_axis_aligned(geom) and geom.look.rgba[3] == 1
+        ]
+
+    def facets(self, geom: Geom) -> Facets:
+        """Returns the visible triangles of one of its geoms."""
+        if id(geom) not in self._facets:
+            self._facets[id(geom)] = _visible_facets(geom, self.item.mount, self._blocks)
+        return self._facets[id(geom)]
 
 
 def possible_collision_geoms(item: Item) -> list[Geom]:
@@ -114,21 +171,16 @@ def _mean_colour(texture: str) -> tuple[float, float, float]:
 # ---- visual meshes -------------------------------------------------------------------------------------------------
 
 
-def _join(geoms: Sequence[Geom], item: Item, bytes_per_geom: int) -> list[Geom]:
+def _join(geoms: Sequence[Geom], parts: _Parts, bytes_per_geom: int) -> list[Geom]:
     """Returns geoms that look the same, those of each plain look joined into meshes."""
     kept: list[Geom] = []
     groups: dict[Look, list[tuple[Geom, Facets]]] = {}
-    blocks = [
-        geom_box(geom)
-        for geom in item.geoms
-        if geom.shape == "box" and _is_axis_aligned(geom) and geom.look.rgba[3] == 1
-    ]
     for geom in geoms:
-        look = _plain(geom)
-        if look is None or _extra_bytes(geom) > bytes_per_geom:
+        look = parts.looks[id(geom)]
+        if look is None or parts.extra_bytes[id(geom)] > bytes_per_geom:
             kept.append(geom)
         else:
-            groups.setdefault(look, []).append((geom, _visible_facets(geom, item.mount, blocks)))
+            groups.setdefault(look, []).append((geom, parts.facets(geom)))
     for look, alike in groups.items():
         part: list[tuple[Geom, Facets]] = []
         for one in alike:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from sim.gl import mujoco
 from sim.housegen.furniture.item import Geom, Item
-from sim.housegen.merging import BYTES_PER_GEOM, Assembly, assemble
+from sim.housegen.merging import BYTES_PER_GEOM, Assembler, Assembly
 from sim.housegen.mjcf_assets import MESH_UNIT_M, AssetTable
 from sim.housegen.movables import ROLLING_M, Movable, split_movable
 from sim.housegen.rectangles import Rect
@@ -67,8 +67,16 @@ class Lamp:
 class HouseBuilder:
     """A builder that collects the parts of a house in one `MjSpec`; equal looks and meshes are written once."""
 
-    def __init__(self, name: str, *, bytes_per_geom: int = BYTES_PER_GEOM) -> None:
+    def __init__(self, name: str, *, bytes_per_geom: int = BYTES_PER_GEOM, assembler: Assembler | None = None) -> None:
+        """Begins an empty house.
+
+        Args:
+            name: the model's name.
+            bytes_per_geom: bytes by which the file may grow for each geom that is saved.
+            assembler: one that has assembled the same items before, which saves time.
+        """
         self._bytes_per_geom = bytes_per_geom
+        self._assembler = assembler or Assembler()
         self._spec = mujoco.MjSpec()
         self._spec.modelname = name
         self._spec.texturedir = TEXTURE_DIR
@@ -231,7 +239,10 @@ class HouseBuilder:
     def _assembly(self, item: Item) -> Assembly:
         """Returns the geoms of an item; computed once for each design."""
         if id(item) not in self._assemblies:
-            self._assemblies[id(item)] = (item, assemble(item, self._bytes_per_geom * self._copies.get(id(item), 1)))
+            self._assemblies[id(item)] = (
+                item,
+                self._assembler.assemble(item, self._bytes_per_geom * self._copies.get(id(item), 1)),
+            )
         return self._assemblies[id(item)][1]
 
     def _add_geom(self, body: mujoco.MjsBody, geom: Geom) -> None:

@@ -196,12 +196,24 @@ def _distance_m(house: _CompiledHouse, geoms: Iterable[int], xy_m: NDArray[np.fl
 
 
 def _close_pairs(low: NDArray[np.float64], high: NDArray[np.float64], gap_m: float) -> Iterable[tuple[int, int]]:
-    """Returns the pairs i < j of boxes nearer than `gap_m` in every axis (negative: overlapping by more than that)."""
-    gap = np.full((len(low), len(low)), -np.inf)
-    for axis in range(3):
-        apart = low[:, None, axis] - high[None, :, axis]
-        np.maximum(gap, np.maximum(apart, apart.T), out=gap)
-    return zip(*(index.tolist() for index in np.nonzero(np.triu(gap < gap_m, 1))), strict=True)
+    """Returns the pairs i < j of boxes nearer than `gap_m` in every axis (negative: overlapping by more than that).
+
+    The boxes are sorted by their lower x, so that each is compared only with those that begin before it ends.
+    """
+    order = np.argsort(low[:, 0], kind="stable")
+    begin, end = low[order], high[order]
+    ends = np.searchsorted(begin[:, 0], end[:, 0] + gap_m)
+    count = np.maximum(ends - np.arange(len(order)) - 1, 0)
+    first = np.repeat(np.arange(len(order)), count)
+    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
+    for axis in (1, 2):
+        apart = np.maximum(begin[first, axis] - end[second, axis], begin[second, axis] - end[first, axis])
+        first, second = first[apart < gap_m], second[apart < gap_m]
+    # A box that is smaller than a negative gap overlaps nothing by more than that, not even itself.
+    apart = np.maximum(begin[first, 0] - end[second, 0], begin[second, 0] - end[first, 0])
+    pairs = np.sort(np.stack([order[first], order[second]])[:, apart < gap_m], axis=0)
+    pairs = pairs[:, np.lexsort((pairs[1], pairs[0]))]
+    return zip(*pairs.tolist(), strict=True)
 
 
 def _room_mask(room: Room, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.bool_]:
