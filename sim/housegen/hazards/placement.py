@@ -28,7 +28,9 @@ DESIGNS = MappingProxyType[str, tuple[Design, ...]](
 )
 """The designs of each family."""
 FAMILIES: tuple[str, ...] = tuple(DESIGNS)
-FEWEST, MOST, FLOOR_M2 = 6, 14, 13.0
+SHARES = MappingProxyType({"glass": 2, "slab": 2, "overhang": 1, "legs": 1, "scan": 2, "loose": 1})
+"""Relative number of hazards of each family: more of those that only a collision shows."""
+FEWEST, MOST, FLOOR_M2 = 6, 14, 11.0
 """Least and largest number of hazards, and the floor area for each."""
 TRIES = 60
 """Places that are tried for one hazard."""
@@ -62,7 +64,8 @@ def draw_hazards(
         count = int(np.clip(round(area_m2 / FLOOR_M2), FEWEST, MOST))
     looks = {"frame": look("metal", rng, pool), "dots": look("paper", rng, pool)}
     placed: list[PlacedHazard] = []
-    order = [families[int(n)] for n in rng.permutation(len(families)).tolist()]
+    turns = [family for family in families for _ in range(SHARES[family])]
+    order = [turns[int(n)] for n in rng.permutation(len(turns)).tolist()]
     for n in range(count + len(order)):  # another family takes the turn of one that found no place
         hazard = _draw_hazard(rng, order[n % len(order)], pool, looks, floor) if len(placed) < count else None
         if hazard is not None:
