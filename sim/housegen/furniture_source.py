@@ -41,6 +41,9 @@ _VARIANT_DRAWS = 8
 _MISFIT = 0.3
 """Weight of an item for which no position was found, relative to a placed one, when a style is chosen."""
 
+MOST_SMALL_STYLES = 12
+"""Styles of small objects in a home, each one mesh; from then on they are seen in other colours. Meshes take most of
+the bytes of a house file."""
 REQUIRED = frozenset(
     ("bed", "cabinet", "chest_of_drawers", "shelving", "sink", "toilet", "shower", "bathtub", "appliances", "table",
      "gym_equipment", "sofa", "fireplace")
@@ -88,6 +91,7 @@ class FurnitureSource:
         self._catalogue = catalogue
         self._designs: dict[str, list[Item]] = {}
         self._made: dict[tuple[str, str], list[Design]] = {}
+        self._small_styles: set[str] = set()
         self._returned: Counter[tuple[str, str]] = Counter()
         self._tried: dict[str, set[str]] = {}
         self._set_style: dict[str, str] = {}
@@ -158,6 +162,8 @@ class FurnitureSource:
             if category not in REQUIRED:
                 return None
         alike.append(design_of(made))
+        if any(geom.look.texture in materials.palettes(self.pool) for geom in made.geoms):
+            self._small_styles.add(style)
         self._designs[key].append(made)
         return made
 
@@ -185,6 +191,9 @@ class FurnitureSource:
         if not fresh:
             tried.clear()
         left = [name for name in names if name not in tried] or names
+        if category == "objects":
+            if len(self._small_styles) >= MOST_SMALL_STYLES:
+                left = [name for name in left if name in self._small_styles] or left
 
         def weight(name: str) -> float:
             count = placed[category, name]

@@ -26,12 +26,12 @@ FLOOR_PER_M2, MOST_ON_FLOOR = 0.22, 5
 ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "hallway": ("shoes", "shoes", "bag"),
-        "bedroom": ("shoes", "bag", "flat", "toy", "floor"),
+        "bedroom": ("shoes", "bag", "flat", "toy", "box"),
         "living_room": ("toy", "toy", "flat", "cable", "bag"),
         "studio": ("shoes", "bag", "flat", "cable"),
-        "office": ("cable", "flat", "bag", "floor"),
-        "closet": ("shoes", "shoes", "bag", "floor"),
-        "laundry": ("floor", "shoes"),
+        "office": ("cable", "flat", "bag", "box"),
+        "closet": ("shoes", "shoes", "bag", "box"),
+        "laundry": ("box", "shoes"),
         "gym": ("bag", "shoes"),
         "dining_room": ("toy", "bag"),
         "kitchen": ("bag",),

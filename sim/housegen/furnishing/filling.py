@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from sim.housegen.furnishing.groups import desk_group
+from sim.housegen.furnishing.middles import fill_middle
 from sim.housegen.furnishing.seating_groups import armchair_circle, reading_corner
 from sim.housegen.furnishing.steps import hang, hang_above, lay_rug, place, put_on_top
 from sim.housegen.furniture_source import FurnitureSource
@@ -36,8 +37,10 @@ def fill_room(layout: RoomLayout, source: FurnitureSource) -> None:
     """Adds furniture to a room until it covers the share of the floor that the rule of its kind wants."""
     rule = FILL_RULES.get(layout.kind)
     if rule is None:
+        fill_middle(layout, source)
         return
     wanted = rule.share * (0.5 + 0.5 * source.clutter)
+    fill_middle(layout, source)
     left = list(rule.additions)
     for _ in range(rule.rounds):
         order = [left[n] for n in source.rng.permutation(len(left)).tolist()]
@@ -50,7 +53,10 @@ def fill_room(layout: RoomLayout, source: FurnitureSource) -> None:
 
 def console(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a narrow table or sideboard with small items on it and a picture above it."""
-    kind = ("table", "console") if source.chance(0.6) else ("cabinet", "sideboard")
+    kinds = [kind for kind in (("table", "console"), ("cabinet", "sideboard")) if source.has_unused(*kind)]
+    if not kinds:
+        return None
+    kind = source.pick(kinds)
     board = place(layout, source, *kind, front_m=0.5)
     if board is not None:
         put_on_top(layout, source, board, ("objects", "plant", "lighting", "objects"), (0.6, 0.4, 0.4, 0.4))
@@ -76,7 +82,7 @@ def _piece(category: str, *uses: str, front_m: float = 0.5, corner: bool = False
 
     def put(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
         alike = [p for p in layout.placements if p.item.category == category and p.item.mount == "floor"]
-        if len(alike) >= most:
+        if len(alike) >= most or not source.has_unused(category, *uses):
             return None
         return place(layout, source, category, *uses, along="corner" if corner else "any", front_m=front_m)
 
@@ -85,6 +91,8 @@ def _piece(category: str, *uses: str, front_m: float = 0.5, corner: bool = False
 
 def _chest(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places a chest of drawers with small items on it and a mirror or picture above it."""
+    if not source.has_unused("chest_of_drawers", "dresser"):
+        return None
     chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.6)
     if chest is not None:
         put_on_top(layout, source, chest, ("objects", "plant", "lighting"), (0.6, 0.4, 0.3))

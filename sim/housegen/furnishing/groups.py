@@ -69,7 +69,9 @@ def _place_nightstands(layout: RoomLayout, source: FurnitureSource, bed: Placeme
                 put_on_top(layout, source, nightstand, ("lighting", "objects"), (0.75, 0.4))
 
 
-def dining_group(layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75) -> Placement | None:
+def dining_group(
+    layout: RoomLayout, source: FurnitureSource, *, around_m: float = 0.75, near: tuple[float, float] | None = None
+) -> Placement | None:
     """Places a table with chairs at its sides, a lamp above it and perhaps a rug under it."""
     chair = source.make("chair", "dining")
     for width_m, least in ((None, 0.65), (1.3, 0.7), (0.85, 0.0)):
@@ -80,7 +82,7 @@ def dining_group(layout: RoomLayout, source: FurnitureSource, *, around_m: float
         seats = _seats(source, item, chair)
         half = chair.size_m[1] / 2
         spots = [(x - 0.2 * math.cos(turn), y - 0.2 * math.sin(turn), half) for x, y, turn in seats]
-        table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3)
+        table = put_in_middle(layout, source.rng, item, spots, around_m=around_m, least=least, apart_m=0.3, near=near)
         if table is not None:
             break
     else:

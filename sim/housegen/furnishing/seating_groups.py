@@ -119,9 +119,14 @@ def _hang_screen(
     return hang_on_wall(layout, source.rng, screen, sides=[side], at=at, bottom_m=bottom_m) is not None
 
 
+def has_chair(source: FurnitureSource) -> bool:
+    """Returns whether the pool has an armchair that the home has less than twice."""
+    return source.has_unused("chair", "arm")
+
+
 def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     """Places an armchair in a corner with a small table and a lamp beside it."""
-    chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5)
+    chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5) if has_chair(source) else None
     if chair is None:
         return None
     towards = 1.0 if source.chance(0.5) else -1.0
@@ -136,7 +141,9 @@ def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | N
     return chair
 
 
-def armchair_circle(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
+def armchair_circle(
+    layout: RoomLayout, source: FurnitureSource, *, near: tuple[float, float] | None = None
+) -> Placement | None:
     """Places armchairs and an ottoman around a low table, away from the walls."""
     has_sofa = any(p.item.category == "sofa" for p in layout.placements)  # its low table stands in front of it
     low_table, chair = source.make("table", "side" if has_sofa else "coffee"), source.make("chair", "arm")
@@ -151,7 +158,7 @@ def armchair_circle(layout: RoomLayout, source: FurnitureSource) -> Placement | 
     for item, turn in zip(items, turns, strict=True):
         distance_m = reach_m + item.size_m[0] / 2
         seats.append((distance_m * math.cos(turn), distance_m * math.sin(turn), 0.55 * max(item.size_m[:2])))
-    table = put_in_middle(layout, source.rng, low_table, seats, around_m=1.2, least=0.6, apart_m=0.8)
+    table = put_in_middle(layout, source.rng, low_table, seats, around_m=1.2, least=0.6, apart_m=0.8, near=near)
     if table is None:
         return None
     for item, (x, y, _), turn in zip(items, seats, turns, strict=True):

@@ -24,7 +24,8 @@ AISLE_M = 0.75
 """Floor kept free in front of worktops and appliances."""
 ROW_GAP_M = 0.004
 _TOP_USES = {
-    "dining": ("table",), "desk": ("office",), "coffee": ("low", "top"), "media": ("media",), "dresser": ("dresser", "top"),
+    "dining": ("table",), "desk": ("office",), "coffee": ("low", "top"), "media": ("media",),
+    "dresser": ("dresser", "top"),
     "nightstand": ("bedside",), "side": ("low", "bedside"), "console": ("entry", "top"), "bookcase": ("shelf",),
     "sideboard": ("top", "shelf", "media"),
 }  # fmt: skip

@@ -207,7 +207,7 @@ def suitcase(w: Workbench) -> None:
 STYLES = (
     Style("objects", "book_stack", "train", book_stack, ("top",), "top"),
     Style("objects", "vase", "heldout", vase, ("top",), "top"),
-    Style("objects", "crate", "train", box_crate, ("floor",), "floor"),
+    Style("objects", "crate", "train", box_crate, ("floor", "box"), "floor"),
     Style("objects", "fruit_bowl", "train", fruit_bowl, ("kitchen",), "top"),
     Style("objects", "kettle", "train", kettle, ("kitchen",), "top"),
     Style("objects", "clock", "train", clock, ("top",), "top"),
@@ -216,5 +216,5 @@ STYLES = (
     Style("objects", "place_setting", "heldout", place_setting, ("kitchen", "top"), "top"),
     Style("objects", "bottles", "heldout", bottles, ("kitchen", "top"), "top"),
     Style("objects", "waste_bin", "heldout", waste_bin, ("floor", "bin")),
-    Style("objects", "suitcase", "heldout", suitcase, ("floor",)),
+    Style("objects", "suitcase", "heldout", suitcase, ("floor", "box")),
 )

@@ -32,7 +32,7 @@ def candles(w: Workbench) -> None:
     m, wax = PaletteMesh(), w.choice((WHITE, CREAM, ACCENTS[0]))
     m.box((-0.07, 0.07), (-0.16, 0.16), (0.0, 0.012), w.choice((WOOD, DARK, METAL)))
     for y, high in ((-0.10, 0.16), (0.0, 0.11), (0.09, 0.08)):
-        m.round((0.0, y), [(0.012, 0.036), (high, 0.036), (high + 0.012, 0.004)], wax)
+        m.round((0.0, y), [(0.012, 0.036), (high, 0.034)], wax, sides=7)
     m.put(w)
 
 
@@ -58,8 +58,8 @@ def game_console(w: Workbench) -> None:
 def speaker_remote(w: Workbench) -> None:
     """Builds a round speaker and a remote control."""
     m = PaletteMesh()
-    m.round((0.0, 0.0), [(0.0, 0.05), (0.17, 0.05), (0.18, 0.042)], w.choice((DARK, *ACCENTS)), sides=10)
-    m.round((0.0, 0.0), [(0.10, 0.0515), (0.112, 0.0515)], METAL, sides=10)
+    m.round((0.0, 0.0), [(0.0, 0.05), (0.18, 0.05)], w.choice((DARK, *ACCENTS)), sides=8)
+    m.round((0.0, 0.0), [(0.10, 0.0515), (0.112, 0.0515)], METAL, sides=8)
     m.box((-0.08, 0.08), (0.10, 0.145), (0.0, 0.02), DARK, turn=0.3)
     m.put(w)
 
@@ -133,7 +133,7 @@ def frames(w: Workbench) -> None:
 def key_bowl(w: Workbench) -> None:
     """Builds a bowl for keys, and letters beside it."""
     m = PaletteMesh()
-    m.cup((0.0, 0.0), (0.0, 0.05), 0.085, w.choice((*ACCENTS, WOOD)), sides=10)
+    m.cup((0.0, 0.0), (0.0, 0.05), 0.085, w.choice((*ACCENTS, WOOD)), sides=8)
     m.box((-0.03, 0.03), (-0.02, 0.0), (0.008, 0.016), METAL)
     for n in range(2):
         m.box((-0.11, 0.0), (0.10, 0.32), (0.003 * n, 0.003 * n + 0.003), (WHITE, CARD)[n], turn=0.3 * n)
@@ -224,9 +224,9 @@ def backpack(w: Workbench) -> None:
 def duffel(w: Workbench) -> None:
     """Builds a lying sports bag with straps."""
     m, column = PaletteMesh(), w.choice((*ACCENTS, DARK))
-    m.roll(0.0, 0.12, [(-0.27, 0.09), (-0.25, 0.12), (0.25, 0.12), (0.27, 0.09)], column, sides=10)
+    m.roll(0.0, 0.12, [(-0.27, 0.09), (-0.25, 0.12), (0.25, 0.12), (0.27, 0.09)], column)
     for y in (-0.13, 0.10):
-        m.roll(0.0, 0.12, [(y, 0.122), (y + 0.03, 0.122)], HIDE, sides=10)
+        m.roll(0.0, 0.12, [(y, 0.124), (y + 0.03, 0.124)], HIDE)
     m.box((-0.012, 0.012), (-0.13, 0.13), (0.25, 0.265), HIDE)
     for y in (-0.12, 0.12):
         m.box((-0.012, 0.012), (y - 0.01, y + 0.01), (0.22, 0.265), HIDE)
@@ -257,19 +257,19 @@ def toy_ball(w: Workbench) -> None:
     """Builds a ball of two colours."""
     m, r = PaletteMesh(), w.length(0.08, 0.12)
     one, two = w.choice(ACCENTS[:3]), w.choice(ACCENTS[3:])
-    m.round((0.0, 0.0), [(0.0, 0.3 * r), (0.35 * r, 0.76 * r), (0.8 * r, 0.98 * r)], one, sides=10)
-    m.round((0.0, 0.0), [(0.8 * r, 0.98 * r), (1.2 * r, 0.98 * r)], WHITE, sides=10)
-    m.round((0.0, 0.0), [(1.2 * r, 0.98 * r), (1.65 * r, 0.76 * r), (2 * r, 0.3 * r)], two, sides=10)
+    m.round((0.0, 0.0), [(0.0, 0.3 * r), (0.35 * r, 0.76 * r), (0.8 * r, 0.98 * r)], one, sides=8)
+    m.round((0.0, 0.0), [(0.8 * r, 0.98 * r), (1.2 * r, 0.98 * r)], WHITE, sides=8)
+    m.round((0.0, 0.0), [(1.2 * r, 0.98 * r), (1.65 * r, 0.76 * r), (2 * r, 0.3 * r)], two, sides=8)
     m.put(w, solid=True)
 
 
 def teddy(w: Workbench) -> None:
     """Builds a sitting teddy bear."""
     m, fur = PaletteMesh(), w.choice((CARD, HIDE, WHITE))
-    m.ball((0.0, 0.0, 0.10), 0.105, fur, sides=8)
-    m.ball((0.02, 0.0, 0.25), 0.075, fur, sides=8)
+    m.ball((0.0, 0.0, 0.10), 0.105, fur)
+    m.ball((0.02, 0.0, 0.25), 0.075, fur)
     for y in (-1, 1):
-        m.ball((0.0, 0.06 * y, 0.315), 0.03, fur, sides=5)
+        m.box((-0.01, 0.01), (0.055 * y - 0.022, 0.055 * y + 0.022), (0.29, 0.34), fur)
         m.box((0.05, 0.17), (0.06 * y - 0.03, 0.06 * y + 0.03), (0.0, 0.06), fur, turn=0.3 * y)
         m.box((0.0, 0.05), (0.09 * y - 0.025, 0.09 * y + 0.025), (0.08, 0.19), fur, roll=0.5 * y)
     m.box((0.07, 0.105), (-0.025, 0.025), (0.215, 0.25), CREAM)
@@ -283,8 +283,7 @@ def toy_train(w: Workbench) -> None:
         y = 0.19 * n
         m.box((-0.04, 0.04), (y - 0.08, y + 0.08), (0.025, 0.05), DARK)
         m.box((-0.035, 0.035), (y - 0.075, y + (0.075 if n else 0.0)), (0.05, 0.10 if n else 0.16), w.choice(ACCENTS))
-        for x in (-0.04, 0.04):
-            m.box((x - 0.008, x + 0.008), (y - 0.06, y + 0.06), (0.0, 0.035), METAL)
+        m.box((-0.048, 0.048), (y - 0.06, y + 0.06), (0.0, 0.03), METAL)
     m.box((-0.025, 0.025), (0.0, 0.075), (0.05, 0.10), w.choice(ACCENTS))
     m.box((-0.012, 0.012), (0.075, 0.12), (0.03, 0.04), DARK)
     m.put(w, solid=True)
@@ -304,10 +303,10 @@ def power_strip(w: Workbench) -> None:
 def cable_coil(w: Workbench) -> None:
     """Builds a coiled cable with a plug; flat, without collisions."""
     m, column = PaletteMesh(), w.choice((WHITE, DARK, *ACCENTS))
-    for n in range(8):
-        a = math.tau * n / 8
+    for n in range(6):
+        a = math.tau * n / 6
         x, y = 0.12 * math.cos(a), 0.12 * math.sin(a)
-        m.box((x - 0.005, x + 0.005), (y - 0.05, y + 0.05), (0.0, 0.01), column, turn=a)
+        m.box((x - 0.005, x + 0.005), (y - 0.07, y + 0.07), (0.0, 0.01), column, turn=a)
     m.box((0.11, 0.12), (0.0, 0.30), (0.0, 0.01), column, turn=0.2)
     m.box((0.06, 0.11), (0.29, 0.34), (0.0, 0.026), column)
     m.put(w)
@@ -391,6 +390,6 @@ STYLES = (
     Style("objects", "cable_coil", "heldout", cable_coil, ("cable",), walk_over=True),
     Style("objects", "scattered_magazines", "train", scattered_magazines, ("flat",), walk_over=True),
     Style("objects", "drawings", "heldout", drawings, ("flat",), walk_over=True),
-    Style("objects", "box_pile", "train", box_pile, ("floor",)),
-    Style("objects", "storage_tub", "heldout", storage_tub, ("floor",)),
+    Style("objects", "box_pile", "train", box_pile, ("floor", "box")),
+    Style("objects", "storage_tub", "heldout", storage_tub, ("floor", "box")),
 )

@@ -27,7 +27,7 @@ _XY = tuple[float, float]
 
 
 def _plate(m: PaletteMesh, at: _XY, z: float, radius: float, column: int) -> None:
-    m.round(at, [(z, 0.55 * radius), (z + 0.018, radius), (z + 0.010, 0.6 * radius)], column, sides=10)
+    m.round(at, [(z, 0.55 * radius), (z + 0.018, radius)], column, sides=9)
 
 
 def _bottle(m: PaletteMesh, at: _XY, high: float, radius: float, column: int, cap: int) -> None:
@@ -97,7 +97,7 @@ def bread_board(w: Workbench) -> None:
 def cheese_board(w: Workbench) -> None:
     """Builds a round board with cheese, grapes and a glass."""
     m = PaletteMesh()
-    m.round((0.0, 0.0), [(0.0, 0.15), (0.016, 0.15)], BROWN, sides=12)
+    m.round((0.0, 0.0), [(0.0, 0.15), (0.016, 0.15)], BROWN, sides=10)
     m.box((-0.07, 0.02), (-0.09, -0.01), (0.016, 0.07), ACCENTS[5], turn=0.5)
     for x, y, z in ((0.06, 0.05, 0.034), (0.09, 0.03, 0.034), (0.075, 0.07, 0.034)):
         m.ball((x, y, z), 0.02, GREEN, sides=5)
@@ -110,8 +110,8 @@ def wine(w: Workbench) -> None:
     m = PaletteMesh()
     _bottle(m, (0.0, -0.10), w.length(0.28, 0.32), 0.038, w.choice((GREEN, DARK)), w.choice(ACCENTS))
     for x in (-0.06, 0.05):
-        rings = [(0.0, 0.035), (0.006, 0.006), (0.09, 0.006), (0.12, 0.038), (0.20, 0.032), (0.20, 0.028), (0.13, 0.01)]
-        m.round((x, 0.03), rings, TINT, sides=6)
+        rings = [(0.0, 0.035), (0.008, 0.006), (0.09, 0.006), (0.12, 0.038), (0.20, 0.032)]
+        m.round((x, 0.03), rings, TINT, sides=5)
     m.put(w)
 
 
@@ -121,20 +121,20 @@ def jars(w: Workbench) -> None:
     body, lid = w.choice((WHITE, TINT, *ACCENTS)), w.choice((WOOD, DARK, METAL))
     for n in range(3):
         r, high = 0.06 - 0.009 * n, 0.19 - 0.035 * n
-        m.round((0.0, y), [(0.0, 0.94 * r), (0.02, r), (high, r)], body)
-        m.round((0.0, y), [(high, 0.9 * r), (high + 0.022, 0.9 * r)], lid)
+        m.round((0.0, y), [(0.0, r), (high, r)], body, sides=7)
+        m.round((0.0, y), [(high, 0.9 * r), (high + 0.022, 0.9 * r)], lid, sides=7)
         y += 2 * r
     m.put(w)
 
 
 def spice_rack(w: Workbench) -> None:
-    """Builds a small rack with four spice tins."""
+    """Builds a small rack with three spice tins."""
     m = PaletteMesh()
-    m.box((-0.045, 0.045), (-0.15, 0.15), (0.0, 0.012), WOOD)
-    m.box((-0.045, -0.035), (-0.15, 0.15), (0.0, 0.10), WOOD)
-    for n in range(4):
-        m.round((0.008, -0.11 + 0.073 * n), [(0.012, 0.03), (0.10, 0.03)], w.choice(ACCENTS), sides=6)
-        m.round((0.008, -0.11 + 0.073 * n), [(0.10, 0.031), (0.115, 0.031)], DARK, sides=6)
+    m.box((-0.045, 0.045), (-0.12, 0.12), (0.0, 0.012), WOOD)
+    m.box((-0.045, -0.035), (-0.12, 0.12), (0.0, 0.10), WOOD)
+    for n in range(3):
+        m.round((0.008, -0.08 + 0.08 * n), [(0.012, 0.03), (0.10, 0.03)], w.choice(ACCENTS), sides=6)
+        m.round((0.008, -0.08 + 0.08 * n), [(0.10, 0.031), (0.115, 0.031)], DARK, sides=6)
     m.put(w)
 
 
@@ -147,10 +147,10 @@ def fruit_plate(w: Workbench) -> None:
         w.choice((WHITE, WOOD, TINT)),
         sides=10,
     )
-    for n in range(4):
+    for n in range(3):
         a = math.tau * n / 3
-        at = (0.45 * r * math.cos(a), 0.45 * r * math.sin(a), 0.06) if n < 3 else (0.0, 0.0, 0.10)
-        m.ball(at, 0.042, w.choice((GREEN, ACCENTS[2], ACCENTS[3], ACCENTS[4])), sides=6)
+        at = (0.42 * r * math.cos(a), 0.42 * r * math.sin(a), 0.07)
+        m.ball(at, 0.042, w.choice((GREEN, ACCENTS[2], ACCENTS[3], ACCENTS[4])), sides=5)
     m.put(w)
 
 

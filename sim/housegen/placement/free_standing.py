@@ -29,6 +29,7 @@ def put_in_middle(
     around_m: float,
     least: float = 0.0,
     apart_m: float = 0.0,
+    near: tuple[float, float] | None = None,
 ) -> Placement | None:
     """Puts an item where most of its seats can be used, preferably near the middle of the room.
 
@@ -40,10 +41,12 @@ def put_in_middle(
         around_m: preferred distance from the walls.
         least: share of the seats that must be usable; two of them must be in any case.
         apart_m: smallest distance from walls and other items.
+        near: point to which it should be near; the middle of the room when None.
     """
     required = max(min(2, len(seats)), least * len(seats))
     best: tuple[int, Placement] | None = None
-    for x, y, yaw in _candidate_poses(layout, rng, item, around_m):
+    poses = _candidate_poses(layout, rng, item, around_m) if near is None else _poses_near(layout, near)
+    for x, y, yaw in poses:
         placement = floor_placement(item, x, y, yaw)
         around = placement.rect.grown(apart_m)
         if not layout.inner.contains(around, 0.01) or not layout.is_clear(around, 0.0, item.size_m[2]):
@@ -81,6 +84,16 @@ def _candidate_poses(
     for yaw in (longer, longer - math.pi / 2):
         for _, x, y in points:
             yield x, y, yaw
+
+
+def _poses_near(layout: RoomLayout, near: tuple[float, float]) -> Iterator[tuple[float, float, float]]:
+    """Yields positions at and around a point, in both directions of the room."""
+    longer = 0.0 if layout.inner.depth_m > layout.inner.width_m else math.pi / 2
+    steps = (0.0, 0.3, -0.3, 0.6, -0.6)
+    offsets = sorted(((dx, dy) for dx in steps for dy in steps), key=lambda d: abs(d[0]) + abs(d[1]))
+    for yaw in (longer, longer - math.pi / 2):
+        for dx, dy in offsets:
+            yield near[0] + dx, near[1] + dy, yaw
 
 
 def _is_seat_free(layout: RoomLayout, host: Placement, seat: SeatSpot) -> bool:

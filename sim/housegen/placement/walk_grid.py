@@ -52,6 +52,13 @@ class WalkGrid:
         """Replaces the occupied cells by a copy that `occupied` returned."""
         self._taken[:] = cells
 
+    def widest_free(self) -> tuple[float, tuple[float, float]]:
+        """Returns radius and middle (x, y) of the largest circle of free floor, in metres."""
+        distance = cv2.distanceTransform((self._taken == 0).astype(np.uint8), cv2.DIST_L2, 3)
+        row, col = np.unravel_index(int(np.argmax(distance)), distance.shape)
+        middle = (self._inner.x0 + (int(col) - 0.5) * CELL_M, self._inner.y0 + (int(row) - 0.5) * CELL_M)
+        return float(distance[row, col]) * CELL_M, middle
+
     def stays_walkable(self, new: Rect, reachable: Sequence[Rect]) -> bool:
         """Returns whether the room stays usable for the robot with `new` occupied as well.
 
