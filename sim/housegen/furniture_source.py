@@ -191,9 +191,8 @@ class FurnitureSource:
         if not fresh:
             tried.clear()
         left = [name for name in names if name not in tried] or names
-        if category == "objects":
-            if len(self._small_styles) >= MOST_SMALL_STYLES:
-                left = [name for name in left if name in self._small_styles] or left
+        if category == "objects" and len(self._small_styles) >= MOST_SMALL_STYLES:
+            left = [name for name in left if name in self._small_styles] or left
 
         def weight(name: str) -> float:
             count = placed[category, name]
