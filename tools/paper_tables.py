@@ -1,4 +1,4 @@
-"""The tables of the paper, built from result lines: which runs each table needs, and its rows.
+"""The tables of the paper and of the splits, built from result lines: the runs that each table needs, and its rows.
 
 Every table has means with 95 % bootstrap intervals over the episodes that all its runs have, and paired differences
 between runs. Intervals resample houses, then the episodes of each (`sim.evaluation.bootstrap`).
@@ -8,10 +8,22 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sim.analysis.comparison import Line
-from sim.analysis.metrics import COLLISIONS, EXPLORED, SPL, STEPS, SUCCESS, TRAPPED, Metric, houses_of
+from sim.analysis.metrics import (
+    AREA_PER_METRE,
+    COLLISIONS,
+    EXPLORED,
+    FIRST_SIGHT,
+    NEVER_SEEN,
+    SPL,
+    STEPS,
+    SUCCESS,
+    TRAPPED,
+    Metric,
+    houses_of,
+)
 from sim.analysis.tables import Cell, ResultTable
 from sim.composition.agents import find_agent
 from sim.errors import ConfigError
@@ -141,6 +153,20 @@ def overall(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     return _means_and_differences("overall", "All agents", lines, setups, _against_first(setups), metrics, {})
 
 
+def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the table of one split: success, collisions and exploration, and each setup minus the first one."""
+    metrics = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, NEVER_SEEN, AREA_PER_METRE)
+    pairs = [(other, first) for first, other in _against_first(setups)]
+    title = f"Agents, {setups[0].semantics} segmentation"
+    means, differences = _means_and_differences("splits", title, lines, setups, pairs, metrics, {})
+    rows = [
+        (name, [replace(cell, say_resolved=True) if isinstance(cell, Cell) else cell for cell in cells])
+        for name, cells in differences.rows
+    ]
+    note = "Steps to first sight: restricted mean; an episode that never showed the goal counts with the step limit."
+    return [replace(means, notes=(note,)), replace(differences, rows=rows)]
+
+
 TABLES: Mapping[str, PaperTable] = {
     "failures": PaperTable(("stubborn", "single-frame", "frontier-avoid"), "noisy", failures),
     "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
@@ -151,8 +177,13 @@ TABLES: Mapping[str, PaperTable] = {
         "noisy",
         overall,
     ),
+    "splits": PaperTable(
+        ("stubborn", "frontier-avoid", "frontier", *list(ABLATION.values())[:-1], "oracle"), GROUND_TRUTH, splits
+    ),
 }
 """The tables by name."""
+PAPER_TABLES = tuple(name for name in TABLES if name != "splits")
+"""The tables that the paper has too."""
 
 
 def table_named(name: str) -> PaperTable:

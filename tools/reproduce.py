@@ -3,10 +3,12 @@
     python tools/reproduce.py ablation --episodes 200 --workers 2
     python tools/reproduce.py all --episodes 200 --workers 2 --minutes 110
     python tools/reproduce.py failures --minutes 0            # only the table, from the existing runs
+    python tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2
 
-Tables: failures, ablation, exploration, categories, overall, or all. Each run has a folder
-`<out>/<agent>_<semantics>_...`, as `sim.run --record` writes it; the tables share the runs. The agents take turns, a
-chunk of episodes each, so that they have the same first episodes whenever the tool is stopped; the same command
+Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; and splits, which compares
+explorers and the rows of the ablation on each of several splits. Each run has a folder `<out>/<agent>_<semantics>_...`,
+as `sim.run --record` writes it; the tables share the runs. The agents take turns, a chunk of episodes (with several
+splits, of each of them), so that they have the same first episodes whenever the tool is stopped; the same command
 resumes. Tables are printed and written to `<out>/tables/<table>.md` and `.csv`; the options --semantics, --agents,
 --noise, --split and --seed become part of the name if they are given. With `--minutes 0` no episode is run, and runs of
 older code are accepted if they have the same agent, segmentation, split, seed and noise. See docs/reproduce.md.
@@ -18,7 +20,7 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +40,7 @@ from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
 from sim.evaluation.config_fields import differing_fields, field_text
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
-from tools.paper_tables import TABLES, AgentSetup, PaperTable, table_named
+from tools.paper_tables import PAPER_TABLES, AgentSetup, PaperTable, table_named
 
 SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
@@ -51,9 +53,9 @@ class Args:
     """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
-    """failures, ablation, exploration, categories, overall, or all."""
+    """failures, ablation, exploration, categories, overall, splits, or all (of the paper's, without splits)."""
     episodes: int = 200
-    """The first N episodes of the split."""
+    """The first N episodes of each split."""
     workers: int = 1
     """Number of processes."""
     executor: str = "local"
@@ -62,6 +64,8 @@ class Args:
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
+    splits: tuple[str, ...] = ()
+    """Several of them, in place of --split; each has tables of its own, and one page has all of them."""
     out: Path = Path("runs/paper")
     """Folder for the runs and tables."""
     semantics: str | None = None
@@ -72,8 +76,8 @@ class Args:
     """Noise of sensors and drive."""
     seed: int = 0
     """Seed of the runs."""
-    chunk: int = 20
-    """Number of episodes that an agent runs in its turn."""
+    chunk: int | None = None
+    """Number of episodes that an agent runs in its turn; 20, with several splits 60."""
     minutes: float | None = None
     """Start no chunk that would end later than this; 0 runs nothing and makes the tables from the existing runs."""
 
@@ -82,48 +86,70 @@ def main(args: Args) -> int:
     """Runs episodes and writes tables; returns the exit status."""
     _check(args)
     console = display.make_console()
-    names = list(TABLES) if args.table == "all" else [args.table]
+    names = _table_names(args)
     needed = {name: table_named(name).setups(args.agents, args.semantics) for name in names}
     setups = list(dict.fromkeys(setup for of_table in needed.values() for setup in of_table))
-    split = load_split(args.split)
-    episodes = _first_episodes(args, split)
+    splits = [_episodes_of(each) for each in _each_split(args)]
     if args.minutes != 0.0:
-        run_episodes(args, setups, episodes, split, console)
-    runs = {setup: _read(args, setup, split) for setup in setups if _has_run(args, setup)}
+        run_episodes(args, setups, splits, console)
     status = 0
-    for name, of_table in needed.items():
-        common = common_episodes(runs, of_table, episodes)
-        if not common:
-            console.print(f"{name}: no episode that {', '.join(setup.label for setup in of_table)} have all run.")
-            status = 1
-            continue
-        chosen = {setup: runs[setup] for setup in of_table}
-        require_same_conditions(list(chosen.values()))
-        write_table(args, name, table_named(name), chosen, common, console)
+    pages: dict[str, list[str]] = {name: [] for name in names}
+    for of_split in splits:
+        for name, of_table in needed.items():
+            page = make_table(of_split, name, of_table, console)
+            status |= page is None
+            pages[name] += [f"## {of_split.split.name}\n\n{page}"] if page is not None else []
+    if len(splits) > 1:
+        _write_pages(args, [each.args for each in splits], pages, console)
     return status
 
 
-def run_episodes(
-    args: Args, setups: Sequence[AgentSetup], episodes: Sequence[Episode], split: Split, console: Console
-) -> None:
-    """Lets the agents take turns, a chunk of episodes each, until all episodes are run or the minutes are used up.
+@dataclass(frozen=True)
+class SplitEpisodes:
+    """The episodes of one of the splits of a command."""
+
+    args: Args
+    """The options, with this split alone."""
+    split: Split
+    episodes: Sequence[Episode]
+
+
+def run_episodes(args: Args, setups: Sequence[AgentSetup], splits: Sequence[SplitEpisodes], console: Console) -> None:
+    """Lets the agents take turns, a chunk of episodes of each split, until all are run or the minutes are used up.
 
     Raises:
         ConfigError: a folder holds a run with other options.
     """
-    began_s, longest_s = time.monotonic(), 0.0
-    for first in range(0, len(episodes), args.chunk):
-        chunk = episodes[first : first + args.chunk]
-        chunk_began_s = time.monotonic()
-        if args.minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * args.minutes:
-            console.print(f"The {args.minutes:g} minutes are used up before episode {first + 1}.")
-            return
-        for setup in setups:
-            done = read_run(_folder(args, setup)).lines if _has_run(args, setup) else {}
-            if first and all(episode.episode_id in done for episode in chunk):
-                continue
-            run.run_missing(_run_args(args, setup), chunk, _identity(split), console)
-        longest_s = max(longest_s, time.monotonic() - chunk_began_s)
+    began_s, longest_s, size = time.monotonic(), 0.0, _chunk_size(args)
+    for first in range(0, args.episodes, size):
+        for part in splits:
+            chunk = part.episodes[first : first + size]
+            chunk_began_s = time.monotonic()
+            if args.minutes is not None and chunk_began_s - began_s + longest_s >= 60.0 * args.minutes:
+                console.print(f"The {args.minutes:g} minutes are used up before episode {first + 1}.")
+                return
+            for setup in setups:
+                done = read_run(_folder(part.args, setup)).lines if _has_run(part.args, setup) else {}
+                if first and all(episode.episode_id in done for episode in chunk):
+                    continue
+                run.run_missing(_run_args(part.args, setup), chunk, _identity(part.split), console)
+            longest_s = max(longest_s, time.monotonic() - chunk_began_s)
+
+
+def make_table(part: SplitEpisodes, name: str, setups: Sequence[AgentSetup], console: Console) -> str | None:
+    """Writes a table of one split; returns its page, None where the setups share no episode.
+
+    Raises:
+        ConfigError: the runs differ in conditions that must be equal.
+    """
+    args = part.args
+    runs = {setup: _read(args, setup, part.split) for setup in setups if _has_run(args, setup)}
+    common = common_episodes(runs, setups, part.episodes)
+    if not common:
+        console.print(f"{name}: no episode that {', '.join(setup.label for setup in setups)} have all run.")
+        return None
+    require_same_conditions(list(runs.values()))
+    return write_table(args, name, table_named(name), runs, common, console)
 
 
 def common_episodes(
@@ -160,17 +186,28 @@ def write_table(
     runs: Mapping[AgentSetup, Run],
     common: Sequence[str],
     console: Console,
-) -> None:
-    """Builds one table, prints it, and writes it as Markdown and CSV."""
+) -> str:
+    """Builds one table, prints it, and writes it as Markdown and CSV; returns the Markdown."""
     lines = {setup: [with_cause(of, of.lines[i]) for i in common] for setup, of in runs.items()}
     parts = table.build(lines, list(runs))
     notes = notes_of(args, name, runs, common)
     folder, stem = args.out / "tables", stem_of(args, name)
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{stem}.md").write_text(to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n", encoding="utf-8")
+    page = to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n"
+    (folder / f"{stem}.md").write_text(page, encoding="utf-8")
     write_csv(folder / f"{stem}.csv", parts)
     _print(console, parts, notes)
     console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
+    return page
+
+
+def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequence[str]], console: Console) -> None:
+    """Writes for each table one page with all splits that have it."""
+    for name, parts in pages.items():
+        stem = "_".join((stem_of(replace(args, split=Args.split), name), "+".join(map(_split_name, of_splits))))
+        if parts:
+            (args.out / "tables" / f"{stem}.md").write_text("\n".join(parts), encoding="utf-8")
+            console.print(f"{len(parts)} splits on {args.out / 'tables' / stem}.md", highlight=False)
 
 
 def stem_of(args: Args, name: str) -> str:
@@ -285,26 +322,44 @@ def _identity(split: Split) -> dict[str, str]:
     return {"name": split.name, "version": split.version, "sha256": split.sha256}
 
 
-def _first_episodes(args: Args, split: Split) -> Sequence[Episode]:
+def _table_names(args: Args) -> list[str]:
+    return list(PAPER_TABLES) if args.table == "all" else [args.table]
+
+
+def _chunk_size(args: Args) -> int:
+    return args.chunk or (60 if len(args.splits) > 1 else 20)
+
+
+def _each_split(args: Args) -> list[Args]:
+    """Returns the options for each of the splits alone."""
+    return [replace(args, split=name, splits=()) for name in args.splits or (args.split,)]
+
+
+def _episodes_of(args: Args) -> SplitEpisodes:
+    """Returns the first episodes of the split of the options; raises ConfigError where it has too few."""
+    split = load_split(args.split)
     if args.episodes > len(split.episodes):
         raise ConfigError(f"--episodes {args.episodes}: split '{split.name}' has {len(split.episodes)} episodes.")
-    return split.episodes[: args.episodes]
+    return SplitEpisodes(args, split, split.episodes[: args.episodes])
 
 
 def _check(args: Args) -> None:
     """Raises ConfigError where an option is not allowed."""
     if args.table != "all":
         table_named(args.table)
-    for name, value, least in (("episodes", args.episodes, 1), ("workers", args.workers, 1), ("chunk", args.chunk, 1)):
+    for name, value, least in (("episodes", args.episodes, 1), ("workers", args.workers, 1)):
         if value < least:
             raise ConfigError(f"--{name} must be at least {least}, got {value}.")
+    if args.chunk is not None and args.chunk < 1:
+        raise ConfigError(f"--chunk must be at least 1, got {args.chunk}.")
     if args.minutes is not None and not args.minutes >= 0.0:
         raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
     if args.minutes == 0.0:
         return
-    names = [args.table] if args.table != "all" else list(TABLES)
-    for setup in {setup for name in names for setup in table_named(name).setups(args.agents, args.semantics)}:
-        check_options(_run_args(args, setup))
+    setups = {s for name in _table_names(args) for s in table_named(name).setups(args.agents, args.semantics)}
+    for each in _each_split(args):
+        for setup in setups:
+            check_options(_run_args(each, setup))
 
 
 def entry(argv: Sequence[str] | None = None) -> int:

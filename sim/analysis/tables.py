@@ -12,7 +12,7 @@ from rich.table import Table
 
 from sim.evaluation.bootstrap import Estimate
 
-UNRESOLVED = "unresolved"
+RESOLVED, UNRESOLVED = "resolved", "unresolved"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
 ONE_HOUSE = "*"
 """Marks an interval over the episodes of one house."""
@@ -29,6 +29,8 @@ class Cell:
     digits: int = 1
     difference: bool = False
     """Shown with its sign, and as unresolved where the interval holds 0."""
+    say_resolved: bool = False
+    """A difference that is resolved is shown with that word too."""
 
     @property
     def verdict(self) -> str:
@@ -54,8 +56,8 @@ class Cell:
 
     def text(self, separator: str = " ") -> str:
         """Returns `12.0 [8.0, 16.0]`, for a difference `+4.0 [-1.0, 9.0] unresolved`."""
-        unresolved = UNRESOLVED if self.verdict == UNRESOLVED else ""
-        return separator.join(filter(None, (self.mean_text, self.interval_text, unresolved)))
+        word = UNRESOLVED if self.verdict == UNRESOLVED else RESOLVED if self.verdict and self.say_resolved else ""
+        return separator.join(filter(None, (self.mean_text, self.interval_text, word)))
 
     def _number(self, value: float) -> str:
         sign = "+" if self.difference else ""

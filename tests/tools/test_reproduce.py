@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -18,6 +20,7 @@ from sim.interface import ConfigError
 from sim.task.trajectory import FOLDER
 from tests.helpers.worlds import room, with_box
 from tools import compare_runs, reproduce
+from tools.paper_tables import PAPER_TABLES, table_named
 
 AGENTS = ("oracle", "examples.my_agent:make")
 MINE = "examples.my_agent_make_gt_none_tiny"
@@ -227,3 +230,34 @@ def test_two_folders_of_runs_are_compared_pair_by_pair(
     page = (args.out / "compared" / "comparison.md").read_text()
     assert "| success % |" in page
     assert f'| agent | "{AGENTS[1]}" | "oracle" |' in page
+
+
+def test_several_splits_take_turns_and_share_a_page(
+    args: reproduce.Args, split: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "small"
+    shutil.copytree(split, other)
+    (other / "tiny.json.gz").rename(other / "small.json.gz")
+    both = replace(args, table="splits", splits=(str(split), str(other)))
+    assert reproduce.main(both) == 0
+    told = capsys.readouterr().out
+    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes of (tiny|small)", told)
+    assert order == [(agent, of) for _ in range(2) for of in ("tiny", "small") for agent in ("oracle", "my_agent:make")]
+    names = {file.name for file in (args.out / "tables").glob("splits_*.md")}
+    agents = "gt_oracle+examples.my_agent_make"
+    assert names == {f"splits_{agents}_{of}.md" for of in ("tiny", "small", "tiny+small")}
+    page = (args.out / "tables" / f"splits_{agents}_tiny+small.md").read_text()
+    assert page.index("## tiny") < page.index("## small")
+    assert page.count("| steps to first sight | never seen % | area per metre, m2/m |") == 4
+    assert "| examples.my_agent:make (gt) - oracle |" in page
+    before = [file.read_bytes() for file in sorted(args.out.glob("*/results.jsonl"))]
+    assert reproduce.main(both) == 0
+    assert [file.read_bytes() for file in sorted(args.out.glob("*/results.jsonl"))] == before
+
+
+def test_all_tables_are_those_of_the_paper(tmp_path: Path) -> None:
+    assert reproduce._table_names(reproduce.Args(table="all", out=tmp_path)) == list(PAPER_TABLES)
+    assert "splits" not in PAPER_TABLES
+    assert [setup.agent for setup in table_named("splits").setups()] == [
+        "stubborn", "frontier-avoid", "frontier", "stubborn-i", "stubborn-ii", "stubborn-iii", "stubborn-iv", "oracle",
+    ]  # fmt: skip
