@@ -148,6 +148,8 @@ class FurnitureSource:
         style = self._least_used(category, use, key, fresh)
         self._returned[category, style] += 1
         now = _items(self._layouts[-1:])
+        if category == "objects":  # the same for any use
+            key = category
         known = [item for item in self._designs.setdefault(key, []) if item.style == style]
         for item in known:
             if self._before[0][id(item)] + now[id(item)] < MOST_ALIKE and category not in ("picture", "floor"):

@@ -38,7 +38,12 @@ def place(
     layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, along: Along = "any", front_m: float = 0.6,
     tries: int = 2, **hints: Any,
 ) -> Placement | None:  # fmt: skip
-    """Places an item against a wall; tries another design when the first one does not fit."""
+    """Places an item against a wall; tries another style when the first one does not fit.
+
+    A home without clutter has no objects.
+    """
+    if category == "objects" and source.clutter <= 0.0:
+        return None
     for n in range(tries):
         item = source.make(category, *uses, fresh=n > 0, **hints)
         if item is None:
