@@ -7,6 +7,7 @@ height of the robot's eye.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.housegen.texture_patterns import Colour, Image, noise
 
@@ -88,7 +89,7 @@ def _lit(colour: Colour, time: str) -> Image:
     return np.array(colour) * np.array(_SUNLIGHT[time])
 
 
-def _fill(image: Image, mask: Image, colour: Colour, time: str, shade: Image | None = None) -> None:
+def _fill(image: Image, mask: NDArray[np.bool_], colour: Colour, time: str, shade: Image | None = None) -> None:
     """Paints the pixels of a mask, lit by the time of day and shaded by a factor."""
     paint = np.broadcast_to(_lit(colour, time), image.shape)
     image[mask] = (paint if shade is None else paint * shade[:, :, None])[mask]

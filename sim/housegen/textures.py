@@ -175,10 +175,12 @@ _ALL = (
     _entry("rug_rings", "heldout", 0.0, rug, 96, colours=(_SKY, _IVORY, _MINT, _INK), pattern="rings"),
 )
 
+_SCENES: tuple[tuple[Pool, str, int], ...] = (
+    ("train", "hills", 200), ("train", "street", 201), ("heldout", "roofs", 202), ("heldout", "garden", 203)
+)
 _VIEWS = tuple(
     _entry(f"view_{scene}_{time}", pool, 0.0, outside, seed, scene=scene, time=time)
-    for pool, scene, seed in (("train", "hills", 200), ("train", "street", 201), ("heldout", "roofs", 202),
-                              ("heldout", "garden", 203))
+    for pool, scene, seed in _SCENES
     for time in ("morning", "noon", "evening", "night")
 )
 _MIRRORS = (

@@ -70,5 +70,5 @@ class LampMaps:
             mujoco.mjr_readPixels(self._color, depth, self._rect, context)
             depth = 1.0 / (depth * np.float32(DEPTH_SLOPE) + np.float32(DEPTH_OFFSET))
             around = np.ones((2 * MAP_REACH_PX + 3, 2 * MAP_REACH_PX + 3), np.uint8)
-            self._maps[lamp] = (at, np.stack([depth, cv2.erode(depth, around), cv2.dilate(depth, around)]))
+            self._maps[lamp] = (at, np.array([depth, cv2.erode(depth, around), cv2.dilate(depth, around)], np.float32))
         return self._maps[lamp][1]

@@ -74,7 +74,7 @@ class Shading:
             frame = np.stack([eye_m, -axes[1], axes[2], axes[0]])
             lights = self._other_lights(axes[0])
             shade(share, points, self._taps, frame, lights, self._lamp(data, lamp), lamp_map, self._shadows)
-        share = blur(share, points[2])
+        share = blur(blur(share, points[2]), points[2])
         return apply_share(color, raw, share, cv2.resize(share, raw.shape[::-1], interpolation=cv2.INTER_LINEAR))
 
     def _other_lights(self, forward: NDArray) -> NDArray[np.float64]:
@@ -107,7 +107,7 @@ def make_shading(model: mujoco.MjModel, camera: CameraModel, profile: RenderProf
 
 
 def _sample_discs(count: int) -> NDArray[np.float32]:
-    """Returns (4, count, 2) points of the unit disc on spirals, dense at the centre, each spiral turned from the last."""
+    """Returns (4, count, 2) points of the unit disc on spirals, dense at the centre and turned against each other."""
     k = np.arange(count) + 0.5
     golden = math.pi * (3.0 - math.sqrt(5.0))
     turns = np.array([0.0, 2.0, 3.0, 1.0])[:, None] * (0.5 * math.pi / 2.0)

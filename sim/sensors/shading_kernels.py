@@ -89,16 +89,18 @@ def open_share(points: NDArray, taps: NDArray, focal_px: float, radius_m: float,
 
 
 @njit(cache=True, error_model="numpy")
-def _measure_reach(z: NDArray, scale: float, reach: NDArray) -> None:
+def _measure_reach(z: NDArray, scale: np.float32, reach: NDArray) -> None:
     """Writes the radius of the sampling disc of each point, in grid cells."""
     for j in range(len(z)):
         cells = scale / z[j]
         cells = cells if cells > np.float32(2.5) else np.float32(2.5)
-        reach[j] = cells if cells < np.float32(36.0) else np.float32(36.0)
+        reach[j] = cells if cells < np.float32(26.0) else np.float32(26.0)
 
 
 @njit(cache=True, error_model="numpy")
-def _find_places(i: int, rows: int, work: NDArray, tap_x: NDArray, tap_y: NDArray, cell: float, place: NDArray) -> None:
+def _find_places(
+    i: int, rows: int, work: NDArray, tap_x: NDArray, tap_y: NDArray, cell: np.float32, place: NDArray
+) -> None:
     """Writes the flat index of each sampled point, clamped to the grid, and the slopes of its ray into `work`."""
     columns = len(tap_x)
     zero, half = np.float32(0.0), np.float32(0.5)
@@ -116,7 +118,7 @@ def _find_places(i: int, rows: int, work: NDArray, tap_x: NDArray, tap_y: NDArra
 
 
 @njit(cache=True, error_model="numpy")
-def _lose(share: NDArray, points: NDArray, work: NDArray, sharp: float, weight: float) -> None:
+def _lose(share: NDArray, points: NDArray, work: NDArray, sharp: np.float32, weight: np.float32) -> None:
     """Subtracts from the share of a row what one sample of each point covers."""
     zero, one = np.float32(0.0), np.float32(1.0)
     for j in range(len(share)):
@@ -192,7 +194,7 @@ def _place_on_map(points: NDArray, frame: NDArray, lamp: NDArray, size: int, wor
         u, v = (px - lamp[0]) / drop, (py - lamp[1]) / drop
         far = abs(u) if abs(u) > abs(v) else abs(v)
         inside = drop > np.float32(0.15) and far < np.float32(0.98) * limit
-        column, row = (u + limit) * scale, (v + limit) * scale
+        column, row = (limit - v) * scale, (u + limit) * scale
         fade = np.float32(5.0) * (np.float32(0.98) - far / limit)
         work[0, j], work[1, j], work[2, j], work[3, j], work[4, j], work[5, j] = px, py, pz, wx, wy, wz
         work[6, j] = np.float32(0.988) * drop - np.float32(0.01)

@@ -90,12 +90,12 @@ def test_culling_changes_no_pixel(clutter: tuple[Eye, Eye]) -> None:
 
 def test_in_the_good_profile_an_invisible_object_casts_its_shadow() -> None:
     """A cupboard behind the camera, under a lamp further back."""
-    spec = with_box(room(8, 8), "cabinet_00", centre_m=(-0.6, 0.0, 1.2), half_m=(0.1, 0.5, 0.3)).spec.copy()
-    spec.lights[0].pos, spec.lights[0].dir = (-2.0, 0.0, 2.4), (0.8, 0.0, -0.6)
+    spec = with_box(room(8, 8), "cabinet_00", centre_m=(-1.6, 0.0, 1.9), half_m=(0.1, 0.5, 0.3)).spec.copy()
+    spec.lights[0].pos, spec.lights[0].dir = (-2.0, 0.0, 2.4), (0.0, 0.0, -1.0)
     house = House("lamp", spec)
     culled, whole = (Eye(house, profile="good", cull=cull) for cull in (True, False))
     bare = Eye(with_box(room(8, 8), "cabinet_00", centre_m=(-3.5, 3.5, 0.5), half_m=(0.1, 0.1, 0.3)), profile="good")
-    bare.model.light_pos[:], bare.model.light_dir[:] = (-2.0, 0.0, 2.4), (0.8, 0.0, -0.6)
+    bare.model.light_pos[:], bare.model.light_dir[:] = (-2.0, 0.0, 2.4), (0.0, 0.0, -1.0)
     mujoco.mj_forward(bare.model, bare.data)
     shadow, same, none = (eye.see(0, 0, 0, "rgb", "depth")["rgb"] for eye in (culled, whole, bare))
     np.testing.assert_array_equal(shadow, same)
