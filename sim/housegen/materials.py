@@ -102,7 +102,7 @@ MATERIALS: dict[str, Material] = {
     "iron": _material("34363a 45474b", "2a2624 4f4a46", specular=0.3, shininess=0.3),
     "ceramic": _material("f7f7f4 eeeeea", "f3ead8 e4ebee d9d5cf", specular=0.6, shininess=0.7),
     "steel": _material("b9bcbf a7abae", "c8c6c0 989ea4", specular=0.7, shininess=0.6),
-    "appliance": _material("f1f1ee c3c6c8 2e3033", "e9dfc9 aebcc4 5a1f22 d9dcd2", specular=0.4, shininess=0.5),
+    "appliance": _material("f1f1ee c3c6c8 2e3033", "e9dfc9 aebcc4 43484d d9dcd2", specular=0.4, shininess=0.5),
     "plastic": _material(
         "f0efe9 2f3134 c8452f 3f6f8f e0b040", "dfe8ea 4a3f5f 6fae9a d9776a", specular=0.3, shininess=0.4
     ),
