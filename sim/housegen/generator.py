@@ -7,6 +7,9 @@ the number of tries is limited and reported.
 
 from __future__ import annotations
 
+import copy
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,16 +21,18 @@ from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
 from sim.housegen.furnishing import FurnishError, furnish
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
-from sim.housegen.furniture.item import Pool
+from sim.housegen.furniture.item import Item, Pool
 from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
 from sim.housegen.lighting import DAYLIGHT, draw_lamps
+from sim.housegen.merging import Assembler
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
 from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
 from sim.housegen.placement import RoomLayout
 from sim.housegen.placement.surfaces import supports_items
 from sim.housegen.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
 from sim.housegen.structure import build_structure
+from sim.housegen.upper_storey import UpperStorey, draw_stairs, draw_upper_storey, lifted
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
@@ -36,8 +41,14 @@ GENERATOR_VERSION = 2
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 800.0)
-MAX_BYTES, MAX_ESTATE_BYTES = 395_000, 1_000_000
-"""Largest size of a house file, and of one of the kind `estate`."""
+MAX_BYTES = 395_000
+"""Largest size of the file of a house of up to `USUAL_M2`."""
+USUAL_M2, BYTES_PER_M2 = 250.0, 1_100
+"""Floor area from which the file may be larger, and by how much for each square metre: 1 MB at 800 m2."""
+THINNED_SHARES = (1.0, 0.6, 0.3)
+"""Shares of the small objects that stay; the next value is tried where the file is too large in spite of all joining."""
+STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
+"""The file of a house with two storeys may be larger by this factor, up to this size."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
 """Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
 _POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
@@ -60,7 +71,7 @@ class HouseConfig:
     movable: bool = False
     """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.movables`)."""
     storeys: int = 1
-    """Number of storeys."""
+    """1, or 2: some rooms again above, with a flight of stairs between (needs the room kind `stair_hall`)."""
     hazards: tuple[str, ...] = ()
     """Families of hazards (`sim.housegen.hazards.FAMILIES`) that are placed where paths lead."""
     hazard_count: int | None = None
@@ -81,8 +92,10 @@ class HouseConfig:
             raise ConfigError(
                 f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."
             )
-        if self.storeys != 1:
-            raise ConfigError(f"HouseConfig.storeys must be 1, got {self.storeys}.")
+        if self.storeys not in (1, 2):
+            raise ConfigError(f"HouseConfig.storeys must be 1 or 2, got {self.storeys}.")
+        if self.storeys == 2 and "stair_hall" not in self.rooms:
+            raise ConfigError("HouseConfig.storeys = 2 needs 'stair_hall' among HouseConfig.rooms.")
         if self.clutter is not None and not 0.0 <= self.clutter <= 1.0:
             raise ConfigError(f"HouseConfig.clutter must lie in [0, 1], got {self.clutter}.")
 
@@ -156,7 +169,7 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         faults = (
             check_house(spec, furnished=True)
             if spec is not None
-            else [f"its file is larger than {MAX_BYTES / 1000:.0f} KB"]
+            else [f"its file is larger than {draft.max_bytes / 1000:.0f} KB"]
         )
         if spec is not None and not faults:
             return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
@@ -176,6 +189,14 @@ class _Draft:
     time: str
     """Time of day, a key of `DAYLIGHT`."""
     hazards: tuple[PlacedHazard, ...] = ()
+    upper: UpperStorey | None = None
+
+    @property
+    def max_bytes(self) -> int:
+        """Largest size of its file."""
+        if self.upper is None:
+            return max_bytes(self.plan.area_m2)
+        return min(round(STOREYS_BYTES * max_bytes(self.plan.area_m2 + self.upper.plan.area_m2)), MAX_STOREYS_BYTES)
 
 
 def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalogue) -> _Draft:
@@ -189,13 +210,19 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
     ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
     plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
+    stairs = draw_stairs(rng, plan, openings) if config.storeys == 2 else None
+    if stairs is not None:
+        openings, ceiling_m = stairs.lower_openings, stairs.ceiling_m
     looks = draw_structure_looks(rng, plan, config.pool)
-    structure = build_structure(plan, openings, ceiling_m, looks)
+    structure = build_structure(plan, openings, ceiling_m, looks, ceiling_hole=stairs.flight.well if stairs else None)
     source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
-        furnish(layout, source)
+        if stairs is None or layout.kind != "stair_hall":
+            furnish(layout, source)
     draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m, looks.time), looks.time)
+    if stairs is not None:
+        draft = replace(draft, upper=draw_upper_storey(rng, stairs, config.pool, source, looks))
     if not config.hazards:
         return draft
     bare = _build(draft, config, BYTES_PER_GEOM[0])
@@ -221,46 +248,104 @@ def _draw_plan(
     return plan, cut_openings(rng, plan)
 
 
+def max_bytes(area_m2: float) -> int:
+    """Returns the largest size of the file of a house of this floor area."""
+    return round(MAX_BYTES + BYTES_PER_M2 * max(0.0, area_m2 - USUAL_M2))
+
+
 def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
     """Returns the specification of a drawn home, its parts joined as much as the size of the file allows.
 
     Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
     """
+    assembler = Assembler()
     if config.pool == "wide":
-        return _build(draft, config, BYTES_PER_GEOM[0])
+        return _build(draft, config, BYTES_PER_GEOM[0], assembler)
+    limit, last = draft.max_bytes, len(BYTES_PER_GEOM) - 1
     level = 0
-    while level < len(BYTES_PER_GEOM):
-        spec = _build(draft, config, BYTES_PER_GEOM[level])
-        size = len(house_text(spec))
-        if size <= MAX_BYTES:
-            return spec
-        steps = 1 + (size > 1.12 * MAX_BYTES) + (size > 1.3 * MAX_BYTES)  # each level saves about 7 percent
-        last = len(BYTES_PER_GEOM) - 1
-        level = min(level + steps, last) if level < last else last + 1
+    for share in THINNED_SHARES:
+        thinned = draft if share == 1.0 else _thinned(draft, share)
+        while level <= last:
+            spec = _build(thinned, config, BYTES_PER_GEOM[level], assembler)
+            excess = len(house_text(spec)) - limit
+            if excess <= 0:
+                return spec
+            if level == last:
+                break
+            level = _level_that_saves(thinned, assembler, level, excess)
     return None
 
 
-def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int) -> mujoco.MjSpec:
+def _level_that_saves(draft: _Draft, assembler: Assembler, level: int, excess: int) -> int:
+    """Returns the first index of `BYTES_PER_GEOM` after `level` that saves about so many bytes, else the last one."""
+    placed = list(_all_items(draft))
+    copies = Counter(map(id, placed))
+    designs = {id(item): item for item in placed}.values()
+    for other in range(level + 1, len(BYTES_PER_GEOM) - 1):
+        limits = BYTES_PER_GEOM[level], BYTES_PER_GEOM[other]
+        if sum(assembler.saved_bytes(item, copies[id(item)], *limits) for item in designs) > excess:
+            return other
+    return len(BYTES_PER_GEOM) - 1
+
+
+def _all_items(draft: _Draft) -> Iterator[Item]:
+    """Yields every item of a home, children too, as often as it is placed."""
+    upper = draft.upper
+    todo = [placed.item for placed in [*draft.structure, *(upper.structure if upper else ())]]
+    layouts = [*draft.layouts, *(upper.layouts if upper else ())]
+    todo += [placement.placed.item for layout in layouts for placement in layout.placements]
+    while todo:
+        item = todo.pop()
+        yield item
+        todo += [child.item for child in item.children]
+
+
+def _thinned(draft: _Draft, share: float) -> _Draft:
+    """Returns the home with this share of the small objects of each room."""
+    upper = draft.upper
+    if upper is not None:
+        upper = replace(upper, layouts=_thinned_layouts(upper.layouts, share))
+    return replace(draft, layouts=_thinned_layouts(draft.layouts, share), upper=upper)
+
+
+def _thinned_layouts(of_rooms: list[RoomLayout], share: float) -> list[RoomLayout]:
+    layouts = []
+    for layout in of_rooms:
+        small = [p for p in layout.placements if p.item.category == "objects"]
+        removed = {id(p) for n, p in enumerate(small) if int((n + 1) * share) == int(n * share)}
+        thinned = copy.copy(layout)
+        thinned.placements = [p for p in layout.placements if id(p) not in removed]
+        layouts.append(thinned)
+    return layouts
+
+
+def _build(
+    draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: Assembler | None = None
+) -> mujoco.MjSpec:
     """Returns the specification of a drawn home."""
-    builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom)
+    builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom, assembler=assembler)
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
         builder.add_room(RoomBox(room.name, room.rect.grown(-HALF_WALL_M)), draft.ceiling_m)
-    builder.expect(
-        [*draft.structure, *(placement.placed for layout in draft.layouts for placement in layout.placements)]
-    )
-    for placed in draft.structure:
-        builder.add(placed)
-    for layout in draft.layouts:
-        for placement in layout.placements:
-            if config.movable and not supports_items(layout, placement):
-                builder.add_movable(placement.placed)
-            else:
-                builder.add(placement.placed)
+    storeys = [(0.0, draft.structure, draft.layouts)]
+    if draft.upper is not None:
+        draft.upper.add_ground(builder)
+        storeys.append((draft.upper.floor_z_m, draft.upper.structure, draft.upper.layouts))
+    for _, structure, layouts in storeys:
+        builder.expect([*structure, *(placement.placed for layout in layouts for placement in layout.placements)])
+    for z_m, structure, layouts in storeys:
+        for placed in structure:
+            builder.add(lifted(placed, z_m))
+        for layout in layouts:
+            for placement in layout.placements:
+                if config.movable and not supports_items(layout, placement):
+                    builder.add_movable(lifted(placement.placed, z_m))
+                else:
+                    builder.add(lifted(placement.placed, z_m))
     for number, hazard in enumerate(draft.hazards):
         hazard.add_to(builder, number)
     builder.set_ambient(DAYLIGHT[draft.time].ambient)
-    for lamp in draft.lamps:
+    for lamp in [*draft.lamps, *(draft.upper.lamps if draft.upper else ())]:
         builder.add_lamp(lamp)
     return builder.spec
 
