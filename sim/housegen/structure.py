@@ -16,7 +16,7 @@ from sim.housegen.floor_plan import FloorPlan
 from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.mjcf import PlacedItem
 from sim.housegen.openings import HALF_WALL_M, JAMB_M, OUTER_WALL_M, Opening, outer_spans
-from sim.housegen.rectangles import EPS_M, OPPOSITE, SIDES, Interval, Rect, Side, subtract
+from sim.housegen.rectangles import EPS_M, OPPOSITE, SIDES, Interval, Rect, Side, frame_around, subtract
 from sim.housegen.structure_parts import CASING_M, StructureLooks, oriented_box, structure_item
 from sim.housegen.triangles import mesh_shape
 
@@ -24,17 +24,32 @@ BASEBOARD_M = (0.012, 0.08)
 """Thickness and height of baseboards."""
 SLAB_M = 0.1
 """Thickness of floors."""
+CEILING_M = 0.06
+"""Thickness of ceilings."""
 
 
 def build_structure(
-    plan: FloorPlan, openings: Sequence[Opening], ceiling_m: float, looks: StructureLooks
+    plan: FloorPlan,
+    openings: Sequence[Opening],
+    ceiling_m: float,
+    looks: StructureLooks,
+    *,
+    floor_hole: Rect | None = None,
+    ceiling_hole: Rect | None = None,
 ) -> list[PlacedItem]:
-    """Returns everything that is part of the building."""
+    """Returns everything that is part of the building, for one storey with its floor at z = 0.
+
+    The floor and the ceiling of the stair hall may have a hole, the stairwell.
+    """
     placed = []
     rects = [room.rect for room in plan.rooms]
     for i, room in enumerate(plan.rooms):
         here = [opening for opening in openings if i in (opening.a, opening.b)]
-        items = [_floor(room.rect, looks.floors[room.name]), _ceiling(room.rect, ceiling_m, looks.ceiling)]
+        is_hall = i == plan.stair_hall()
+        items = [
+            _floor(room.rect, looks.floors[room.name], floor_hole if is_hall else None),
+            _ceiling(room.rect, ceiling_m, looks.ceiling, ceiling_hole if is_hall else None),
+        ]
         items += _room_walls(rects, i, here, ceiling_m, looks.walls[room.name], looks.trim)
         placed += [PlacedItem(item) for item in items]
     opening_items = OpeningItems(looks)
@@ -46,15 +61,18 @@ def build_structure(
     return placed
 
 
-def _floor(rect: Rect, look: Look) -> Item:
-    return structure_item(
-        "floor", "room", [oriented_box((rect.x0, rect.x1, rect.y0, rect.y1, -SLAB_M, 0.0), look, solid=False)]
-    )
+def _floor(rect: Rect, look: Look, hole: Rect | None) -> Item:
+    return structure_item("floor", "room", _plates(rect, hole, -SLAB_M, 0.0, look))
 
 
-def _ceiling(rect: Rect, ceiling_m: float, look: Look) -> Item:
-    box = (rect.x0, rect.x1, rect.y0, rect.y1, ceiling_m, ceiling_m + 0.06)
-    return structure_item("ceiling", "room", [oriented_box(box, look, solid=False)])
+def _ceiling(rect: Rect, ceiling_m: float, look: Look, hole: Rect | None) -> Item:
+    return structure_item("ceiling", "room", _plates(rect, hole, ceiling_m, ceiling_m + CEILING_M, look))
+
+
+def _plates(rect: Rect, hole: Rect | None, z0_m: float, z1_m: float, look: Look) -> list[Geom]:
+    """Returns visual boxes that cover a rectangle but for a hole."""
+    pieces = [rect] if hole is None else frame_around(rect, hole)
+    return [oriented_box((r.x0, r.x1, r.y0, r.y1, z0_m, z1_m), look, solid=False) for r in pieces]
 
 
 def _room_walls(

@@ -34,7 +34,7 @@ REACH_MARGIN_M = 0.1
 """An instance must be this much nearer to the robot than the success distance, since its box exceeds its footprint."""
 MIN_ROOM_CELLS, MIN_CONNECTED_SHARE = 200, 0.8
 """In a room with more free cells than this, the robot must reach at least this share of them."""
-STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window"))
+STRUCTURE = frozenset(("wall", "floor", "ceiling", "door", "window", "stairs", "railing"))
 """Parts of the building: they may overlap each other."""
 
 
@@ -154,15 +154,35 @@ def _unstable(model: mujoco.MjModel) -> list[str]:
 
 
 def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) -> list[str]:
-    """Finds rooms and goal categories that the robot cannot reach from the room with the most free space."""
+    """Finds rooms and goal categories that the robot cannot reach from the room with the most free space.
+
+    Each storey counts for itself: the robot starts on it and cannot leave it.
+    """
     if not house.rooms:
         return ["it has no room sites"]
-    space = FreeSpace(house.model, house.data, house.labels, rooms=house.rooms, robot=robot, rule=rule)
+    faults: list[str] = []
+    near: set[str] = set()
+    for floor_z_m in sorted({room.floor_z_m for room in house.rooms}):
+        of_storey, reached = _unreachable_on(house, floor_z_m, rule, robot)
+        faults += of_storey
+        near |= reached
+    goals = [category for category in GOAL_CATEGORIES if house.labels.of_category(category)]
+    return faults + [f"the robot cannot come near any {category}" for category in goals if category not in near]
+
+
+def _unreachable_on(
+    house: _CompiledHouse, floor_z_m: float, rule: SuccessRule, robot: RobotModel
+) -> tuple[list[str], set[str]]:
+    """Returns the faults of the rooms of one storey, and the goal categories that the robot comes near on it."""
+    space = FreeSpace(
+        house.model, house.data, house.labels, rooms=house.rooms, robot=robot, rule=rule, floor_z_m=floor_z_m
+    )
     x, y = space.frame.axes()
-    masks = {room.name: space.free & _room_mask(room, x, y) for room in house.rooms}
+    rooms = [room for room in house.rooms if room.floor_z_m == floor_z_m]
+    masks = {room.name: space.free & _room_mask(room, x, y) for room in rooms}
     largest = max(masks.values(), key=lambda mask: int(mask.sum()))
     if not largest.any():
-        return ["no room has a free position for the robot"]
+        return ["no room has a free position for the robot"], set()
     cells = np.argwhere(largest)
     source = np.zeros_like(space.free)
     source[tuple(cells[len(cells) // 2])] = True
@@ -173,18 +193,27 @@ def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) ->
         for name, mask in masks.items()
         if mask.sum() > MIN_ROOM_CELLS and (mask & reached).sum() < MIN_CONNECTED_SHARE * mask.sum()
     ]
-    return faults + _unreachable_goals(house, space.frame.to_metres(np.argwhere(reached)), rule)
+    top_m = max(z + half for room in rooms for (_, _, z), (_, _, half) in room.boxes)
+    reached_m = space.frame.to_metres(np.argwhere(reached))
+    return faults, _goals_near(house, reached_m, (floor_z_m, top_m), rule)
 
 
-def _unreachable_goals(house: _CompiledHouse, reached_m: NDArray[np.float64], rule: SuccessRule) -> list[str]:
-    """Finds goal categories without an instance near one of the positions (n, 2) that the robot reaches."""
+def _goals_near(
+    house: _CompiledHouse, reached_m: NDArray[np.float64], heights_m: tuple[float, float], rule: SuccessRule
+) -> set[str]:
+    """Returns the goal categories with an instance between two heights near one of some positions (n, 2)."""
     near_m = rule.distance_m - REACH_MARGIN_M
-    faults = []
-    for category in GOAL_CATEGORIES:
-        instances = house.labels.of_category(category)
-        if instances and not any(_distance_m(house, each.geom_ids, reached_m) < near_m for each in instances):
-            faults.append(f"the robot cannot come near any {category}")
-    return faults
+
+    def is_near(geoms: Iterable[int]) -> bool:
+        low, high = house.boxes(np.array(list(geoms)))
+        middle_m = 0.5 * (low[:, 2].min() + high[:, 2].max())  # the boxes of tilted parts may reach below the floor
+        return heights_m[0] <= middle_m < heights_m[1] and _distance_m(house, geoms, reached_m) < near_m
+
+    return {
+        category
+        for category in GOAL_CATEGORIES
+        if any(is_near(each.geom_ids) for each in house.labels.of_category(category))
+    }
 
 
 def _distance_m(house: _CompiledHouse, geoms: Iterable[int], xy_m: NDArray[np.float64]) -> float:
