@@ -90,7 +90,7 @@ REQUIREMENTS: Mapping[str, tuple[Requirement, ...]] = MappingProxyType(
             Requirement("chair", ("chair",)),
             Requirement("shelf or cabinet", ("shelving", "cabinet", "chest_of_drawers"), longest_m=0.7),
         ),
-        "gym": (Requirement("gym equipment", ("gym_equipment",), 2),),
+        "gym": (Requirement("pieces of gym equipment", ("gym_equipment",), 2),),
         "laundry": (
             Requirement("washing machine", ("appliances",), longest_m=0.6),
             Requirement("counter, sink, drying rack or basket", ("counter", "sink", "clothes")),

@@ -180,6 +180,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
     f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
+    f"{PYTHON} tools/check_houses.py --pool heldout --seeds 200 --workers 2": (
+        f"{PYTHON} tools/check_houses.py --pool heldout --seeds 1 --kind studio --views 2",
+    ),
     f"{PYTHON} tools/make_episodes.py --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
         _HOUSES,

@@ -94,7 +94,7 @@ def pushing(model: mujoco.MjModel, data: mujoco.MjData) -> list[int]:
 
 
 def test_the_check_finds_no_fault(case: Case) -> None:
-    assert check_house(case.scene.world.house.spec) == []
+    assert check_house(case.scene.world.house.spec, furnished=True) == []
 
 
 def test_all_visual_geoms_are_labelled(case: Case) -> None:

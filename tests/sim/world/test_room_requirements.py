@@ -1,0 +1,78 @@
+"""Rooms must have the furniture of their kind, and the docs say which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from sim.houses.house import House
+from sim.world.check import check_house
+from sim.world.room_requirements import GUEST_TOILET_M2, REQUIREMENTS, Piece, Requirement, missing_pieces
+from tests.helpers.worlds import room, with_box
+
+DOCS = Path(__file__).parents[3] / "docs" / "houses.md"
+
+
+def kitchen(pieces: Mapping[str, tuple[float, float]], *, storey_m: float = 0.0) -> House:
+    """A room of 6 x 4 m with a site of kind kitchen `storey_m` up, and boxes: name to x and longest side."""
+    house = room(6, 4)
+    site = house.spec.site("room_living_00")
+    site.name, site.pos = "room_kitchen_00", (0.0, 0.0, storey_m + 1.25)
+    for name, (x_m, longest_m) in pieces.items():
+        half_m = (0.5 * longest_m, 0.1, 0.1)
+        house = with_box(house, name, centre_m=(x_m, -1.9, 0.1), half_m=half_m)
+    return house
+
+
+WHOLE = {"counter_00": (-2.0, 1.5), "sink_00": (-1.0, 0.3), "appliances_00": (0.0, 0.6), "appliances_01": (1.0, 0.6)}
+
+
+def faults(house: House) -> list[str]:
+    return check_house(house.spec, furnished=True)
+
+
+def test_a_kitchen_with_all_its_pieces_has_no_fault() -> None:
+    assert faults(kitchen(WHOLE)) == []
+
+
+@pytest.mark.parametrize(("piece", "fault"), [("sink_00", "has no sink"), ("counter_00", "has no counter")])
+def test_a_missing_piece_is_reported(piece: str, fault: str) -> None:
+    rest = {name: where for name, where in WHOLE.items() if name != piece}
+    assert faults(kitchen(rest)) == [f"room_kitchen_00 {fault}"]
+
+
+def test_a_toaster_is_no_large_appliance() -> None:
+    (fault,) = faults(kitchen(WHOLE | {"appliances_01": (1.0, 0.25)}))
+    assert "has 1 of 2 large appliances" in fault
+
+
+def test_furniture_of_another_storey_does_not_count() -> None:
+    assert len(faults(kitchen(WHOLE, storey_m=3.0))) >= 3
+
+
+def test_a_house_from_elsewhere_is_not_refused_for_its_furniture() -> None:
+    assert check_house(kitchen({}).spec) == []
+
+
+def test_a_small_bathroom_needs_no_shower() -> None:
+    pieces = [Piece("toilet", 0.7), Piece("sink", 0.5)]
+    assert missing_pieces("bathroom", GUEST_TOILET_M2 - 0.1, pieces) == []
+    assert missing_pieces("bathroom", GUEST_TOILET_M2 + 0.1, pieces) == ["has no shower or bathtub"]
+
+
+def test_a_kind_of_room_without_requirements_needs_nothing() -> None:
+    assert missing_pieces("attic", 20.0, []) == []
+
+
+def words(requirement: Requirement) -> str:
+    text = requirement.what if requirement.count == 1 else f"{requirement.count} {requirement.what}"
+    text += f", longest side >= {requirement.longest_m:.1f} m" if requirement.longest_m else ""
+    return text + (f", from {requirement.from_m2:.1f} m2 on" if requirement.from_m2 else "")
+
+
+@pytest.mark.parametrize("kind", REQUIREMENTS)
+def test_the_docs_list_the_requirements(kind: str) -> None:
+    row = f"| {kind} | {'; '.join(map(words, REQUIREMENTS[kind]))} |"
+    assert row in DOCS.read_text(), f"docs/houses.md lacks this row: {row}"
