@@ -13,9 +13,11 @@ from sim.gl import mujoco
 from sim.housegen.openings import Opening
 from sim.houses.hazards import steepest_path
 from sim.houses.house import Room, read_rooms
-from sim.houses.labels import read_labels
-from sim.interface import RobotModel
+from sim.houses.labels import collidable_geoms, read_labels
+from sim.interface import MPCAT40_ID, RobotModel
+from sim.world.check import STRUCTURE
 from sim.world.freespace import CELL_M, FreeSpace
+from sim.world.plan import polygons_between
 
 TALL_M = 2.1
 """Height up to which the space of tall hazards must be free."""
@@ -27,6 +29,9 @@ _LOST_M2 = {TIGHT_M: 0.12, SPARE_M: 0.4}
 """Largest area that a hazard may disconnect beyond the floor right beside it, for each half width."""
 _DRAWN_RADIUS_M = 0.018
 """Solid cells reach this far beyond the geoms: half a cell's diagonal, so that thin geoms are not missed."""
+_FURNITURE_GAP = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))
+"""Hazards stay two cells from furniture: its collision boxes depend on how much the file has to be made smaller."""
+_BUILDING_IDS = [MPCAT40_ID[category] for category in sorted(STRUCTURE)]
 _SHIFT = 8
 """Binary digits of the fractions of a cell with which outlines are drawn."""
 
@@ -53,6 +58,9 @@ class FloorMap:
         self.frame = low.frame
         self._solid = ~low.free
         self._tall_solid = ~low.free | (~high.free if high.free.shape == low.free.shape else False)
+        solid = np.flatnonzero(collidable_geoms(model) & ~np.isin(labels.geom_category, _BUILDING_IDS))
+        outlines = [polygon.vertices_m for polygon in polygons_between(model, data, solid, (0.0, TALL_M))]
+        self._near_furniture = cv2.dilate(self._drawn(outlines).astype(np.uint8), _FURNITURE_GAP).astype(np.bool_)
         self._hazards = np.zeros_like(self._solid)
         self._main = {half_m: _largest(self.clearance() >= half_m) for half_m in _LOST_M2}
         self._fields: dict[str, NDArray[np.float32]] = {}
@@ -88,7 +96,7 @@ class FloorMap:
         if not outlines:
             return True  # the robot passes it
         mask = self._drawn(outlines)
-        if not mask.any() or (mask & self._tall_solid).any():
+        if not mask.any() or (mask & (self._tall_solid | self._near_furniture)).any():
             return False
         away_m = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 5) * CELL_M
         if (away_m[self._hazards] < apart_m).any():
