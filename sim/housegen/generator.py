@@ -43,10 +43,14 @@ MAX_PLAN_TRIES = 60
 AREA_M2 = (50.0, 800.0)
 MAX_BYTES = 395_000
 """Largest size of the file of a house of up to `USUAL_M2`."""
-USUAL_M2, BYTES_PER_M2 = 250.0, 1_100
-"""Floor area from which the file may be larger, and by how much for each square metre: 1 MB at 800 m2."""
-THINNED_SHARES = (1.0, 0.6, 0.3)
-"""Shares of the small objects that stay; the next value is tried where the file is too large in spite of all joining."""
+USUAL_M2, BYTES_PER_M2 = 230.0, 1_400
+"""Floor area from which the file may be larger, and by how much for each square metre."""
+THINNED_SHARES = (1.0, 0.3)
+"""Shares of the small objects that stay; the second is tried where the file is too large in spite of all joining."""
+SAFETY = 1.6
+"""Factor by which the estimate of saved bytes must exceed the bytes to save: it counts joined geoms too high."""
+MAX_EXCESS = 1.08
+"""A file that is too large by more than this factor does not become small enough with fewer small objects."""
 STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
 """The file of a house with two storeys may be larger by this factor, up to this size."""
 BYTES_PER_GEOM = (1000, 500, 300, 200, 130, 100, 80, 50)
@@ -270,6 +274,8 @@ def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | N
             excess = len(house_text(spec)) - limit
             if excess <= 0:
                 return spec
+            if level == last and excess > (MAX_EXCESS - 1.0) * limit:
+                return None
             if level == last:
                 break
             level = _level_that_saves(thinned, assembler, level, excess)
@@ -283,7 +289,7 @@ def _level_that_saves(draft: _Draft, assembler: Assembler, level: int, excess: i
     designs = {id(item): item for item in placed}.values()
     for other in range(level + 1, len(BYTES_PER_GEOM) - 1):
         limits = BYTES_PER_GEOM[level], BYTES_PER_GEOM[other]
-        if sum(assembler.saved_bytes(item, copies[id(item)], *limits) for item in designs) > excess:
+        if sum(assembler.saved_bytes(item, copies[id(item)], *limits) for item in designs) > SAFETY * excess:
             return other
     return len(BYTES_PER_GEOM) - 1
 
