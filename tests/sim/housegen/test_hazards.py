@@ -84,12 +84,15 @@ def test_each_family_finds_a_place_and_leaves_both_rooms_connected(family: str) 
     assert hazards
     assert {hazard.kind for hazard in hazards} == {family}
     floor = two_rooms()
+    before = floor.clearance() >= SPARE_M
     for hazard in drawn(family, 0):
         assert floor.try_add(hazard.footprints(), 0.0)
     wide = (floor.clearance() >= SPARE_M).astype(np.uint8)
-    parts = np.asarray(cv2.connectedComponents(wide, connectivity=4)[1])
-    corners = [tuple(floor.frame.to_cells(np.array(xy)).tolist()) for xy in ((0.35, 0.35), (5.65, 3.65))]
-    assert parts[corners[0]] == parts[corners[1]] != 0
+    _, parts, stats, _ = cv2.connectedComponentsWithStats(wide, connectivity=4)
+    main = np.asarray(parts) == 1 + int(stats[1:, cv2.CC_STAT_AREA].argmax())
+    middle = floor.frame.cell(3.0, 2.0)[1]
+    for room in (slice(0, middle), slice(middle, None)):
+        assert main[:, room].sum() > 0.4 * before[:, room].sum()
 
 
 def test_a_hazard_that_closes_the_only_doorway_is_refused_and_changes_nothing() -> None:
