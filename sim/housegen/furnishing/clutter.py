@@ -19,9 +19,9 @@ from sim.housegen.placement.on_walls import hang_on_wall
 from sim.housegen.placement.surfaces import put_on_surface
 from sim.housegen.rectangles import Rect
 
-PER_TOP, PER_TOP_M2, MOST_ON_TOP = 0.8, 3.0, 6
+PER_TOP, PER_TOP_M2, MOST_ON_TOP = 1.0, 4.0, 7
 """Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
-FLOOR_PER_M2, MOST_ON_FLOOR = 0.22, 5
+FLOOR_PER_M2, MOST_ON_FLOOR = 0.3, 6
 """Things on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
 ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {

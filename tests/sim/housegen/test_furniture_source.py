@@ -49,7 +49,8 @@ def items(rooms: tuple[RoomLayout, ...]) -> list[Item]:
 def small(rooms: tuple[RoomLayout, ...]) -> list[Item]:
     """Objects with the colours of a palette."""
     names = (*palettes("train"), *palettes("heldout"))
-    return [item for item in items(rooms) if any(geom.look.texture in names for geom in item.geoms)]
+    found = [item for item in items(rooms) if item.category == "objects"]
+    return [item for item in found if any(geom.look.texture in names for geom in item.geoms)]
 
 
 def empty_room() -> RoomLayout:
