@@ -146,7 +146,9 @@ class Catalogue:
         lighting         ceiling, floor, table (top), wall
         appliances       fridge, stove, washing_machine, dishwasher; microwave, small (top); hood (wall); hob (a child)
         gym_equipment    machine, weights, small
-        objects          top (books, clocks), kitchen (bowls, kettles), both mount top; floor (boxes, suitcases), bin
+        objects          mount top: top, shelf, office, bedside, low, media, dresser, entry, table, kitchen, bath (the
+                         place where they lie); on the floor: floor, bin, box, shoes, bag, toy, and cable and flat
+                         (both without collisions); mount wall: toilet_paper, bath_wall
         furniture        piano, screen
         floor            rug
         ================ =========================================================================================
