@@ -38,6 +38,8 @@ def main(options: RunOptions) -> int:
         console.print(agent_table())
         return 0
     check_options(options)
+    if options.house is None and options.split == "test":
+        print("Split test is for a last measurement: choose nothing by its results.", file=sys.stderr)
     episodes, split = plan_episodes(options)
     report_house(options, console)
     options = replace(options, out=options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))

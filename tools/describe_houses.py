@@ -3,7 +3,7 @@
     python tools/describe_houses.py --out assets/mjcf_houses/README.md
     LP_NUM_THREADS=1 python tools/describe_houses.py --measure 24
 
-The second command adds the rendering time of a frame of each val and test house. These columns depend on the machine;
+The second command adds the rendering time of a frame of each house that is a file. These columns depend on the machine;
 everything else is the same each time.
 """
 
@@ -36,7 +36,7 @@ from sim.paths import assets_dir
 from sim.robot.config import RobotConfig
 from sim.sensors.opengl import describe_gl
 
-SPLITS = ("val", "test", "train")
+SPLITS = ("val", "test", "large", "hazards", "train")
 PROFILES = ("fast", "good")
 WARM_UP = 2
 """Frames before the measurement: the first ones upload textures."""
@@ -59,10 +59,23 @@ others is used.
 
 ## Splits
 
-The styles, colours and textures of val and test houses never appear in train houses (`pool="train"`). The episodes
+`val` is for development, `test` for a last measurement: nothing is chosen by its results. In `large`, houses of 300 to
+800 m2, the goal is out of view and far away; five of them have a second storey. `hazards` has houses with obstacles
+that depth misses or takes for passable, where paths lead. `train` is for training.
+
+The styles, colours and textures of these houses never appear in train houses (`pool="train"`). The episodes
 are beside the houses in Habitat's ObjectNav layout (`val/val.json.gz`, `val/content/<house>.json.gz`; y up and xyzw in
 these files only). Their order alternates between houses, then between goals, so that the first N are balanced for any
-N. The geodesic distance from a start to its goal is 2 m to 30 m.
+N. How many there are, their distances and their starts are in the recipes of `sim/episodes/recipes.py`:
+
+| split | episodes of a house | geodesic distance, m | starts |
+|---|--:|---|---|
+| val, test | 34 | 2 to 30 | any |
+| large | 30 | 12 to 60; 6 to 60 if one instance can be reached | no instance visible in any direction, headings spread evenly |
+| hazards | 30 | 2 to 30 | the shortest path leads past a hazard where there is such a path |
+| train | 10 | 2 to 30 | any |
+
+Goals are reachable on the storey of the start. `tools/split_report.py` writes how difficult the splits are.
 
 Train houses are not shipped as files: `train/houses.json` contains the recipe and the sha256 of each house. A house is
 generated on first use (about a second), compared with its checksum and kept under `~/.cache/stubborn-objectnav`; the
@@ -75,13 +88,11 @@ A split has a version, and every run records it with a hash over houses and epis
 or an episode changes: the last number when agents are not affected, the middle number when results can no longer be
 compared, the first number when older code cannot read the files. `traps` contains other scenes: see `docs/traps.md`.
 
+These commands make a split; the others have their names in place of `val`:
+
 ```sh
 python tools/generate_houses.py --split val --out assets/mjcf_houses/val --workers 2
-python tools/make_episodes.py --split assets/mjcf_houses/val --episodes 1000 --workers 2
-python tools/generate_houses.py --split test --out assets/mjcf_houses/test --workers 2
-python tools/make_episodes.py --split assets/mjcf_houses/test --episodes 1000 --workers 2
-python tools/generate_houses.py --split train --out assets/mjcf_houses/train --workers 2
-python tools/make_episodes.py --split assets/mjcf_houses/train --episodes 2000 --view-points 2 --workers 2
+python tools/make_episodes.py --split assets/mjcf_houses/val --workers 2
 ```
 """
 
@@ -95,7 +106,7 @@ class Args:
     root: Path | None = None
     """Folder with the folders of the splits; the shipped ones when not given."""
     measure: int = 0
-    """Frames to measure in each val and test house and profile; 0: none."""
+    """Frames to measure in each house that is a file, and profile; 0: none."""
     workers: int = 1
     """Processes that read houses; measurements use this process only."""
 

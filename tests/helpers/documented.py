@@ -227,6 +227,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/reproduce.py ablation": (
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
     ),
+    f"{PYTHON} tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2": (
+        f"{PYTHON} tools/reproduce.py splits --splits val large --episodes 1 --workers 1 --agents random oracle "
+        "--out {tmp}/paper",
+    ),
     f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
         f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
     ),

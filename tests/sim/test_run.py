@@ -248,3 +248,12 @@ def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path
     refused = run(*options, "--episodes", 1, "--seed", 1)
     assert refused.returncode == 2
     assert "seed" in refused.stderr
+
+
+def test_the_split_for_last_measurements_is_announced_in_one_line_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
+    for split, lines in (("test", 2), ("val", 1)):
+        assert entry(["--split", split, "--episodes", "100000"]) == 2
+        told = capsys.readouterr()
+        assert ("last measurement" in told.err) == (split == "test")
+        assert len(told.err.strip().splitlines()) == lines
+        assert told.out == ""
