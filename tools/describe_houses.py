@@ -71,7 +71,7 @@ N. How many there are, their distances and their starts are in the recipes of `s
 | split | episodes of a house | geodesic distance, m | starts |
 |---|--:|---|---|
 | val, test | 34 | 2 to 30 | any |
-| large | 30 | 12 to 60; 6 to 60 if one instance can be reached | no instance visible in any direction, headings spread evenly |
+| large | 30 | 12 to 60; 6 to 60 if one instance can be reached | goal visible in no direction, headings spread evenly |
 | hazards | 30 | 2 to 30 | the shortest path leads past a hazard where there is such a path |
 | train | 10 | 2 to 30 | any |
 

@@ -16,6 +16,7 @@ from sim.episodes.splits import Episode, write_split
 from sim.evaluation.results import SUMMARY_METRICS
 from sim.geometry.pose import Pose
 from sim.paths import code_hash
+from sim.run import entry
 from sim.task.failures import cause_of_failure
 from sim.task.metrics import EXPLORED_SHARE
 from sim.task.trajectory import read_trajectory, trajectory_file
