@@ -22,6 +22,8 @@ LONG_RUN_M = 3.2
 CABINET_BOTTOM_M = 1.45
 LEAST_APPLIANCES = 2
 """Number of cookers, fridges, dishwashers and hobs that every kitchen has."""
+FRIDGE_M = 1.3
+"""Only fridges are higher than this."""
 LARGE_M = 0.45
 """Longest side of the smallest of them."""
 
@@ -80,7 +82,8 @@ def _complete(layout: RoomLayout, source: FurnitureSource, units: Units) -> None
                 units.placed.append(counter)
                 units.sides.append(counter.side)
                 break
-    for use in ("fridge", "dishwasher", "stove"):
+    has_fridge = any(p.item.category == "appliances" and p.item.size_m[2] > FRIDGE_M for p in layout.placements)
+    for use in ("stove", "dishwasher") if has_fridge else ("fridge", "stove", "dishwasher"):
         if _large_appliances(layout) >= LEAST_APPLIANCES:
             return
         place(layout, source, "appliances", use, along="corner", front_m=0.55, tries=3)
