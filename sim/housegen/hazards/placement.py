@@ -32,8 +32,8 @@ SHARES = MappingProxyType({"glass": 2, "slab": 2, "overhang": 1, "legs": 1, "sca
 """Relative number of hazards of each family: more of those that only a collision shows."""
 FEWEST, MOST, FLOOR_M2 = 6, 14, 11.0
 """Least and largest number of hazards, and the floor area for each."""
-TRIES = 60
-"""Places that are tried for one hazard."""
+TRIES, TRIES_OF_ONE = 60, 20
+"""Places that are tried for one hazard, and for each design that is drawn for it."""
 APART_M = 0.8
 """Least distance between hazards."""
 FROM_ENDS_M, LOOK_M = 0.4, 0.3
@@ -78,13 +78,16 @@ def _draw_hazard(
 ) -> PlacedHazard | None:
     """Returns one hazard of a family on a path; None where no place is found."""
     designs = DESIGNS[family]
-    for _ in range(TRIES):
+    design = designs[0]
+    for attempt in range(TRIES):
+        if attempt % TRIES_OF_ONE == 0:
+            design = designs[int(rng.integers(len(designs)))]
         path = floor.draw_path(rng)
         place = _place_on(rng, path) if path is not None else None
         if place is None:
             continue
         sketch = Sketch(family, *place, rng, pool, looks)
-        if not designs[int(rng.integers(len(designs)))](sketch, floor):
+        if not design(sketch, floor):
             continue
         hazard = sketch.finish()
         if floor.try_add(hazard.footprints(), APART_M):

@@ -59,4 +59,4 @@ def threshold(s: Sketch, floor: FloorMap) -> bool:
     return True
 
 
-DESIGNS = (plinth, plinth, podium, planks, planks, threshold)
+DESIGNS = (plinth, plinth, plinth, podium, podium, planks, planks, planks, threshold)
