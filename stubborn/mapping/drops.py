@@ -21,6 +21,9 @@ from sim.interface import CameraModel, ConfigError
 from stubborn.mapping.projection import Rays
 from stubborn.navmap import NavMap
 
+_EVERY_COLUMN = 2
+"""Columns that are used; neighbours are 3 cm apart at `DropConfig.range_m` with the default camera and stride."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class DropConfig:
@@ -55,7 +58,7 @@ class Drops:
 
     def __init__(self, camera: CameraModel, rays: Rays, config: DropConfig) -> None:
         self._config = config
-        self._left = rays.left
+        self._left = rays.left[::_EVERY_COLUMN]
         self._first = int(np.count_nonzero(rays.up >= -camera.height_m / config.range_m))
         down = -rays.up[self._first :]  # metres below the camera per metre of depth, of rows from far to near
         self._floor_m = camera.height_m / down
@@ -73,7 +76,7 @@ class Drops:
         """
         if not self._config.enabled or not len(self._floor_m):
             return
-        near = depth[self._first :]
+        near = depth[self._first :, ::_EVERY_COLUMN]
         missing = near > self._through_m
         if missing.any():  # single pixels may be noise
             missing = np.asarray(cv2.erode(missing.view(np.uint8), np.ones((3, 3), np.uint8)), np.uint8).view(np.bool_)
@@ -90,7 +93,7 @@ class Drops:
         evidence[floor] = np.maximum(evidence[floor] - config.miss, 0)
         evidence[hits] = np.minimum(evidence[hits] + config.hit, config.most)
         if found:
-            doubtful = np.divmod(self._unseen_before(view, missing[-1], camera_pose), evidence.shape[1])
+            doubtful = self._unseen_before(view, missing[-1], camera_pose)
             evidence[doubtful] = np.maximum(evidence[doubtful], config.drop_from)
         view.seen_drop[:] = evidence >= config.drop_from
 
@@ -98,18 +101,22 @@ class Drops:
         """Returns the row-major cell in which each pixel's ray crosses the plane of the floor."""
         return _cells_at(frame, pose, self._floor_m[:, None], self._left)
 
-    def _unseen_before(self, view: NavMap, missing: Bool[np.ndarray, " w"], pose: Pose) -> Int[np.ndarray, " n"]:
-        """Returns the cells from the lowest ray's crossing back to ground that was seen or driven over.
+    def _unseen_before(
+        self, view: NavMap, missing: Bool[np.ndarray, " w"], pose: Pose
+    ) -> Bool[np.ndarray, "rows cols"]:
+        """Returns a mask of the cells from the lowest ray's crossing back to ground that was seen or driven over.
 
         `missing` says for which columns the lowest ray passes through the floor.
         """
         if not missing.any():
-            return np.zeros(0, np.int32)
-        depth_m = np.arange(float(self._floor_m[-1]), 0.0, -0.5 * view.frame.cell_m, dtype=np.float32)
+            return np.zeros(view.frame.shape, np.bool_)
+        depth_m = np.arange(float(self._floor_m[-1]), 0.0, -view.frame.cell_m, dtype=np.float32)
         cells = _cells_at(view.frame, pose, depth_m[:, None], self._left[missing])
         known = ((view.frames_in_view > 0) | view.visited) & ~view.seen_drop
         unknown = ~np.logical_or.accumulate(known.reshape(-1)[cells], axis=0)
-        return np.unique(cells[unknown])
+        found = np.zeros(view.frame.shape, np.bool_)
+        found.reshape(-1)[cells[unknown]] = True
+        return found
 
 
 def _cells_at(

@@ -63,10 +63,10 @@ def test_a_robot_upstairs_falls_over_the_open_edge_of_the_stairwell(world: World
     top, bottom = steps[steps[:, 2].argmax()], steps[steps[:, 2].argmin()]
     down = (bottom - top)[:2] / np.linalg.norm((bottom - top)[:2])
     start = top[:2] - 0.55 * down
-    world.reset(Pose(*start, float(np.arctan2(down[1], down[0])), up_m))
+    world.reset(Pose(float(start[0]), float(start[1]), float(np.arctan2(down[1], down[0])), up_m))
     motions = [world.move(Action.MOVE_FORWARD)]
     while not motions[-1].fell and len(motions) < 5:
-        assert world.pose.floor_z_m == up_m
+        assert world.pose.floor_z_m == pytest.approx(up_m)
         motions.append(world.move(Action.MOVE_FORWARD))
     assert motions[-1].fell
 
@@ -83,7 +83,8 @@ def test_culling_changes_no_pixel_on_either_storey_near_the_stairwell(world: Wor
         xs, ys = space.frame.axes()
         near = space.free & np.outer(np.abs(ys - y) < half_y, np.abs(xs - x) < half_x)
         for cell in rng.permutation(np.argwhere(near))[:4]:
-            pose = Pose(*space.frame.to_metres(cell).tolist(), float(rng.uniform(-3.1, 3.1)), floor_z_m)
+            x_m, y_m = space.frame.to_metres(cell).tolist()
+            pose = Pose(x_m, y_m, float(rng.uniform(-3.1, 3.1)), floor_z_m)
             first, second = (each.render(world.data, pose, ("rgb", "depth", "semantic")) for each in (culled, whole))
             for name, image in first.items():
                 np.testing.assert_array_equal(image, second[name])
