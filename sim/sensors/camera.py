@@ -111,20 +111,34 @@ class Camera:
         self._gl.make_current()
         eye_m, axes = _camera_frame(pose, self.camera)
         visible = self._visibility.visible(data, eye_m, pose.yaw_rad) if self.cull else self._visual_ids
+        lamps = self._lamps.choose(data, eye_m, axes[0]) if "rgb" in sensors else []
+        first = lamps[0] if lamps and self.profile.shadows > 0.0 and self._lamps.casts_shadows(lamps[0]) else None
+        lamp_map = None if first is None else self._maps.of(data, first, self._scene, self._id_context)
+        self._fill(data, visible, eye_m, axes, lamps)
         if {"depth", "semantic", "geom"} & set(sensors):
-            self._fill(data, visible, eye_m, axes)
             images |= self._render_ids_and_depth(visible, sensors)
         if "rgb" in sensors:
-            images["rgb"] = self._render_color(data, visible, eye_m, axes)
+            if self._reflects:
+                self._fill(data, self._visual_ids, eye_m, axes, lamps)
+            self._render_color()
+            if self._shading is None:
+                images["rgb"] = self._color_buffer[::-1].copy()
+            else:
+                buffers = self._color_buffer, self._depth_buffer
+                images["rgb"] = self._shading.apply(*buffers, data, first, eye_m, axes, lamp_map)
         return images
 
     def close(self) -> None:
         """Frees the renderer. It is safe to call twice, and happens automatically when the camera is deleted."""
         self._finalizer()
 
-    def _fill(self, data: mujoco.MjData, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray) -> None:
-        """Fills the scene with these geoms, given in ascending order, and the active lights, seen from the eye."""
+    def _fill(
+        self, data: mujoco.MjData, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, lamps: list[int]
+    ) -> None:
+        """Fills the scene with these geoms, given in ascending order, and with the lights, seen from the eye."""
+        self._lamps.switch_on(lamps)
         self._scene.fill(data, geoms, eye_m, axes, self._slopes)
+        self._lamps.restore()
 
     def _render_ids_and_depth(self, geoms: NDArray[np.intp], sensors: Sequence[str]) -> dict[str, NDArray]:
         """Returns the requested images of `depth`, `semantic` and `geom` for the geoms of the scene."""
@@ -140,16 +154,8 @@ class Camera:
             images["depth"] = metric_depth(self._depth_buffer, self.camera)
         return images
 
-    def _render_color(
-        self, data: mujoco.MjData, visible: NDArray[np.intp], eye_m: NDArray, axes: NDArray
-    ) -> NDArray[np.uint8]:
-        """Returns the colour image (h, w, 3) of the visible geoms, lit by the lamps in view."""
-        lamps = self._lamps.choose(data, eye_m, axes[0])
-        first = lamps[0] if lamps and self.profile.shadows > 0.0 and self._lamps.casts_shadows(lamps[0]) else None
-        lamp_map = None if first is None else self._maps.of(data, first, self._scene, self._id_context)
-        self._lamps.switch_on(lamps)
-        self._fill(data, self._visual_ids if self._reflects else visible, eye_m, axes)
-        self._lamps.restore()
+    def _render_color(self) -> None:
+        """Renders the scene in colour into the buffers of colour and of depth, the bottom row first."""
         flags = self._scene.scene.flags
         flags[:] = 0
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = self.profile.reflections
@@ -161,11 +167,8 @@ class Camera:
             self._contexts.add(context)
         mujoco.mjr_restoreBuffer(context)
         mujoco.mjr_render(self._rect, self._scene.scene, context)
-        if self._shading is None:
-            mujoco.mjr_readPixels(self._color_buffer, None, self._rect, context)
-            return self._color_buffer[::-1].copy()
-        mujoco.mjr_readPixels(self._color_buffer, self._depth_buffer, self._rect, context)
-        return self._shading.apply(self._color_buffer, self._depth_buffer, data, first, eye_m, axes, lamp_map)
+        depth = None if self._shading is None else self._depth_buffer
+        mujoco.mjr_readPixels(self._color_buffer, depth, self._rect, context)
 
 
 def _camera_frame(pose: Pose, camera: CameraModel) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
