@@ -133,7 +133,7 @@ def generate(
         pool: styles, sizes, colours and textures that may appear; "train" and "heldout" share none, "wide" has those of
             train and more styles.
         kind: kind of floor plan; drawn when None.
-        area_m2: floor area, 50-400; drawn when None.
+        area_m2: floor area, 50-800; drawn when None.
         clutter: number of small objects (books, crockery, shoes, toys ...), from 0 (none) to 1 (many); drawn when None.
         movable: whether light furniture can be pushed.
         catalogue: the styles of furniture that may be drawn.

@@ -102,7 +102,7 @@ def test_no_view_from_inside_shows_void() -> None:
 
 
 def test_errors_of_bad_requests_name_the_allowed_values() -> None:
-    with pytest.raises(ConfigError, match="50-400 m2, got 12"):
+    with pytest.raises(ConfigError, match="50-800 m2, got 12"):
         HouseConfig(area_m2=12.0)
     with pytest.raises(ConfigError, match="studio, flat"):
         HouseConfig(kind="castle")  # type: ignore[arg-type]
