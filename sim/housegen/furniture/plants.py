@@ -177,12 +177,12 @@ def cactus(w: Workbench) -> None:
     _pot(w, r, high)
     green = w.look("foliage")
     column = [(0.0, 0.0, high + z) for z in (-0.01, 0.35 * tall, tall - 0.06, tall + 0.01, tall + 0.045)]
-    w.mesh(joined("cactus", [tube(column, (0.075, 0.085, 0.08, 0.055, 0.0), 18, groove=0.76)]), _ORIGIN, green)
+    w.mesh(joined("cactus", [tube(column, (0.075, 0.085, 0.08, 0.055, 0.0), 14, groove=0.76)]), _ORIGIN, green)
     for side, z in ((1, 0.36), (-1, 0.5)):
         up, y = high + z * tall, side * (r - 0.01)
         path = [(0.0, side * 0.04, up), (0.0, 0.8 * y, up + 0.015), (0.0, y, up + 0.07),
                 (0.0, y, up + 0.24 * tall), (0.0, y, up + 0.24 * tall + 0.05)]  # fmt: skip
-        w.mesh(joined("cactus", [tube(path, (0.045, 0.048, 0.05, 0.046, 0.0), 12, groove=0.74)]), _ORIGIN, green)
+        w.mesh(joined("cactus", [tube(path, (0.045, 0.048, 0.05, 0.046, 0.0), 10, groove=0.74)]), _ORIGIN, green)
     top = (0.0, 0.0, high + tall + 0.05)
     flower = joined("flowers", [blossom(top, (0.2, 0.1, 1.0), 0.05, 6)])
     w.mesh(flower, _ORIGIN, w.look("flower"), solid=False)
@@ -194,14 +194,14 @@ def monstera(w: Workbench) -> None:
     _pot(w, r, high)
     bodies: list[Body] = []
     outline = [*_CUT, (1.0, 0.0), *((u, -v) for u, v in reversed(_CUT[1:]))]
-    for i in range(8):
-        a, t = _TURN * i, i / 7
+    for i in range(6):
+        a, t = _TURN * i, i / 5
         path = arch((0.0, 0.0, high - 0.01), a, (0.04 + 0.22 * t) * tall, (1.0 - 0.55 * t) * tall)
         bodies.append(tube([path[0], path[1], path[3]], (0.009, 0.007, 0.005), 3))
         along = (math.cos(a), math.sin(a), -0.75 - 0.45 * math.sin(2.0 * i))
         bodies.append(cut_leaf(path[3], along, outline, (0.42 - 0.1 * abs(t - 0.4)) * (0.6 + 0.5 * tall)))
     green = w.look("foliage")
-    for half in (bodies[:8], bodies[8:]):
+    for half in (bodies[:6], bodies[6:]):
         w.mesh(joined("leaves", half), _ORIGIN, green, solid=False)
     w.cylinder((0.0, 0.0), (high, high + 0.3 * tall), 0.014, green)
 

@@ -65,16 +65,16 @@ def _toilet(
     if open_:
         rings += bowl_rings(rim, r, half, middle, power)
         w.ellipsoid((middle, 0.0, rim - 0.135), (0.39 * r, 0.38 * half, 0.004), water_look(look), solid=False)
-    w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), look)
+    w.mesh(loft(rings, 14), (0.0, 0.0, 0.0), look)
     flat = [Ring(0.0, r, half, power=power), Ring(_SEAT_M, 0.985 * r, 0.98 * half, power=power)]
     hole = [Ring(z, 0.66 * r, 0.64 * half, 0.02, power=2.0) for z in (_SEAT_M, 0.0)]
     lid = [Ring(0.0, 0.99 * r, 0.99 * half, power=power), Ring(0.012, 0.99 * r, 0.99 * half, power=power)]
-    lid = loft([*lid, Ring(0.024, 0.9 * r, 0.9 * half, power=power)], 16, hull=True)
+    lid = loft([*lid, Ring(0.024, 0.9 * r, 0.9 * half, power=power)], 14, hull=True)
     if open_:
-        w.mesh(loft([*flat, *hole], 16, loop=True), (middle, 0.0, rim), cover)
+        w.mesh(loft([*flat, *hole], 14, loop=True), (middle, 0.0, rim), cover)
         w.mesh(lid, (seat_x + 0.035, 0.0, seat + r - 0.005), cover, tilt=-1.48)
     else:
-        w.mesh(loft(flat, 16, hull=True), (middle, 0.0, rim), cover)
+        w.mesh(loft(flat, 14, hull=True), (middle, 0.0, rim), cover)
         w.mesh(lid, (middle, 0.0, seat + 0.002), cover)
     for side in BOTH_SIDES:
         w.box((seat_x - 0.01, seat_x + 0.035), (side * 0.08 - 0.015, side * 0.08 + 0.015), (rim, seat + 0.006), cover,
