@@ -83,14 +83,14 @@ def place_flight(hall: Rect, openings: Sequence[Opening], room: int, rise_m: flo
     along_x = inner.width_m >= inner.depth_m
     doors = {o.side_of(room) for o in openings if room in (o.a, o.b) and o.kind != "window"}
     long_sides: tuple[Side, Side] = ("north", "south") if along_x else ("east", "west")
-    walls = [side for side in long_sides if side not in doors]
+    walls: list[Side] = [side for side in long_sides if side not in doors]
     count = math.ceil(rise_m / RISER_M)
     run_m = (count - 1) * TREAD_M
     spare_m = inner.long_m - run_m - FOOT_M
     if not walls or spare_m < LANDING_M[0] or inner.short_m < WIDTH_M + 1.2:
         raise PlanError("the stairs do not fit into the stair hall")
     ends: tuple[Side, Side] = ("east", "west") if along_x else ("north", "south")
-    up = next((end for end in ends if OPPOSITE[end] in doors), ends[0])
+    up = ends[1] if OPPOSITE[ends[1]] in doors and OPPOSITE[ends[0]] not in doors else ends[0]
     landing_m = min(LANDING_M[1], spare_m)
     strip = inner.strip(walls[0], inner.span(walls[0]), WIDTH_M)
     top = inner.line(up) - landing_m if up in ("east", "north") else inner.line(up) + landing_m

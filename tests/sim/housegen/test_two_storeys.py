@@ -94,5 +94,5 @@ def test_steps_are_too_high_for_the_robot_and_comfortable_for_people():
     flight = place_flight(Rect(0.0, 0.0, 5.0, 3.0), [], 0, 2.75, 2.5)
     assert 0.17 <= flight.riser_m <= RISER_M
     assert len(flight.steps) * flight.riser_m == pytest.approx(2.75 - flight.riser_m)
-    assert all(0.25 <= step.width_m <= 0.28 for step in flight.steps)
+    assert all(0.249 < step.width_m < 0.281 for step in flight.steps)
     assert flight.well.area_m2 > 2.0
