@@ -26,7 +26,7 @@ def stool(name: str) -> Style:
 def test_a_style_from_outside_is_in_a_house_and_the_shipped_catalogue_is_unchanged():
     shipped = CATALOGUE.styles("stool")
     block = stool("block")
-    house = generate(3, kind="studio", catalogue=CATALOGUE.replacing("stool", block))
+    house = generate(1, kind="studio", catalogue=CATALOGUE.replacing("stool", block))
     stools = [body for body in house.bodies if body.name.startswith("stool_")]
     assert stools
     assert all([list(geom.size) for geom in body.geoms] == [[0.15, 0.16, 0.22]] for body in stools)
