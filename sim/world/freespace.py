@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.geometry.convex import ConvexPolygon
+from sim.geometry.convex_kernels import clear_near, mark_inside
 from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
@@ -176,11 +177,8 @@ class FreeSpace:
         x, y = self.frame.axes()
         for polygon in self._obstacles:
             rows, cols = self.frame.index_of(polygon.bounds_m, self.radius_m)
-            near = free[rows, cols]
-            row, col = np.nonzero(near)
-            if row.size:
-                centres = np.stack([x[cols][col], y[rows][row]], axis=1)
-                near[row, col] = polygon.distance(centres) >= self.radius_m
+            shape = (polygon.vertices_m, polygon.normals, polygon.offsets_m)
+            clear_near(free[rows, cols], x[cols], y[rows], *shape, self.radius_m)
         if not rooms:
             return free
         inside = self._covered([rectangle for room in rooms for rectangle in room_rectangles(room)])
@@ -200,8 +198,7 @@ class FreeSpace:
         for polygon in polygons:
             window = self.frame.index_of(polygon.bounds_m)
             x, y = self.frame.axes(window)
-            centres = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1).reshape(-1, 2)
-            covered[window] |= polygon.contains(centres).reshape(len(y), len(x))
+            mark_inside(covered[window], x, y, polygon.normals, polygon.offsets_m)
         return covered
 
 
