@@ -32,7 +32,7 @@ ROOMS = (
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
 AGENT_ROOMS = (
-    ("stubborn.raster", "stubborn.navmap", "stubborn.canvas"),
+    ("stubborn.raster", "stubborn.navmap", "stubborn.canvas", "stubborn.surface_kernels"),
     ("stubborn.mapping", "stubborn.segmentation"),
     ("stubborn.planning",),
     ("stubborn.exploration",),
