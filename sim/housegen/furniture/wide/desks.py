@@ -94,7 +94,8 @@ def desk_gaming(w: Workbench) -> None:
     """Builds a desk with slanted metal legs, a dark top and often a raised board for screens."""
     width, depth, height = w.width(1.10, 1.60), w.depth(0.60, 0.75), w.length(0.73, 0.76)
     frame, top = w.look("metal"), w.look("dark") if w.chance(0.6) else w.look("lacquer")
-    x, y = parts.slab(w, depth, width, (height - 0.022, height), top)
+    x, y = parts.footprint(depth, width)
+    w.box(x, y, (height - 0.022, height), top)
     kind, apart = w.choice(("k", "z")), 0.5 * width - w.length(0.08, 0.2)
     for side in BOTH_SIDES:
         c = side * apart
@@ -115,6 +116,10 @@ def desk_gaming(w: Workbench) -> None:
         for c in (span[0] + 0.03, span[1] - 0.03):
             w.box((x[0] + 0.02, x[0] + 0.18), parts.centred(c, 0.03), (height, height + rise), frame)
         w.box((x[0], x[0] + 0.22), span, (height + rise, height + rise + 0.018), top)
+        w.top((x[0] + 0.24, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), height)
+        w.top((x[0] + 0.01, x[0] + 0.21), (span[0] + 0.02, span[1] - 0.02), height + rise + 0.018)
+    else:
+        w.top((x[0] + 0.05, x[1] - 0.05), (y[0] + 0.05, y[1] - 0.05), height)
     if w.chance(0.5):
         glow = (height - 0.016, height - 0.008)
         w.box((x[1] - 0.002, x[1] + 0.004), (y[0] + 0.05, y[1] - 0.05), glow, w.look("glow"), solid=False)
