@@ -53,7 +53,7 @@ MAX_EXCESS = 1.08
 """A file that is too large by more than this factor does not become small enough with fewer small objects."""
 STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
 """The file of a house with two storeys may be larger by this factor, up to this size."""
-BYTES_PER_GEOM = (300, 200, 130, 100, 80, 50)
+BYTES_PER_GEOM = (200, 130, 100, 80, 50)
 """Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
 _POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
 

@@ -22,7 +22,7 @@ from sim.housegen.triangles import Facets, facets, mesh_shape
 
 SLAT_HALF_M, ROD_HALF_M = 0.045, 0.07
 """Textured boards and rods narrower than twice this lose their texture in a mesh: its grain would not be visible."""
-BYTES_PER_GEOM = 300
+BYTES_PER_GEOM = 200
 """Bytes by which the file may grow for each geom that is saved."""
 GEOM_BYTES = 100
 """Usual size of a geom in the file."""

@@ -8,7 +8,7 @@ from sim.gl import mujoco
 from sim.housegen.furniture.item import Look, MeshShape
 from sim.housegen.materials import texture_file, texture_mapping
 
-MESH_UNIT_M = 5e-4
+MESH_UNIT_M = 1e-3
 """Mesh vertices are written as whole multiples of this length, which takes half the bytes of metres."""
 
 
