@@ -195,7 +195,7 @@ def sideboard_round_ends(w: Workbench) -> None:
         )
     kind: FeetKind = w.choice(("plinth", "block")) if foot < 0.09 else w.choice(("taper", "splay", "sled"))
     parts.feet(w, x, (-inner, inner), foot + 0.001, kind, w.look("wood"))
-    parts.top_surface(w, x, (-inner, inner), height + 0.025)
+    parts.top_surface(w, x, (-inner, inner), height)
 
 
 def shoe_cabinet(w: Workbench) -> None:
