@@ -88,6 +88,8 @@ class Args:
     """Number of steps of the learning-rate schedule."""
     hours: float | None = None
     """Time limit, to which the schedule is fitted by the measured speed; None: --steps."""
+    stop_after_hours: float | None = None
+    """Stop earlier than --hours, without a change of the schedule; the same command with a larger value continues."""
     batch: int = 16
     """Views per step."""
     rate: float = 2e-3
@@ -158,7 +160,7 @@ class Trainer:
         losses: list[float] = []
         self.first_step = self.step
         for rgb, depth, target in self._timed(self._batches()):
-            if self.step >= self.total:
+            if self.step >= self.total or self._time_is_up():
                 break
             losses.append(self._train_on(rgb, depth, target))
             self.step += 1
@@ -176,6 +178,10 @@ class Trainer:
         if self.step % self.args.evaluate_every:
             self._evaluate()
         self._save_state()
+
+    def _time_is_up(self) -> bool:
+        limit = self.args.stop_after_hours
+        return limit is not None and self.spent_s >= 3600 * limit
 
     def _timed(self, batches: Iterator[tuple[Tensor, Tensor, Tensor]]) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
         """Yields the same batches and measures how long each takes to come."""

@@ -290,6 +290,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --rate 1e-3 --views {{tmp}}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
+    f"{PYTHON} tools/compare_networks.py --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "
+    "--out runs/networks": (
+        _VIEWS,
+        f"{PYTHON} tools/compare_networks.py --views {{tmp}}/views --val-views {{tmp}}/views --hours 0 --seeds 0 "
+        "--out {tmp}/networks",
+    ),
     # docs/results.md
     f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "

@@ -20,13 +20,13 @@ from tools import evaluate_rednet
 from tools.train_rednet import Args, main
 
 
-def write_views(folder: Path, count: int, size_px: int = 64) -> None:
+def write_views(folder: Path, count: int, size_px: int = 64, rows_px: int | None = None) -> None:
     """Views of a bright sofa in front of a dark wall."""
     folder.mkdir()
     rng = np.random.default_rng(0)
     with tarfile.open(folder / "views-000000.tar", "w") as archive:
         for i in range(count):
-            semantic = np.full((size_px, size_px), MPCAT40_ID["wall"], np.uint8)
+            semantic = np.full((rows_px or size_px, size_px), MPCAT40_ID["wall"], np.uint8)
             semantic[:, rng.integers(16, 48) :] = MPCAT40_ID["sofa"]
             is_sofa = semantic == MPCAT40_ID["sofa"]
             rgb = np.repeat(np.where(is_sofa, 200, 50).astype(np.uint8)[..., None], 3, axis=2)
