@@ -32,7 +32,7 @@ from sim.housegen.placement import RoomLayout
 from sim.housegen.placement.surfaces import supports_items
 from sim.housegen.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
 from sim.housegen.structure import build_structure
-from sim.housegen.upper_storey import UpperStorey, draw_stairs, draw_upper_storey, lifted
+from sim.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
@@ -40,6 +40,8 @@ GENERATOR_VERSION = 2
 """Increased whenever the same seed gives another house."""
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
+MAX_STAIRS_TRIES = 12
+"""Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
 AREA_M2 = (50.0, 800.0)
 MAX_BYTES = 395_000
 """Largest size of the file of a house of up to `USUAL_M2`."""
@@ -213,17 +215,17 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     area_m2, kind = _draw_size(rng, config)
     clutter = config.clutter if config.clutter is not None else float(rng.uniform(0.25, 0.85))
     ceiling_m = round(float(rng.uniform(2.5, 2.8)), 2)
-    plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
-    stairs = draw_stairs(rng, plan, openings) if config.storeys == 2 else None
+    plan, openings, stairs = _draw_storeys(rng, kind, area_m2, config)
     if stairs is not None:
-        openings, ceiling_m = stairs.lower_openings, stairs.ceiling_m
+        ceiling_m = stairs.ceiling_m
     looks = draw_structure_looks(rng, plan, config.pool)
     structure = build_structure(plan, openings, ceiling_m, looks, ceiling_hole=stairs.flight.well if stairs else None)
     source = FurnitureSource(rng, config.pool, clutter, frozenset(room.kind for room in plan.rooms), catalogue)
     layouts = [RoomLayout(index, room.kind, room.rect, openings, ceiling_m) for index, room in enumerate(plan.rooms)]
     for layout in layouts:
-        if stairs is None or layout.kind != "stair_hall":
-            furnish(layout, source)
+        if stairs is not None and layout.kind == "stair_hall":
+            stairs.flight.close_off(layout, upper=False)
+        furnish(layout, source)
     draft = _Draft(plan, ceiling_m, structure, layouts, draw_lamps(rng, plan, ceiling_m, looks.time), looks.time)
     if stairs is not None:
         draft = replace(draft, upper=draw_upper_storey(rng, stairs, config.pool, source, looks))
@@ -232,6 +234,28 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
     bare = _build(draft, config, BYTES_PER_GEOM[0])
     hazards = draw_hazards(rng, config.hazards, config.pool, bare, openings, config.hazard_count)
     return replace(draft, hazards=hazards)
+
+
+def _draw_storeys(
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, config: HouseConfig
+) -> tuple[FloorPlan, tuple[Opening, ...], Stairs | None]:
+    """Returns the plan of the ground storey, the openings in its walls, and the stairs to a second storey.
+
+    Raises:
+        PlanError: no plan fits, or the stairs fit into none.
+    """
+    plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
+    if config.storeys == 1:
+        return plan, openings, None
+    for _ in range(MAX_STAIRS_TRIES - 1):
+        try:
+            stairs = draw_stairs(rng, plan, openings)
+        except PlanError:
+            plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
+        else:
+            return plan, stairs.lower_openings, stairs
+    stairs = draw_stairs(rng, plan, openings)
+    return plan, stairs.lower_openings, stairs
 
 
 def _draw_plan(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from sim.housegen.floor_plan import PlanError
 from sim.housegen.furniture.item import Geom, Item, Look
 from sim.housegen.openings import HALF_WALL_M, Opening
+from sim.housegen.placement import RoomLayout
 from sim.housegen.rectangles import OPPOSITE, Rect, Side, frame_around
 from sim.housegen.structure_parts import oriented_box, structure_item
 
@@ -19,6 +20,8 @@ HEADROOM_M = 2.0
 """Free height above the steps: the stairwell begins where the ceiling would be lower."""
 LANDING_M = (0.75, 1.1)
 """Smallest and largest depth of the upper floor beyond the last step."""
+PASSAGE_M = 0.9
+"""Depth of the floor before either end of the stairs on which nothing stands."""
 FOOT_M = 0.2
 """Smallest distance of the first step from the wall before it."""
 _RAIL_M, _RAIL_HEIGHTS_M = 0.04, (0.14, 0.52, 0.92)
@@ -52,6 +55,13 @@ class Flight:
             structure_item("wall", "well", self._cheeks(rise_m, ceiling_m, wall)),
         ]
 
+    def close_off(self, hall: RoomLayout, *, upper: bool) -> None:
+        """Keeps items of the stair hall of one storey off the stairs, the stairwell and the floor before them."""
+        low, high = self.steps[0], self.steps[-1]
+        flight = Rect(min(low.x0, high.x0), min(low.y0, high.y0), max(low.x1, high.x1), max(low.y1, high.y1))
+        taken, side = (self.well.grown(_RAIL_M), self.up) if upper else (flight, OPPOSITE[self.up])
+        hall.close_off(taken, taken.strip(side, taken.span(side), 0.0, PASSAGE_M))
+
     def _rail_lines(self) -> list[Rect]:
         """Returns the thin rectangles of the upper floor on which the railing stands."""
         beside, behind = OPPOSITE[self.wall], OPPOSITE[self.up]
@@ -61,7 +71,7 @@ class Flight:
         boxes = []
         for rect in frame_around(self.well.grown(0.04), self.well):
             boxes.append(oriented_box((rect.x0, rect.x1, rect.y0, rect.y1, ceiling_m + 0.06, rise_m - 0.1), look))
-        strip = self.well.strip(self.wall, self.well.span(self.wall), 0.0, 0.04)
+        strip = self.well.strip(self.wall, self.well.span(self.wall), 0.003, 0.04)  # covers the cut edge of the floor
         boxes.append(oriented_box((strip.x0, strip.x1, strip.y0, strip.y1, ceiling_m, rise_m), look))
         return boxes
 

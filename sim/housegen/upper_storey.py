@@ -120,8 +120,9 @@ def draw_upper_storey(
     structure += [PlacedItem(item, z_m=-z_m) for item in built]
     layouts = [RoomLayout(i, room.kind, room.rect, stairs.openings, ceiling_m) for i, room in enumerate(plan.rooms)]
     for layout in layouts:
-        if layout.kind != "stair_hall":
-            furnish(layout, source)
+        if layout.kind == "stair_hall":
+            stairs.flight.close_off(layout, upper=True)
+        furnish(layout, source)
     lamps = _room_lamps(draw_lamps(rng, plan, ceiling_m, ground_looks.time), z_m)
     return UpperStorey(plan, z_m, ceiling_m, stairs.flight.well, structure, layouts, lamps)
 

@@ -123,6 +123,12 @@ class RoomLayout:
         self.placements.append(placement)
         self._blocks.append(Block(placement.rect, bottom_m, top_m))
 
+    def close_off(self, rect: Rect, passage: Rect) -> None:
+        """Keeps items out of a part of the room (stairs, a stairwell) and off the floor by which it is reached."""
+        self._blocks.append(Block(rect, 0.0, self.ceiling_m))
+        self._keep_out.append(passage)
+        self.grid.occupy(rect)
+
     def reserve_zone(self, placement: Placement, length_m: float) -> None:
         """Keeps the floor free in front of an item that stands against a wall."""
         if placement.side is not None:
