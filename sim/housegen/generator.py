@@ -82,6 +82,8 @@ class HouseConfig:
     """Families of hazards (`sim.housegen.hazards.FAMILIES`) that are placed where paths lead."""
     hazard_count: int | None = None
     """Number of hazards; it depends on the area when None."""
+    any_size: bool = False
+    """Whether the file may have any size, as the files of the pool `wide` may: imported models are large."""
 
     def __post_init__(self) -> None:
         if self.pool not in _POOL_STREAM:
@@ -287,7 +289,7 @@ def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | N
     Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
     """
     assembler = Assembler()
-    if config.pool == "wide":
+    if config.pool == "wide" or config.any_size:
         return _build(draft, config, BYTES_PER_GEOM[0], assembler)
     limit, last = draft.max_bytes, len(BYTES_PER_GEOM) - 1
     level = 0

@@ -61,6 +61,8 @@ class Assembler:
     def assemble(self, item: Item, bytes_per_geom: int) -> Assembly:
         """Returns the same as `assemble`."""
         parts = self._parts_of(item)
+        if item.collision_geoms:
+            return Assembly(tuple(_join(parts.visual_only, parts, bytes_per_geom)), tuple(item.collision_geoms))
         exact = Assembly((*_join(parts.visual_only, parts, bytes_per_geom), *parts.solid), ())
         if item.category in BUILDING or parts.boxes is None:
             return exact
@@ -118,6 +120,8 @@ class _Parts:
 
 def possible_collision_geoms(item: Item) -> list[Geom]:
     """Returns every geom with which an item may collide, however it is assembled; children are left out."""
+    if item.collision_geoms:
+        return list(item.collision_geoms)
     solid = [geom for geom in item.geoms if geom.solid]
     return (
         solid + collision_boxes(solid, item) + collision_boxes([geom for geom in _joinable(item) if geom.solid], item)

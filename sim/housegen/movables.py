@@ -73,7 +73,7 @@ def split_movable(item: Item) -> tuple[Item | None, tuple[Movable, ...]]:
         The static rest, None where nothing is left, and the movables; an item that is too heavy, is fixed to
         something or carries other items is all rest.
     """
-    if item.mount != "floor" or item.children or item.walk_over:
+    if item.mount != "floor" or item.children or item.walk_over or item.collision_geoms:
         return item, ()
     if item.category == "gym_equipment":
         return _light_parts(item)

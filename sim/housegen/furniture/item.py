@@ -106,3 +106,5 @@ class Item:
     """Set for light items that may be movable (a chair, a stool, a ball); None: the item is fixed."""
     walk_over: bool = False
     """True: flat on the floor and without collisions; other objects may stand on it (a rug, a yoga mat)."""
+    collision_geoms: Sequence[Geom] = field(default_factory=tuple)
+    """Geoms that collide and are not rendered, for an item of which no other geom is solid (an imported model)."""
