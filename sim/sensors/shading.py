@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -46,6 +45,7 @@ class Shading:
         self._focal_px = camera.focal_px
         self._taps = _sample_discs(profile.taps)
         self._occlusion, self._shadows = _OCCLUSION * profile.occlusion, profile.shadows
+        self._lights = _other_lights(model)
 
     def apply(
         self,
@@ -72,21 +72,10 @@ class Shading:
         share = open_share(points, self._taps, self._focal_px, RADIUS_M, self._occlusion)
         if lamp is not None and lamp_map is not None:
             frame = np.stack([eye_m, -axes[1], axes[2], axes[0]])
-            lights = self._other_lights(axes[0])
-            shade(share, points, self._taps, frame, lights, self._lamp(data, lamp), lamp_map, self._shadows)
+            self._lights[1, :3] = axes[0]  # the headlight
+            shade(share, points, self._taps, frame, self._lights, self._lamp(data, lamp), lamp_map, self._shadows)
         share = blur(blur(share, points[2]), points[2])
-        return apply_share(color, raw, share, cv2.resize(share, raw.shape[::-1], interpolation=cv2.INTER_LINEAR))
-
-    def _other_lights(self, forward: NDArray) -> NDArray[np.float64]:
-        """Returns (n, 4) the ambient light (0, 0, 0, strength), then directions and strengths of directional lights."""
-        model, head = self._model, self._model.vis.headlight
-        on = model.light_active.astype(np.bool_)
-        directional = on & (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value)
-        ambient = float(np.mean(head.ambient)) + float(model.light_ambient[on].mean(axis=1).sum())
-        rows = [np.array([0.0, 0.0, 0.0, ambient]), np.append(forward, np.mean(head.diffuse))]
-        for light in np.flatnonzero(directional):
-            rows.append(np.append(model.light_dir[light], model.light_diffuse[light].mean()))
-        return np.array(rows)
+        return apply_share(color, raw, share)
 
     def _lamp(self, data: mujoco.MjData, lamp: int) -> NDArray[np.float64]:
         """Returns the lamp as `shade` expects it."""
@@ -104,6 +93,19 @@ def make_shading(model: mujoco.MjModel, camera: CameraModel, profile: RenderProf
     off = profile.occlusion <= 0.0 and profile.shadows <= 0.0
     small = min(camera.width_px, camera.height_px) < 2 * STEP
     return None if off or small else Shading(model, camera, profile)
+
+
+def _other_lights(model: mujoco.MjModel) -> NDArray[np.float64]:
+    """Returns (n, 4) the ambient light (0, 0, 0, strength), then directions and strengths of the headlight, whose
+    direction depends on the camera, and of directional lights.
+    """
+    head, on = model.vis.headlight, model.light_active.astype(np.bool_)
+    directional = on & (model.light_type == mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value)
+    ambient = float(np.mean(head.ambient)) + float(model.light_ambient[on].mean(axis=1).sum())
+    rows = [np.array([0.0, 0.0, 0.0, ambient]), np.array([0.0, 0.0, 0.0, float(np.mean(head.diffuse))])]
+    for light in np.flatnonzero(directional):
+        rows.append(np.append(model.light_dir[light], model.light_diffuse[light].mean()))
+    return np.array(rows)
 
 
 def _sample_discs(count: int) -> NDArray[np.float32]:

@@ -20,6 +20,8 @@ _LEAST = np.float32(0.3)
 """Smallest share of light that ambient occlusion leaves."""
 _BRIGHT = 224
 """Lamps and the sky emit light: colours brighter than this are darkened less, from 16 more on not at all."""
+_BLOCK = 96
+"""Bytes of a row that are searched together for bright pixels; a multiple of 3."""
 MAP_REACH_PX = 6
 """Largest radius of a penumbra on the map of a lamp."""
 
@@ -82,7 +84,7 @@ def open_share(points: NDArray, taps: NDArray, focal_px: float, radius_m: float,
             _find_places(i, rows, work, tap[i & 1, 0, k], tap[i & 1, 1, k], np.float32(STEP / focal_px), place)
             for j in range(columns):
                 work[3, j] = depth[place[j]]
-            _lose(share[i], points[:, i], work, np.float32(1.0 / radius_m**2), weight)
+            _lose(share, points, i, work, np.float32(1.0 / radius_m**2), weight)
         for j in range(columns):
             share[i, j] = share[i, j] if share[i, j] > _LEAST else _LEAST
     return share
@@ -118,18 +120,19 @@ def _find_places(
 
 
 @njit(cache=True, error_model="numpy")
-def _lose(share: NDArray, points: NDArray, work: NDArray, sharp: np.float32, weight: np.float32) -> None:
+def _lose(share: NDArray, points: NDArray, i: int, work: NDArray, sharp: np.float32, weight: np.float32) -> None:
     """Subtracts from the share of a row what one sample of each point covers."""
     zero, one = np.float32(0.0), np.float32(1.0)
-    for j in range(len(share)):
+    for j in range(share.shape[1]):
         q = work[3, j]
-        dx, dy, dz = q * work[1, j] - points[0, j], q * work[2, j] - points[1, j], q - points[2, j]
+        dx, dy, dz = q * work[1, j] - points[0, i, j], q * work[2, j] - points[1, i, j], q - points[2, i, j]
         square = dx * dx + dy * dy + dz * dz
-        rise = dx * points[3, j] + dy * points[4, j] + dz * points[5, j] - np.float32(0.004) * points[2, j]
+        rise = dx * points[3, i, j] + dy * points[4, i, j] + dz * points[5, i, j]
+        rise -= np.float32(0.004) * points[2, i, j]
         near = one - square * sharp
         near = near if near > zero else zero
         rise = rise if rise > zero else zero
-        share[j] -= weight * near * rise / np.sqrt(square + np.float32(1e-6))
+        share[i, j] -= weight * near * rise / np.sqrt(square + np.float32(1e-6))
 
 
 @njit(cache=True, error_model="numpy")
@@ -145,180 +148,253 @@ def shade(
         taps: see `open_share`.
         frame: (4, 3) the eye, and the camera's right, up and forward axes in the world.
         lights: (n, 4) the ambient light in the first row, last column; then directions and strengths.
-        lamp: position (3), strength, attenuation (3), exponent, radius of the lamp and the map's largest slope.
+        lamp: position (3), strength, attenuation (3), exponent (its next integer counts), radius of the lamp and the
+            map's largest slope.
         maps: (3, n, n) see `sim.sensors.lamp_maps`.
         strength: share of the lamp's light that a full shadow takes.
     """
     _, rows, columns = points.shape
-    size = maps.shape[1]
-    work = np.empty((10, columns), np.float32)
-    place = np.empty(columns, np.int32)
-    view = frame.astype(np.float32)
+    size = np.int32(maps.shape[1])
+    work = np.empty((9, columns), np.float32)
+    frame32, lights32, lamp32 = frame.astype(np.float32), lights.astype(np.float32), lamp.astype(np.float32)
+    width = np.float32(0.5 * lamp[8] * size / lamp[9])
+    each = np.float32(1.0 / taps.shape[1])
     for i in range(rows):
-        _place_on_map(points[:, i], view, lamp.astype(np.float32), size, work, place)
+        _place_on_map(points, i, frame32, lamp32, size, work)
+        _lamp_share(work, lights32, lamp32, np.float32(strength))
         for j in range(columns):
-            if place[j] < 0:
+            if work[8, j] < np.float32(0.01):
                 continue
-            row, column = place[j] // size, place[j] % size
-            front = work[6, j]
-            if maps[1, row, column] >= front:  # nothing around is between the lamp and the point
+            front, column, row = work[3, j], work[4, j], work[5, j]
+            near, far = maps[1, np.int32(row), np.int32(column)], maps[2, np.int32(row), np.int32(column)]
+            if near >= front:  # nothing around is between the lamp and the point
                 continue
-            dark = 1.0
-            if maps[2, row, column] >= front:
-                dark = _shadow(work[:, j], lamp, maps, taps[(i & 1) * 2 + (j & 1)])
-            if dark > 0.0:
-                direct = _lamp_share(
-                    work[0, j], work[1, j], work[2, j], work[3, j], work[4, j], work[5, j], lights, lamp
+            dark = np.float32(1.0)
+            if far >= front:
+                dark = each * _hidden_taps(
+                    column,
+                    row,
+                    front,
+                    width * (front / near - np.float32(1.0)) / front,
+                    maps[0],
+                    taps[(i & 1) * 2 + (j & 1)],
                 )
-                share[i, j] *= 1.0 - strength * dark * work[9, j] * direct
+            share[i, j] *= np.float32(1.0) - dark * work[8, j]
 
 
 @njit(cache=True, error_model="numpy")
-def _place_on_map(points: NDArray, frame: NDArray, lamp: NDArray, size: int, work: NDArray, place: NDArray) -> None:
-    """Writes the flat index on the map of each point of a row, -1 outside, and into `work`: its position (3), normal
-    (3), the depth of its shadow's end, column and row on the map, and a factor that falls to 0 at the map's border.
+def _place_on_map(points: NDArray, i: int, frame: NDArray, lamp: NDArray, size: int, work: NDArray) -> None:
+    """Writes into `work` for each point of a row: its normal (3) in the world, the depth of its shadow's end, its
+    column and row on the map, the lamp's distance and the cosines at the point and at the lamp, 0 outside the map.
     """
     zero, one, gap = np.float32(0.0), np.float32(1.0), np.float32(0.03)
     limit = lamp[9]
     scale = np.float32(0.5) * np.float32(size) / limit
-    for j in range(points.shape[1]):
-        x, y, z = points[0, j], points[1, j], points[2, j]
-        nx, ny, nz = points[3, j], points[4, j], points[5, j]
+    border = limit * (one - np.float32(2 * MAP_REACH_PX + 2) / np.float32(size))
+    for j in range(points.shape[2]):
+        x, y, z = points[0, i, j], points[1, i, j], points[2, i, j]
+        nx, ny, nz = points[3, i, j], points[4, i, j], points[5, i, j]
         wx = nx * frame[1, 0] + ny * frame[2, 0] + nz * frame[3, 0]
         wy = nx * frame[1, 1] + ny * frame[2, 1] + nz * frame[3, 1]
         wz = nx * frame[1, 2] + ny * frame[2, 2] + nz * frame[3, 2]
-        px = frame[0, 0] + x * frame[1, 0] + y * frame[2, 0] + z * frame[3, 0] + gap * wx
-        py = frame[0, 1] + x * frame[1, 1] + y * frame[2, 1] + z * frame[3, 1] + gap * wy
-        pz = frame[0, 2] + x * frame[1, 2] + y * frame[2, 2] + z * frame[3, 2] + gap * wz
-        drop = lamp[2] - pz
-        u, v = (px - lamp[0]) / drop, (py - lamp[1]) / drop
+        tx = lamp[0] - (frame[0, 0] + x * frame[1, 0] + y * frame[2, 0] + z * frame[3, 0] + gap * wx)
+        ty = lamp[1] - (frame[0, 1] + x * frame[1, 1] + y * frame[2, 1] + z * frame[3, 1] + gap * wy)
+        drop = lamp[2] - (frame[0, 2] + x * frame[1, 2] + y * frame[2, 2] + z * frame[3, 2] + gap * wz)
+        u, v = -tx / drop, -ty / drop
         far = abs(u) if abs(u) > abs(v) else abs(v)
-        inside = drop > np.float32(0.15) and far < np.float32(0.98) * limit
-        column, row = (limit - v) * scale, (u + limit) * scale
-        fade = np.float32(5.0) * (np.float32(0.98) - far / limit)
-        work[0, j], work[1, j], work[2, j], work[3, j], work[4, j], work[5, j] = px, py, pz, wx, wy, wz
-        work[6, j] = np.float32(0.988) * drop - np.float32(0.01)
-        work[7, j], work[8, j] = column, row
-        work[9, j] = fade if fade < one else one
-        column, row = column if inside else zero, row if inside else zero
-        place[j] = np.int32(row) * np.int32(size) + np.int32(column) if inside else np.int32(-1)
+        fade = np.float32(5.0) * (border - far) / limit
+        fade = fade if fade < one else one
+        fade = fade if fade > zero and drop > np.float32(0.15) else zero
+        distance = np.sqrt(tx * tx + ty * ty + drop * drop)
+        facing = (tx * wx + ty * wy + drop * wz) / distance
+        work[0, j], work[1, j], work[2, j] = wx, wy, wz
+        work[3, j] = np.float32(0.988) * drop - np.float32(0.01)
+        work[4, j], work[5, j] = (limit - v) * scale, (u + limit) * scale
+        work[6, j], work[7, j] = distance, drop / distance
+        work[8, j] = fade * facing if facing > zero else zero
 
 
 @njit(cache=True, error_model="numpy")
-def _lamp_share(
-    px: float, py: float, pz: float, nx: float, ny: float, nz: float, lights: NDArray, lamp: NDArray
-) -> float:
-    """Returns the lamp's share of the light that falls on a surface, in [0, 1]."""
-    tx, ty, tz = lamp[0] - px, lamp[1] - py, lamp[2] - pz
-    far = math.sqrt(tx * tx + ty * ty + tz * tz)
-    facing = (tx * nx + ty * ny + tz * nz) / far
-    if facing <= 0.0 or tz <= 0.0:
-        return 0.0
-    direct = (
-        lamp[3]
-        * facing
-        * (tz / far if lamp[7] == 1.0 else (tz / far) ** lamp[7])
-        / (lamp[4] + far * (lamp[5] + far * lamp[6]))
-    )
-    rest = lights[0, 3]
+def _lamp_share(work: NDArray, lights: NDArray, lamp: NDArray, strength: np.float32) -> None:
+    """Replaces the last row of `work` from `_place_on_map` by the share of the light that a full shadow takes."""
+    zero = np.float32(0.0)
+    columns = work.shape[1]
+    rest = np.full(columns, lights[0, 3] + np.float32(1e-6))
     for k in range(1, lights.shape[0]):
-        rest += max(0.0, -(lights[k, 0] * nx + lights[k, 1] * ny + lights[k, 2] * nz)) * lights[k, 3]
-    return direct / (direct + rest + 1e-6)
+        for j in range(columns):
+            lit = -lights[k, 3] * (lights[k, 0] * work[0, j] + lights[k, 1] * work[1, j] + lights[k, 2] * work[2, j])
+            rest[j] += lit if lit > zero else zero
+    bright = np.full(columns, lamp[3])
+    for _ in range(math.ceil(lamp[7])):
+        for j in range(columns):
+            bright[j] *= work[7, j]
+    for j in range(columns):
+        far = work[6, j]
+        direct = bright[j] / (lamp[4] + far * (lamp[5] + far * lamp[6]))
+        # the fade at the border of the map is a factor of the last row, beside the cosine
+        work[8, j] = strength * work[8, j] * direct / (work[8, j] * direct + rest[j])
 
 
 @njit(cache=True, error_model="numpy")
-def _shadow(point: NDArray, lamp: NDArray, maps: NDArray, taps: NDArray) -> float:
-    """Returns the share in [0, 1] of a round lamp that is hidden from a point; wider penumbras farther from objects."""
-    size, column, row, front = maps.shape[1], point[7], point[8], point[6]
-    near = maps[1, int(row), int(column)]
-    blur = lamp[8] * (front - near) / near * 0.5 * size / (lamp[9] * front)
-    blur = min(max(blur, 0.8), float(MAP_REACH_PX))
-    dark = 0
+def _hidden_taps(
+    column: np.float32, row: np.float32, front: np.float32, radius: np.float32, nearest: NDArray, taps: NDArray
+) -> np.int32:
+    """Returns how many samples of the penumbra of a point lie in shadow. `MAP_REACH_PX` keeps them on the map."""
+    radius = radius if radius > np.float32(0.8) else np.float32(0.8)
+    radius = radius if radius < np.float32(MAP_REACH_PX) else np.float32(MAP_REACH_PX)
+    count = np.int32(0)
     for k in range(taps.shape[0]):
-        c, r = int(column + blur * taps[k, 0]), int(row + blur * taps[k, 1])
-        if 0 <= c < size and 0 <= r < size and maps[0, r, c] < front:
-            dark += 1
-    return dark / taps.shape[0]
+        c, r = np.int32(column + radius * taps[k, 0]), np.int32(row + radius * taps[k, 1])
+        count += np.int32(nearest[r, c] < front)
+    return count
 
 
 @njit(cache=True, error_model="numpy")
 def blur(share: NDArray, depth: NDArray) -> NDArray:
     """Returns the image blurred by weights 1 2 1 along rows and columns, but not across edges of depth."""
     rows, columns = share.shape
-    wide = np.empty_like(share)
+    wide, high = share.copy(), np.empty_like(share)
     for i in range(rows):
-        for j in range(columns):
-            wide[i, j] = _blend(share, depth, i, j, i, max(j - 1, 0), i, min(j + 1, columns - 1))
-    high = np.empty_like(share)
+        s, z = share[i], depth[i]
+        _blend(s[1:-1], s[:-2], s[2:], z[1:-1], z[:-2], z[2:], wide[i, 1:-1])
     for i in range(rows):
-        for j in range(columns):
-            high[i, j] = _blend(wide, depth, i, j, max(i - 1, 0), j, min(i + 1, rows - 1), j)
+        above, below = max(i - 1, 0), min(i + 1, rows - 1)
+        _blend(wide[i], wide[above], wide[below], depth[i], depth[above], depth[below], high[i])
     return high
 
 
 @njit(cache=True, error_model="numpy")
-def _blend(share: NDArray, depth: NDArray, i: int, j: int, ia: int, ja: int, ib: int, jb: int) -> float:
-    """Returns the weighted mean of a point and of its two neighbours that are at about the same depth."""
-    z = depth[i, j]
-    a = share[ia, ja] if abs(depth[ia, ja] - z) < 0.08 * z else share[i, j]
-    b = share[ib, jb] if abs(depth[ib, jb] - z) < 0.08 * z else share[i, j]
-    return 0.5 * share[i, j] + 0.25 * (a + b)
+def _blend(s: NDArray, sa: NDArray, sb: NDArray, z: NDArray, za: NDArray, zb: NDArray, out: NDArray) -> None:
+    """Writes the weighted means of points and of their two neighbours that are at about the same depth."""
+    half, quarter = np.float32(0.5), np.float32(0.25)
+    for j in range(len(s)):
+        near = np.float32(0.08) * z[j]
+        a, b = sa[j], sb[j]
+        a = a if abs(za[j] - z[j]) < near else s[j]
+        b = b if abs(zb[j] - z[j]) < near else s[j]
+        out[j] = half * s[j] + quarter * (a + b)
 
 
 @njit(cache=True, error_model="numpy")
-def apply_share(color: NDArray, raw: NDArray, share: NDArray, smooth: NDArray) -> NDArray:
+def apply_share(color: NDArray, raw: NDArray, share: NDArray) -> NDArray:
     """Returns the colour image (h, w, 3), the top row first, times the share.
+
+    It is interpolated between the points of the grid, in integers: 256 is a share of 1.
 
     Args:
         color: (h, w, 3), the bottom row first.
         raw: (h, w) reversed depth buffer.
         share: (rows, columns) of the small grid.
-        smooth: (h, w) the share, interpolated. Where the four grid points around a pixel differ in depth, it is
-            replaced by the mean of those at the depth of the pixel.
     """
     height, width = raw.shape
     out = np.empty_like(color)
-    scale = np.empty(width, np.uint16)
+    low, high = np.empty(3 * width, np.float32), np.empty(3 * width, np.float32)
+    scale = np.empty(3 * width, np.uint16)
+    edges = np.empty(share.shape[1], np.int32)
+    _widen(share[0], high)
+    done, count = -1, 0
     for r in range(height):
-        for c in range(width):
-            scale[c] = np.uint16(np.float32(256.0) * smooth[r, c])
-        _mend_edges(r, raw, share, scale)
-        source = color[r].reshape(-1)
-        target = out[height - 1 - r].reshape(-1)
-        for c in range(width):
-            red, green, blue = source[3 * c], source[3 * c + 1], source[3 * c + 2]
-            bright = red if red > green else green
-            bright = np.int32(bright if bright > blue else blue) - np.int32(_BRIGHT)
-            bright = bright if bright > np.int32(0) else np.int32(0)
-            bright = bright if bright < np.int32(16) else np.int32(16)
-            kept = np.int32(scale[c])
-            kept += ((np.int32(256) - kept) * bright) >> np.int32(4)
-            target[3 * c] = np.uint8((np.int32(red) * kept) >> np.int32(8))
-            target[3 * c + 1] = np.uint8((np.int32(green) * kept) >> np.int32(8))
-            target[3 * c + 2] = np.uint8((np.int32(blue) * kept) >> np.int32(8))
+        i = min(max((r - _HALF) // STEP, 0), share.shape[0] - 2)
+        if i != done:
+            low, high = high, low
+            _widen(share[i + 1], high)
+            done, count = i, _find_edges(i, raw, share, edges)
+        _interpolate(low, high, np.float32(min(max(r - _HALF - i * STEP, 0), STEP)) / np.float32(STEP), scale)
+        for k in range(count):
+            _mend_edge(r, i, edges[k], raw, share, scale)
+        _multiply(color[r].reshape(-1), scale, out[height - 1 - r].reshape(-1))
     return out
 
 
 @njit(cache=True, error_model="numpy")
-def _mend_edges(r: int, raw: NDArray, share: NDArray, scale: NDArray) -> None:
-    """Replaces the factors, in 1/256, of those pixels of a row that lie between grid points of different depth."""
-    rows, columns = share.shape
-    i = min(max((r - _HALF) // STEP, 0), rows - 2)
+def _widen(share: NDArray, wide: NDArray) -> None:
+    """Writes the factors, in 1/256, of a row of the grid for each channel of each pixel."""
+    unit, last = np.float32(256.0), len(share) - 1
+    wide[: 3 * _HALF] = unit * share[0]
+    wide[3 * (last * STEP + _HALF) :] = unit * share[last]
+    for j in range(last):
+        first, step = unit * share[j], unit / np.float32(STEP) * (share[j + 1] - share[j])
+        k = 3 * (j * STEP + _HALF)
+        for x in range(STEP):
+            factor = first + np.float32(x) * step
+            wide[k + 3 * x], wide[k + 3 * x + 1], wide[k + 3 * x + 2] = factor, factor, factor
+
+
+@njit(cache=True, error_model="numpy")
+def _interpolate(low: NDArray, high: NDArray, t: np.float32, scale: NDArray) -> None:
+    """Writes the factors of a row of pixels between two rows of the grid."""
+    for k in range(len(scale)):
+        scale[k] = np.uint16(low[k] + (high[k] - low[k]) * t)
+
+
+@njit(cache=True, error_model="numpy")
+def _multiply(source: NDArray, scale: NDArray, target: NDArray) -> None:
+    """Writes a row of colours times their factors. Bright pixels keep more, see `_BRIGHT`."""
+    for k in range(len(source)):
+        target[k] = np.uint8((np.int32(source[k]) * np.int32(scale[k])) >> np.int32(8))
+    for start in range(0, len(source), _BLOCK):
+        end = min(start + _BLOCK, len(source))
+        brightest = np.uint8(0)
+        for k in range(start, end):
+            brightest = max(brightest, source[k])
+        if brightest > _BRIGHT:
+            _keep_bright(source[start:end], scale[start:end], target[start:end])
+
+
+@njit(cache=True, error_model="numpy")
+def _keep_bright(source: NDArray, scale: NDArray, target: NDArray) -> None:
+    """Writes the bright ones of some pixels."""
+    for k in range(0, len(source), 3):
+        red, green, blue, kept = (
+            np.int32(source[k]),
+            np.int32(source[k + 1]),
+            np.int32(source[k + 2]),
+            np.int32(scale[k]),
+        )
+        bright = min(max(red, green, blue) - np.int32(_BRIGHT), np.int32(16))
+        if bright > 0:
+            kept += ((np.int32(256) - kept) * bright) >> np.int32(4)
+            target[k] = np.uint8((red * kept) >> np.int32(8))
+            target[k + 1] = np.uint8((green * kept) >> np.int32(8))
+            target[k + 2] = np.uint8((blue * kept) >> np.int32(8))
+
+
+@njit(cache=True, error_model="numpy")
+def _find_edges(i: int, raw: NDArray, share: NDArray, edges: NDArray) -> int:
+    """Writes the columns of the grid's cells of a row whose corners differ in depth and in share; returns how many."""
     low, high = raw[i * STEP + _HALF], raw[(i + 1) * STEP + _HALF]
-    t = min(max((r - _HALF) / STEP - i, 0.0), 1.0)
-    for j in range(columns - 1):
-        c0 = j * STEP + _HALF
-        r00, r01, r10, r11 = low[c0], low[c0 + STEP], high[c0], high[c0 + STEP]
-        most, least = max(max(r00, r01), max(r10, r11)), min(min(r00, r01), min(r10, r11))
-        if most < 1.25 * least:
-            continue
-        first, last = c0 if j > 0 else 0, c0 + STEP if j < columns - 2 else raw.shape[1]
-        for c in range(first, last):
-            x = min(max((c - c0) / STEP, 0.0), 1.0)
-            here, near = raw[r, c], 0.1 * raw[r, c]
-            w00 = (1.01 - t) * (1.01 - x) if abs(r00 - here) < near else 1e-6
-            w01 = (1.01 - t) * (0.01 + x) if abs(r01 - here) < near else 1e-6
-            w10 = (0.01 + t) * (1.01 - x) if abs(r10 - here) < near else 1e-6
-            w11 = (0.01 + t) * (0.01 + x) if abs(r11 - here) < near else 1e-6
-            total = w00 * share[i, j] + w01 * share[i, j + 1] + w10 * share[i + 1, j] + w11 * share[i + 1, j + 1]
-            scale[c] = np.uint16(256.0 * total / (w00 + w01 + w10 + w11))
+    count = 0
+    for j in range(share.shape[1] - 1):
+        c = j * STEP + _HALF
+        most, least = (
+            max(low[c], low[c + STEP], high[c], high[c + STEP]),
+            min(low[c], low[c + STEP], high[c], high[c + STEP]),
+        )
+        s00, s01, s10, s11 = share[i, j], share[i, j + 1], share[i + 1, j], share[i + 1, j + 1]
+        differ = max(s00, s01, s10, s11) - min(s00, s01, s10, s11) > np.float32(0.03)
+        edges[count] = j
+        count += most >= np.float32(1.25) * least and differ
+    return count
+
+
+@njit(cache=True, error_model="numpy")
+def _mend_edge(r: int, i: int, j: int, raw: NDArray, share: NDArray, scale: NDArray) -> None:
+    """Replaces the factors of a row of pixels of a cell by the mean of those corners at the depth of the pixel."""
+    c0, width = j * STEP + _HALF, raw.shape[1]
+    low, high = raw[i * STEP + _HALF], raw[(i + 1) * STEP + _HALF]
+    r00, r01, r10, r11 = low[c0], low[c0 + STEP], high[c0], high[c0 + STEP]
+    s00, s01, s10, s11 = share[i, j], share[i, j + 1], share[i + 1, j], share[i + 1, j + 1]
+    one, little, least = np.float32(1.01), np.float32(0.01), np.float32(1e-6)
+    t = np.float32(min(max(r - _HALF - i * STEP, 0), STEP)) / np.float32(STEP)
+    first, last = c0 if j > 0 else 0, c0 + STEP if j < share.shape[1] - 2 else width
+    for c in range(first, last):
+        x = np.float32(min(max(c - c0, 0), STEP)) / np.float32(STEP)
+        here = raw[r, c]
+        near = np.float32(0.1) * here
+        w00 = (one - t) * (one - x) if abs(r00 - here) < near else least
+        w01 = (one - t) * (little + x) if abs(r01 - here) < near else least
+        w10 = (little + t) * (one - x) if abs(r10 - here) < near else least
+        w11 = (little + t) * (little + x) if abs(r11 - here) < near else least
+        total = w00 * s00 + w01 * s01 + w10 * s10 + w11 * s11
+        factor = np.uint16(np.float32(256.0) * total / (w00 + w01 + w10 + w11))
+        scale[3 * c], scale[3 * c + 1], scale[3 * c + 2] = factor, factor, factor
