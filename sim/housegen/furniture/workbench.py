@@ -42,6 +42,7 @@ class Workbench:
         self._make = make
         self._looks: dict[str, Look] = {}
         self._geoms: list[Geom] = []
+        self._collision_geoms: list[Geom] = []
         self._children: list[Child] = []
         self._surfaces: list[Surface] = []
 
@@ -166,6 +167,12 @@ class Workbench:
                 cx, cy = top[0] - sx * inset, top[1] - sy * inset
                 self.box((cx - inset, cx + inset), (cy - inset, cy + inset), z, look)
 
+    def hidden_box(self, x: Range, y: Range, z: Range) -> None:
+        """Adds a box that collides and is not rendered; an item that has one has no other collision geoms."""
+        at = tuple(0.5 * (lo + hi) for lo, hi in (x, y, z))
+        half = tuple(round(max(0.5 * (hi - lo), MIN_HALF_M), 4) for lo, hi in (x, y, z))
+        self._collision_geoms.append(Geom("box", half, _rounded(at), Look()))
+
     # ---- surfaces, children and the result ---------------------------------------------------------------------
 
     def top(self, x: Range, y: Range, z: float, kind: str = "top") -> None:
@@ -197,6 +204,9 @@ class Workbench:
                 dataclasses.replace(s, centre_m=_rounded(np.add(s.centre_m, shift))) for s in self._surfaces
             ),
             mount_height_m=self.mount_height_m, mass_kg=self.mass_kg, walk_over=walk_over,
+            collision_geoms=tuple(
+                dataclasses.replace(g, pos_m=_rounded(np.add(g.pos_m, shift))) for g in self._collision_geoms
+            ),
         )  # fmt: skip
 
 
