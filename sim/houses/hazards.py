@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.geometry.descent_kernels import descend
 from sim.gl import mujoco
 
 _HAZARD = re.compile(r"hazard_(?P<kind>[a-z][a-z_]*)_\d+")
@@ -63,15 +64,4 @@ def steepest_path(field_m: NDArray[np.float32], begin: tuple[int, int]) -> NDArr
 
     Each cell is the neighbour of the one before with the smallest distance; the path ends where none is smaller.
     """
-    cols = field_m.shape[1] + 2
-    values = np.pad(field_m, 1, constant_values=np.inf).ravel()
-    around = np.array([row * cols + col for row in (-1, 0, 1) for col in (-1, 0, 1) if row or col])
-    here = (begin[0] + 1) * cols + begin[1] + 1
-    path = [here]
-    while True:
-        best = here + int(around[values[here + around].argmin()])
-        if not values[best] < values[here]:
-            rows, columns = np.divmod(np.array(path), cols)
-            return np.stack([rows - 1, columns - 1], axis=1)
-        here = best
-        path.append(here)
+    return descend(field_m, *begin)

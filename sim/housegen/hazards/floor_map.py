@@ -64,6 +64,7 @@ class FloorMap:
         self._hazards = np.zeros_like(self._solid)
         self._main = {half_m: _largest(self.clearance() >= half_m) for half_m in _LOST_M2}
         self._fields: dict[str, NDArray[np.float32]] = {}
+        self._cells: dict[str, NDArray[np.int64]] = {}
 
     def clearance(self) -> NDArray[np.float32]:
         """Returns the distance (rows, cols) from each cell to the nearest obstacle, metres."""
@@ -111,6 +112,7 @@ class FloorMap:
                 self._solid = before
                 return False
         self._main = after
+        self._cells.clear()
         self._tall_solid = self._tall_solid | mask
         self._hazards |= mask
         return True
@@ -136,15 +138,21 @@ class FloorMap:
 
     def _random_cell(self, rng: np.random.Generator, room: Room) -> tuple[int, int] | None:
         """Returns a random cell of a room on the connected floor; None where there is none."""
-        x, y = self.frame.axes()
-        mask = np.zeros_like(self._solid)
-        for (cx, cy, _), (hx, hy, _) in room.boxes:
-            mask |= np.outer(np.abs(y - cy) <= hy, np.abs(x - cx) <= hx)
-        cells = np.argwhere(mask & self._main[SPARE_M])
+        cells = self._cells_of(room)
         if not len(cells):
             return None
         row, col = cells[rng.integers(len(cells))].tolist()
         return row, col
+
+    def _cells_of(self, room: Room) -> NDArray[np.int64]:
+        """Returns the cells (n, 2) of a room on the connected floor."""
+        if room.name not in self._cells:
+            x, y = self.frame.axes()
+            mask = np.zeros_like(self._solid)
+            for (cx, cy, _), (hx, hy, _) in room.boxes:
+                mask |= np.outer(np.abs(y - cy) <= hy, np.abs(x - cx) <= hx)
+            self._cells[room.name] = np.argwhere(mask & self._main[SPARE_M])
+        return self._cells[room.name]
 
 
 def _largest(free: NDArray[np.bool_]) -> NDArray[np.bool_]:
