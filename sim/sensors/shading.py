@@ -46,6 +46,7 @@ class Shading:
         self._taps = _sample_discs(profile.taps)
         self._occlusion, self._shadows = _OCCLUSION * profile.occlusion, profile.shadows
         self._lights = _other_lights(model)
+        self._strengths: dict[int, tuple[float, ...]] = {}
 
     def apply(
         self,
@@ -80,12 +81,11 @@ class Shading:
     def _lamp(self, data: mujoco.MjData, lamp: int) -> NDArray[np.float64]:
         """Returns the lamp as `shade` expects it."""
         model = self._model
-        strength, exponent = model.light_diffuse[lamp].mean(), model.light_exponent[lamp]
-        spot = model.light_type[lamp] == mujoco.mjtLightType.mjLIGHT_SPOT.value
-        return np.array([
-            *data.light_xpos[lamp], strength, *model.light_attenuation[lamp], exponent if spot else 0.0, LAMP_RADIUS_M,
-            MAP_SLOPE,
-        ])  # fmt: skip
+        if lamp not in self._strengths:
+            spot = model.light_type[lamp] == mujoco.mjtLightType.mjLIGHT_SPOT.value
+            exponent = model.light_exponent[lamp] if spot else 0.0
+            self._strengths[lamp] = model.light_diffuse[lamp].mean(), *model.light_attenuation[lamp], exponent
+        return np.array([*data.light_xpos[lamp], *self._strengths[lamp], LAMP_RADIUS_M, MAP_SLOPE])
 
 
 def make_shading(model: mujoco.MjModel, camera: CameraModel, profile: RenderProfile) -> Shading | None:

@@ -22,7 +22,7 @@ _BRIGHT = 224
 """Lamps and the sky emit light: colours brighter than this are darkened less, from 16 more on not at all."""
 _BLOCK = 96
 """Bytes of a row that are searched together for bright pixels; a multiple of 3."""
-MAP_REACH_PX = 6
+MAP_REACH_PX = 4
 """Largest radius of a penumbra on the map of a lamp."""
 
 
@@ -171,14 +171,9 @@ def shade(
                 continue
             dark = np.float32(1.0)
             if far >= front:
-                dark = each * _hidden_taps(
-                    column,
-                    row,
-                    front,
-                    width * (front / near - np.float32(1.0)) / front,
-                    maps[0],
-                    taps[(i & 1) * 2 + (j & 1)],
-                )
+                radius = width * (front / near - np.float32(1.0)) / front
+                tap = taps[(i & 1) * 2 + (j & 1)]
+                dark = each * np.float32(_hidden_taps(column, row, front, radius, maps[0], tap))
             share[i, j] *= np.float32(1.0) - dark * work[8, j]
 
 
@@ -188,18 +183,21 @@ def _place_on_map(points: NDArray, i: int, frame: NDArray, lamp: NDArray, size: 
     column and row on the map, the lamp's distance and the cosines at the point and at the lamp, 0 outside the map.
     """
     zero, one, gap = np.float32(0.0), np.float32(1.0), np.float32(0.03)
-    limit = lamp[9]
+    limit, lamp_x, lamp_y, lamp_z = lamp[9], lamp[0] - frame[0, 0], lamp[1] - frame[0, 1], lamp[2] - frame[0, 2]
+    right_x, right_y, right_z = frame[1, 0], frame[1, 1], frame[1, 2]
+    up_x, up_y, up_z = frame[2, 0], frame[2, 1], frame[2, 2]
+    ahead_x, ahead_y, ahead_z = frame[3, 0], frame[3, 1], frame[3, 2]
     scale = np.float32(0.5) * np.float32(size) / limit
     border = limit * (one - np.float32(2 * MAP_REACH_PX + 2) / np.float32(size))
     for j in range(points.shape[2]):
         x, y, z = points[0, i, j], points[1, i, j], points[2, i, j]
         nx, ny, nz = points[3, i, j], points[4, i, j], points[5, i, j]
-        wx = nx * frame[1, 0] + ny * frame[2, 0] + nz * frame[3, 0]
-        wy = nx * frame[1, 1] + ny * frame[2, 1] + nz * frame[3, 1]
-        wz = nx * frame[1, 2] + ny * frame[2, 2] + nz * frame[3, 2]
-        tx = lamp[0] - (frame[0, 0] + x * frame[1, 0] + y * frame[2, 0] + z * frame[3, 0] + gap * wx)
-        ty = lamp[1] - (frame[0, 1] + x * frame[1, 1] + y * frame[2, 1] + z * frame[3, 1] + gap * wy)
-        drop = lamp[2] - (frame[0, 2] + x * frame[1, 2] + y * frame[2, 2] + z * frame[3, 2] + gap * wz)
+        wx = nx * right_x + ny * up_x + nz * ahead_x
+        wy = nx * right_y + ny * up_y + nz * ahead_y
+        wz = nx * right_z + ny * up_z + nz * ahead_z
+        tx = lamp_x - (x * right_x + y * up_x + z * ahead_x + gap * wx)
+        ty = lamp_y - (x * right_y + y * up_y + z * ahead_y + gap * wy)
+        drop = lamp_z - (x * right_z + y * up_z + z * ahead_z + gap * wz)
         u, v = -tx / drop, -ty / drop
         far = abs(u) if abs(u) > abs(v) else abs(v)
         fade = np.float32(5.0) * (border - far) / limit
@@ -252,7 +250,7 @@ def _hidden_taps(
 @njit(cache=True, error_model="numpy")
 def blur(share: NDArray, depth: NDArray) -> NDArray:
     """Returns the image blurred by weights 1 2 1 along rows and columns, but not across edges of depth."""
-    rows, columns = share.shape
+    rows = len(share)
     wide, high = share.copy(), np.empty_like(share)
     for i in range(rows):
         s, z = share[i], depth[i]
@@ -345,14 +343,10 @@ def _multiply(source: NDArray, scale: NDArray, target: NDArray) -> None:
 def _keep_bright(source: NDArray, scale: NDArray, target: NDArray) -> None:
     """Writes the bright ones of some pixels."""
     for k in range(0, len(source), 3):
-        red, green, blue, kept = (
-            np.int32(source[k]),
-            np.int32(source[k + 1]),
-            np.int32(source[k + 2]),
-            np.int32(scale[k]),
-        )
+        red, green, blue = np.int32(source[k]), np.int32(source[k + 1]), np.int32(source[k + 2])
         bright = min(max(red, green, blue) - np.int32(_BRIGHT), np.int32(16))
         if bright > 0:
+            kept = np.int32(scale[k])
             kept += ((np.int32(256) - kept) * bright) >> np.int32(4)
             target[k] = np.uint8((red * kept) >> np.int32(8))
             target[k + 1] = np.uint8((green * kept) >> np.int32(8))
@@ -366,14 +360,11 @@ def _find_edges(i: int, raw: NDArray, share: NDArray, edges: NDArray) -> int:
     count = 0
     for j in range(share.shape[1] - 1):
         c = j * STEP + _HALF
-        most, least = (
-            max(low[c], low[c + STEP], high[c], high[c + STEP]),
-            min(low[c], low[c + STEP], high[c], high[c + STEP]),
-        )
+        r00, r01, r10, r11 = low[c], low[c + STEP], high[c], high[c + STEP]
         s00, s01, s10, s11 = share[i, j], share[i, j + 1], share[i + 1, j], share[i + 1, j + 1]
         differ = max(s00, s01, s10, s11) - min(s00, s01, s10, s11) > np.float32(0.03)
         edges[count] = j
-        count += most >= np.float32(1.25) * least and differ
+        count += differ and max(r00, r01, r10, r11) >= np.float32(1.25) * min(r00, r01, r10, r11)
     return count
 
 
