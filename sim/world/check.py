@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import HouseError
+from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import Labels, collidable_geoms, read_labels
 from sim.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
-from sim.world.freespace import FreeSpace
+from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
 
 MAX_OVERLAP_M = 0.01
@@ -180,34 +181,40 @@ def _unreachable_on(
     x, y = space.frame.axes()
     rooms = [room for room in house.rooms if room.floor_z_m == floor_z_m]
     masks = {room.name: space.free & _room_mask(room, x, y) for room in rooms}
-    largest = max(masks.values(), key=lambda mask: int(mask.sum()))
+    largest = max(masks.values(), key=np.count_nonzero)
     if not largest.any():
         return ["no room has a free position for the robot"], set()
     cells = np.argwhere(largest)
     source = np.zeros_like(space.free)
     source[tuple(cells[len(cells) // 2])] = True
-    reached = np.isfinite(space.geodesic(source))
-    faults = [f"the robot cannot enter {name}" for name, mask in masks.items() if not (mask & reached).any()]
+    reached = connected_to(space.free, source)
+    cells_of = {name: (np.count_nonzero(mask), np.count_nonzero(mask & reached)) for name, mask in masks.items()}
+    faults = [f"the robot cannot enter {name}" for name, (_, entered) in cells_of.items() if not entered]
     faults += [
         f"the robot cannot reach a part of {name}"
-        for name, mask in masks.items()
-        if mask.sum() > MIN_ROOM_CELLS and (mask & reached).sum() < MIN_CONNECTED_SHARE * mask.sum()
+        for name, (free, entered) in cells_of.items()
+        if free > MIN_ROOM_CELLS and entered < MIN_CONNECTED_SHARE * free
     ]
     top_m = max(z + half for room in rooms for (_, _, z), (_, _, half) in room.boxes)
-    reached_m = space.frame.to_metres(np.argwhere(reached))
-    return faults, _goals_near(house, reached_m, (floor_z_m, top_m), rule)
+    return faults, _goals_near(house, reached, space.frame, (floor_z_m, top_m), rule)
 
 
 def _goals_near(
-    house: _CompiledHouse, reached_m: NDArray[np.float64], heights_m: tuple[float, float], rule: SuccessRule
+    house: _CompiledHouse,
+    reached: NDArray[np.bool_],
+    frame: GridFrame,
+    heights_m: tuple[float, float],
+    rule: SuccessRule,
 ) -> set[str]:
-    """Returns the goal categories with an instance between two heights near one of some positions (n, 2)."""
-    near_m = rule.distance_m - REACH_MARGIN_M
+    """Returns the goal categories with an instance between two heights near one of the cells reached (rows, cols)."""
 
     def is_near(geoms: Iterable[int]) -> bool:
         low, high = house.boxes(np.array(list(geoms)))
         middle_m = 0.5 * (low[:, 2].min() + high[:, 2].max())  # the boxes of tilted parts may reach below the floor
-        return heights_m[0] <= middle_m < heights_m[1] and _distance_m(house, geoms, reached_m) < near_m
+        if not heights_m[0] <= middle_m < heights_m[1]:
+            return False
+        (x0, y0, _), (x1, y1, _) = low.min(axis=0).tolist(), high.max(axis=0).tolist()
+        return _any_within(reached, frame, (x0, y0, x1, y1), rule.distance_m - REACH_MARGIN_M)
 
     return {
         category
@@ -216,12 +223,15 @@ def _goals_near(
     }
 
 
-def _distance_m(house: _CompiledHouse, geoms: Iterable[int], xy_m: NDArray[np.float64]) -> float:
-    """Returns the smallest distance in plan between the box around some geoms and positions (n, 2)."""
-    low, high = house.boxes(np.array(list(geoms)))
-    dx = np.maximum(np.maximum(low[:, 0].min() - xy_m[:, 0], xy_m[:, 0] - high[:, 0].max()), 0.0)
-    dy = np.maximum(np.maximum(low[:, 1].min() - xy_m[:, 1], xy_m[:, 1] - high[:, 1].max()), 0.0)
-    return float(np.hypot(dx, dy).min())
+def _any_within(
+    cells: NDArray[np.bool_], frame: GridFrame, box_m: tuple[float, float, float, float], distance_m: float
+) -> bool:
+    """Returns whether a cell (rows, cols) is nearer than a distance to a box (smallest x, y, largest x, y)."""
+    window = frame.index_of(box_m, distance_m)
+    x, y = frame.axes(window)
+    dx = np.maximum(np.maximum(box_m[0] - x, x - box_m[2]), 0.0)
+    dy = np.maximum(np.maximum(box_m[1] - y, y - box_m[3]), 0.0)
+    return bool((cells[window] & (np.hypot(dx[None, :], dy[:, None]) < distance_m)).any())
 
 
 def _close_pairs(low: NDArray[np.float64], high: NDArray[np.float64], gap_m: float) -> Iterable[tuple[int, int]]:

@@ -182,7 +182,7 @@ class FreeSpace:
         if not rooms:
             return free
         inside = self._covered([rectangle for room in rooms for rectangle in room_rectangles(room)])
-        return _connected_to(free, free & inside)
+        return connected_to(free, free & inside)
 
     def _away_from_edges(self, floor: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Returns the cells of the floor (rows, cols) whose disc lies on it; seams and the border of the grid count."""
@@ -209,7 +209,7 @@ def _disc(radius_cells: int) -> NDArray[np.uint8]:
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius_cells + 1,) * 2), np.uint8)
 
 
-def _connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Returns the free cells that are connected over cell edges to a cell of `begin`."""
     parts = np.asarray(cv2.connectedComponents(free.astype(np.uint8), connectivity=4)[1], dtype=np.int32)
     wanted = np.zeros(int(parts.max()) + 1, dtype=np.bool_)
