@@ -148,8 +148,11 @@ def desk_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
     if chair is not None:
         x, y = desk.to_world(desk.item.size_m[0] / 2 + chair.size_m[0] / 2 - 0.15, 0.0)
         put_partly_under(layout, chair, desk, x, y, desk.placed.yaw_rad + math.pi + source.uniform(-0.2, 0.2))
-    monitor = source.make("tv_monitor", "monitor")
-    if monitor is not None and monitor.mount == "top":
-        put_on_surface(layout, source.rng, desk, monitor, face=0.0, back=True)
+    for n in range(3):
+        monitor = source.make("tv_monitor", "monitor", fresh=n > 0)
+        if monitor is None or monitor.mount != "top":
+            break
+        if put_on_surface(layout, source.rng, desk, monitor, face=0.0, back=True):
+            break
     put_on_top(layout, source, desk, ("lighting", "objects", "objects", "plant"), (0.6, 0.5, 0.3, 0.2))
     return desk

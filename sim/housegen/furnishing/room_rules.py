@@ -15,7 +15,7 @@ from sim.housegen.furnishing.steps import hang, hang_above, place, place_row, pu
 from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.placement import Placement, RoomLayout
 from sim.housegen.placement.floor import put_against_wall
-from sim.housegen.rectangles import SIDES
+from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""
@@ -24,7 +24,7 @@ _DRESSER = ("chest_of_drawers", "dresser")
 
 def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
     area = layout.inner.area_m2
-    bed_group(layout, source, large=area > 10.5)
+    bed = bed_group(layout, source, large=area > 10.5)
     wardrobe = _place_wardrobe(layout, source)
     wants_chest = source.chance(0.8) or wardrobe is None
     chest = place(layout, source, "chest_of_drawers", "dresser", front_m=0.55) if wants_chest else None
@@ -38,10 +38,18 @@ def _bedroom(layout: RoomLayout, source: FurnitureSource) -> None:
     if area > 13.5 and (area > 18 or source.chance(0.6)) and reading_corner(layout, source) is None:
         place(layout, source, "seating", "plain", front_m=0.4)
     if source.chance(0.35):
-        hang(layout, source, "tv_monitor", "tv_wall")
+        hang(layout, source, "tv_monitor", "tv_wall", sides=_seen_from(bed))
     if source.clutter_chance(0.5):
         place(layout, source, "clothes", "rack", "floor", along="corner", front_m=0.3)
     _extras(layout, source, plants=0.5, pictures=(0, 1))
+
+
+def _seen_from(bed: Placement | None) -> list[Side] | None:
+    """Returns the walls that are seen from a bed, the opposite one first; None where there is none at a wall."""
+    if bed is None or bed.side is None:
+        return None
+    facing = OPPOSITE[bed.side]
+    return [facing, *(side for side in SIDES if side not in (facing, bed.side))]
 
 
 def _place_wardrobe(layout: RoomLayout, source: FurnitureSource) -> Placement | None:

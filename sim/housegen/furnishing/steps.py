@@ -57,12 +57,14 @@ def place(
     return None
 
 
-def hang(layout: RoomLayout, source: FurnitureSource, category: str, *uses: str) -> Placement | None:
-    """Hangs an item on any wall."""
+def hang(
+    layout: RoomLayout, source: FurnitureSource, category: str, *uses: str, sides: Sequence[Side] | None = None
+) -> Placement | None:
+    """Hangs an item on one of the walls given, tried in this order, or on any wall."""
     item = source.make(category, *(uses or _WALL_USES.get(category, ())))
     if item is None or item.mount != "wall":
         return None
-    return hang_on_wall(layout, source.rng, item, over_floor=category == "clothes")
+    return hang_on_wall(layout, source.rng, item, sides=sides, over_floor=category == "clothes")
 
 
 def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, category: str) -> Placement | None:
