@@ -1,7 +1,7 @@
 """Darkens colour images where little light arrives: ambient occlusion and soft shadows of the nearest lamp.
 
-Both are computed from the depth of the image on a grid of every fourth pixel, and multiplied into its colours. It
-works for every house and for moving objects, and takes 2 ms where the shadow maps of OpenGL take 50.
+Both are computed from the depth of the image on a grid of every sixth pixel, and multiplied into its colours. It
+works for every house and for moving objects, and takes 2 to 3 ms where the shadow maps of OpenGL take 50.
 
 - Ambient occlusion counts how much of its surroundings a surface cannot see. Only surfaces within `RADIUS_M` count, so
   that a chair darkens the floor below it but not the wall behind it.

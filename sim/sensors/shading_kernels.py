@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-STEP = 5
+STEP = 6
 """Pixels of the image for each point of the small grid."""
 _HALF = STEP // 2
 _LEAST = np.float32(0.3)
@@ -96,7 +96,7 @@ def _measure_reach(z: NDArray, scale: np.float32, reach: NDArray) -> None:
     for j in range(len(z)):
         cells = scale / z[j]
         cells = cells if cells > np.float32(2.5) else np.float32(2.5)
-        reach[j] = cells if cells < np.float32(26.0) else np.float32(26.0)
+        reach[j] = cells if cells < np.float32(15.0) else np.float32(15.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -238,7 +238,7 @@ def _hidden_taps(
     column: np.float32, row: np.float32, front: np.float32, radius: np.float32, nearest: NDArray, taps: NDArray
 ) -> np.int32:
     """Returns how many samples of the penumbra of a point lie in shadow. `MAP_REACH_PX` keeps them on the map."""
-    radius = radius if radius > np.float32(0.8) else np.float32(0.8)
+    radius = radius if radius > np.float32(1.3) else np.float32(1.3)
     radius = radius if radius < np.float32(MAP_REACH_PX) else np.float32(MAP_REACH_PX)
     count = np.int32(0)
     for k in range(taps.shape[0]):
