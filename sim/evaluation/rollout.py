@@ -76,6 +76,7 @@ def play_episode(
             viewer.moved(info)
     wall_time_s = time.perf_counter() - began_s
     line = {key: _plain(value) for key, value in info.items() if key != "collided"}
+    line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
     if error is not None:
         line |= broken_metrics(error)
     for viewer in viewers:

@@ -12,7 +12,7 @@ import pytest
 from sim.gl import mujoco
 from sim.housegen import generate
 from sim.housegen.furniture import CATALOGUE
-from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house
+from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house, max_bytes
 from sim.housegen.placement import RoomLayout
 from sim.housegen.placement.floor import put_against_wall
 from sim.housegen.placement.on_walls import hang_on_wall
@@ -22,13 +22,12 @@ from sim.housegen.split_recipes import SPLITS
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import validate_house
+from sim.houses.writing import house_text
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.world.check import check_house
 from tests.helpers.sampling import sample
 
 SEEDS = list(range(30))
-MAX_XML_KB = 520
-"""The shipped houses must stay below 400; homes of 400 m2 may be a little larger."""
 
 
 @pytest.mark.parametrize("seed", sample(SEEDS, 5))
@@ -39,7 +38,7 @@ def test_any_seed_gives_a_house_in_the_format_that_passes_the_check(seed: int) -
     assert labels.void_geoms == 0
     assert check_house(house.spec) == []
     assert len(read_rooms(model)) == len(house.plan.rooms)
-    assert len(house.spec.to_xml()) < 1000 * MAX_XML_KB
+    assert len(house_text(house.spec)) <= max_bytes(house.plan.area_m2)
     lamps = model.light_pos[model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL.value]
     assert model.nlight - len(lamps) == 4  # shine everywhere; OpenGL has eight
     for room in read_rooms(model):
