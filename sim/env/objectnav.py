@@ -42,7 +42,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     1 for a STOP that succeeds (a visible point of an instance within 1.0 m, see `SuccessRule`), else 0.
 
     ## End
-    `terminated` at STOP and when the robot drives over an edge (`end_reason` is `fallen`, no success), `truncated` after
+    `terminated` at STOP and when the robot drives over an edge (`end_reason` is `fallen`), `truncated` after
     `max_steps` actions.
 
     ## Starting state

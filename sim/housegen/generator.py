@@ -36,7 +36,7 @@ from sim.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upp
 from sim.houses.writing import house_text
 from sim.world.check import check_house
 
-GENERATOR_VERSION = 2
+GENERATOR_VERSION = 3
 """Increased whenever the same seed gives another house."""
 MAX_TRIES = 12
 MAX_PLAN_TRIES = 60
