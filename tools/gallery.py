@@ -1,7 +1,8 @@
-"""Renders a top view without ceilings and room views of houses, and sheets of all furniture styles.
+"""Renders a top view of each storey without ceilings and room views of houses, and sheets of all furniture styles.
 
 python tools/gallery.py --houses assets/mjcf_houses/val/val_00.xml --out runs/gallery
 python tools/gallery.py --sheet --pool heldout --categories chair sofa --out runs/gallery
+python tools/gallery.py --sheet --furniture runs/models --categories chair --out runs/gallery
 """
 
 from __future__ import annotations
@@ -19,8 +20,10 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
-from sim.housegen.furniture.catalogue import Style
+from sim.housegen.furniture.catalogue import Catalogue, Style
 from sim.housegen.furniture.item import Geom, Item, Look, Pool
+from sim.housegen.imported.catalogue import style_of
+from sim.housegen.imported.library import read_index
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
@@ -32,6 +35,8 @@ Picture = NDArray[np.uint8]
 VIEW_PX = (640, 480)
 TOP_PX = (1400, 1100)
 TILE_PX = (320, 320)
+STOREY_GAP_M = 0.3
+"""Height below an upper floor from which everything belongs to the upper storey: its slabs, the edges of its well."""
 BACKDROP = (0.86, 0.90, 0.95)
 """Colour of the background."""
 FAN_DEG = np.arange(0, 360, 10)
@@ -45,13 +50,15 @@ class Args:
     out: Path
     """Folder for the PNG files; created if missing."""
     houses: tuple[Path, ...] = ()
-    """House files; each gives a top view and a sheet of room views."""
+    """House files; each gives a top view of each storey and a sheet of room views."""
     sheet: bool = False
     """Render every furniture style, one sheet per category."""
     categories: tuple[str, ...] = ()
     """With --sheet: the categories; all if not given."""
     pool: Pool = "train"
     """With --sheet: the pool of the styles."""
+    furniture: Path | None = None
+    """With --sheet: the models of a folder that tools/import_furniture.py made, instead of the shipped styles."""
     seed: int = 0
     """With --sheet: seed of sizes and colours."""
 
@@ -60,26 +67,37 @@ def main(args: Args) -> None:
     """Writes the pictures and prints their paths."""
     if not args.houses and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ... or --sheet.")
-    sheets = {category: CATALOGUE.styles(category) for category in args.categories or CATALOGUE.categories}
+    catalogue = CATALOGUE if args.furniture is None else _imported(args.furniture, args.pool)
+    sheets = {category: catalogue.styles(category) for category in args.categories or catalogue.categories}
     args.out.mkdir(parents=True, exist_ok=True)
     for path in args.houses:
         spec = mujoco.MjSpec.from_file(str(path.resolve()))
-        _save(args.out / f"{path.stem}_top.png", draw_top(spec))
+        for number, storey in enumerate(_storeys(spec)):
+            _save(args.out / f"{path.stem}_top{f'_{number}' if number else ''}.png", draw_top(storey))
         _save(args.out / f"{path.stem}_views.png", draw_views(spec))
     if args.sheet:
         for category, styles in sheets.items():
             of_pool = [style for style in styles if style.pool == args.pool]
             if of_pool:
-                sheet = draw_sheet(of_pool, np.random.default_rng(args.seed))
-                _save(args.out / f"sheet_{args.pool}_{category}.png", sheet)
+                copies, name = (2, args.pool) if args.furniture is None else (1, "imported")
+                sheet = draw_sheet(of_pool, np.random.default_rng(args.seed), copies, catalogue)
+                _save(args.out / f"sheet_{name}_{category}.png", sheet)
+
+
+def _imported(folder: Path, pool: Pool) -> Catalogue:
+    """Returns a catalogue of imported models only, ordered by what they are used for."""
+    models = sorted(read_index(folder), key=lambda model: (model.uses, model.name))
+    return Catalogue(style_of(folder, model, pool) for model in models)
 
 
 def draw_top(spec: mujoco.MjSpec) -> Picture:
     """Renders the house from above, without ceilings and ceiling lamps, (h, w, 3) RGB."""
     open_top = spec.copy()
+    floors_m = {room.floor_z_m for room in read_rooms(spec.compile())}
     _add_backdrop(open_top)
     for body in list(open_top.worldbody.bodies):
-        if body.name.startswith("ceiling_") or (body.name.startswith("lighting_") and body.pos[2] > 1.8):
+        height_m = body.pos[2] - max((floor_m for floor_m in floors_m if floor_m <= body.pos[2]), default=0.0)
+        if body.name.startswith("ceiling_") or (body.name.startswith("lighting_") and height_m > 1.8):
             open_top.delete(body)
     model = open_top.compile()
     low, high = _extent(read_rooms(model))
@@ -90,6 +108,30 @@ def draw_top(spec: mujoco.MjSpec) -> Picture:
     return _render(model, camera, TOP_PX, fovy_deg=30.0)
 
 
+def _storeys(spec: mujoco.MjSpec) -> list[mujoco.MjSpec]:
+    """Returns the house from the ground up to each of its storeys, the lowest first."""
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    floors_m = sorted({round(room.floor_z_m, 2) for room in read_rooms(model)})
+    cut = []
+    for above_m in floors_m[1:]:
+        storey = spec.copy()
+        above = data.geom_xpos[:, 2] > above_m - STOREY_GAP_M
+        for body in list(storey.worldbody.bodies):
+            geoms = np.flatnonzero(model.geom_bodyid == model.body(body.name).id)
+            if geoms.size and above[geoms].all():
+                storey.delete(body)
+        for geom in list(storey.worldbody.geoms):
+            if geom.pos[2] > above_m - STOREY_GAP_M:
+                storey.delete(geom)
+        for site in list(storey.worldbody.sites):
+            if site.pos[2] > above_m:
+                storey.delete(site)
+        cut.append(storey)
+    return [*cut, spec]
+
+
 def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
     """Renders what the robot sees in each room from the viewpoint with the longest view, tiled, (h, w, 3) RGB."""
     seen = spec.copy()
@@ -98,27 +140,30 @@ def draw_views(spec: mujoco.MjSpec, columns: int = 3) -> Picture:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     rooms = read_rooms(model)
-    space = FreeSpace(model, data, read_labels(model), rooms=rooms)
+    labels = read_labels(model)
+    spaces = {z: FreeSpace(model, data, labels, rooms=rooms, floor_z_m=z) for z in {room.floor_z_m for room in rooms}}
     eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
     tiles = []
     for room in rooms:
-        place = _viewpoint(model, data, space, room)
+        place = _viewpoint(model, data, spaces[room.floor_z_m], room)
         if place is None:
             continue
         x, y, yaw_deg = place
-        camera = _camera(np.array([x, y, eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
+        camera = _camera(np.array([x, y, room.floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
         tile = np.ascontiguousarray(_render(model, camera, VIEW_PX, fovy_deg=fovy))
         cv2.putText(tile, room.name, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (200, 30, 30), 1, cv2.LINE_AA)
         tiles.append(tile)
     return _tiled(tiles, columns)
 
 
-def draw_sheet(styles: Sequence[Style], rng: np.random.Generator, copies: int = 2) -> Picture:
+def draw_sheet(
+    styles: Sequence[Style], rng: np.random.Generator, copies: int = 2, catalogue: Catalogue = CATALOGUE
+) -> Picture:
     """Renders `copies` items of each of these styles, tiled, (h, w, 3) RGB."""
     tiles = []
     for style in styles:
         for _ in range(copies):
-            item = CATALOGUE.make_item(style.category, rng, pool=style.pool, style=style.name)
+            item = catalogue.make_item(style.category, rng, pool=style.pool, style=style.name)
             tile = np.ascontiguousarray(_portrait(item))
             text = f"{style.name} {item.size_m[0]:.2f}x{item.size_m[1]:.2f}x{item.size_m[2]:.2f}"
             cv2.putText(tile, text, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.42, (60, 60, 60), 1, cv2.LINE_AA)
@@ -172,7 +217,7 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
     fan = np.radians(FAN_DEG)
     rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
     geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
-    eye = np.array([x, y, CameraModel().height_m])
+    eye = np.array([x, y, room.floor_z_m + CameraModel().height_m])
     mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
     with np.errstate(divide="ignore"):
         to_walls = (np.array([hx, hy]) - np.sign(rays[:, :2]) * np.array([x - cx, y - cy])) / np.abs(rays[:, :2])

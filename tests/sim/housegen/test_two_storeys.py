@@ -57,6 +57,17 @@ def test_no_place_over_the_stairwell_or_on_the_stairs_is_free(world: World):
         assert space.largest_part().sum() > 0.95 * space.free.sum()
 
 
+def test_both_stair_halls_have_lamps_and_the_landing_is_free(world: World):
+    halls = [room for room in world.rooms if "stair_hall" in room.name]
+    lamps = [world.data.geom_xpos[list(lamp.geom_ids)].mean(axis=0) for lamp in world.labels.of_category("lighting")]
+    for (x, y, z), (half_x, half_y, half_z) in (hall.boxes[0] for hall in halls):
+        assert any(np.all(np.abs(lamp - (x, y, z)) < (half_x, half_y, half_z)) for lamp in lamps)
+    steps = world.data.geom_xpos[list(world.labels.of_category("stairs")[0].geom_ids)]
+    top, bottom = steps[steps[:, 2].argmax(), :2], steps[steps[:, 2].argmin(), :2]
+    landing = top - 0.55 * (bottom - top) / np.linalg.norm(bottom - top)
+    assert FreeSpace.from_world(world, upper_floor_m(world)).is_free(*landing.tolist())
+
+
 def test_a_robot_upstairs_falls_over_the_open_edge_of_the_stairwell(world: World):
     up_m = upper_floor_m(world)
     steps = world.data.geom_xpos[list(world.labels.of_category("stairs")[0].geom_ids)]
