@@ -178,7 +178,7 @@ def shade(
 
 
 @njit(cache=True, error_model="numpy")
-def _place_on_map(points: NDArray, i: int, frame: NDArray, lamp: NDArray, size: int, work: NDArray) -> None:
+def _place_on_map(points: NDArray, i: int, frame: NDArray, lamp: NDArray, size: np.int32, work: NDArray) -> None:
     """Writes into `work` for each point of a row: its normal (3) in the world, the depth of its shadow's end, its
     column and row on the map, the lamp's distance and the cosines at the point and at the lamp, 0 outside the map.
     """
