@@ -5,6 +5,9 @@ The houses of val, test, large and hazards are written as MJCF files, the train 
     python tools/generate_houses.py --split train --out assets/mjcf_houses/train --workers 2
 Houses of other seeds:
     python tools/generate_houses.py --first-seed 0 --houses 5 --pool train --out /tmp/houses
+Houses with models that tools/import_furniture.py has imported, and the ten houses of the transfer test:
+    python tools/generate_houses.py --furniture runs/models --houses 5 --out /tmp/houses
+    python tools/generate_houses.py --furniture runs/models --transfer-test --out runs/transfer
 
 The houses of a split use the folder `textures` beside their own; it is created if it is missing. The generated train
 houses are kept in the cache of `sim.housegen.house_list`, where tools/make_episodes.py reads them.
@@ -19,7 +22,7 @@ import os
 import statistics
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,6 +33,9 @@ from sim.files import write_atomically
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
 from sim.housegen.house_list import cache_dir, copy_textures, write_house_list
+from sim.housegen.imported.catalogue import ImportedFurniture
+from sim.housegen.imported.library import ModelSplit
+from sim.housegen.imported.transfer import TRANSFER_TEST
 from sim.housegen.rooms import PlanKind
 from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
 from sim.houses.writing import house_text
@@ -61,6 +67,12 @@ class Args:
     """Without a split: 0 without small objects to 1 with many; drawn when not given."""
     movable: bool = False
     """Without a split: whether light furniture can be pushed."""
+    furniture: Path | None = None
+    """Without a split: folder of imported models (tools/import_furniture.py) that furnish the houses as well."""
+    furniture_split: ModelSplit = "train"
+    """With --furniture: train adds models to our own styles, transfer replaces our own by the models kept apart."""
+    transfer_test: bool = False
+    """With --furniture: the houses of the transfer test."""
 
 
 @dataclass(frozen=True)
@@ -81,12 +93,18 @@ def main(args: Args) -> int:
     """Writes the houses; returns 1 if a requested seed gave no house."""
     if args.workers < 1 or (args.houses is not None and args.houses < 1):
         raise ConfigError("--workers and --houses must be at least 1.")
+    if args.split is not None and (args.furniture is not None or args.transfer_test):
+        raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
+    if args.transfer_test and args.furniture is None:
+        raise ConfigError("--transfer-test needs --furniture, a folder that tools/import_furniture.py made.")
     args.out.mkdir(parents=True, exist_ok=True)
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))
     elif args.split is not None:
         made = list(_write_split(args, args.split))
+    elif args.transfer_test:
+        made = list(_write_transfer_test(args))
     else:
         made = list(_write_seeds(args))
     _print_summary(made, time.perf_counter() - began_s)
@@ -133,9 +151,27 @@ def _write_seeds(args: Args) -> Iterator[Made]:
     config = HouseConfig(
         pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
     )
-    textures = os.path.relpath(assets_dir() / "textures", args.out.resolve())
+    furniture = None if args.furniture is None else ImportedFurniture(args.furniture, args.furniture_split)
+    make = functools.partial(_make_seed, config, _textures(args), furniture)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
-    for made in ordered_map(functools.partial(_make_seed, config, textures), seeds, workers=args.workers):
+    yield from _written(args, ordered_map(make, seeds, workers=args.workers))
+
+
+def _write_transfer_test(args: Args) -> Iterator[Made]:
+    """Writes the houses of the transfer test, which refer to the shipped textures by a relative path."""
+    assert args.furniture is not None
+    make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"), _textures(args))
+    yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
+
+
+def _textures(args: Args) -> str:
+    """Returns the folder of the shipped textures relative to the houses."""
+    return os.path.relpath(assets_dir() / "textures", args.out.resolve())
+
+
+def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:
+    """Writes houses and yields them again."""
+    for made in houses:
         _print_house(made)
         if made.text:
             (args.out / f"{made.name}.xml").write_text(made.text, encoding="utf-8")
@@ -147,16 +183,23 @@ def _make(recipe: Recipe) -> Made:
     return _generate(recipe.name, recipe.seed, recipe.config(), None)
 
 
-def _make_seed(config: HouseConfig, textures: str, seed: int) -> Made:
+def _make_seed(config: HouseConfig, textures: str, furniture: ImportedFurniture | None, seed: int) -> Made:
     """Generates the house of a seed."""
-    return _generate(f"house_{seed:05d}", seed, config, textures)
+    return _generate(f"house_{seed:05d}", seed, config, textures, furniture)
 
 
-def _generate(name: str, seed: int, config: HouseConfig, textures: str | None) -> Made:
+def _make_imported(furniture: ImportedFurniture, textures: str, recipe: Recipe) -> Made:
+    """Generates the house of a recipe with imported furniture."""
+    return _generate(recipe.name, recipe.seed, recipe.config(), textures, furniture)
+
+
+def _generate(
+    name: str, seed: int, config: HouseConfig, textures: str | None, furniture: ImportedFurniture | None = None
+) -> Made:
     """Generates one house, and measures the time."""
     began_s = time.process_time()
     try:
-        house = generate_house(seed, config)
+        house = generate_house(seed, config) if furniture is None else furniture.make_house(seed, config)
     except HouseError as error:
         return Made(name, error=str(error), seconds=time.process_time() - began_s)
     seconds = time.process_time() - began_s
