@@ -5,6 +5,7 @@ Of the train houses in the list every tenth is tested: the checksums show that t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +15,9 @@ import pytest
 
 from sim.env.scene import Scene
 from sim.episodes import habitat
-from sim.episodes.drawing import MAX_DISTANCE_M, MIN_DISTANCE_M, sample_episode
+from sim.episodes.drawing import sample_episode
 from sim.episodes.reachable_goals import find_reachable_goals
+from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
 from sim.episodes.splits import Episode, Split, load_split, one_house, shipped_splits
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
@@ -32,7 +34,7 @@ from tests.helpers.sampling import sample
 FIRST_FRESH_SEED = 900_000
 """No split has such a seed."""
 FRESH: list[tuple[Pool, int]] = [(pool, FIRST_FRESH_SEED + n) for n in range(15) for pool in ("train", "heldout")]
-SHIPPED = [(split, house) for split in ("val", "test") for house in load_split(split).houses]
+SHIPPED = [(split, house) for split in ("val", "test", "large", "hazards") for house in load_split(split).houses]
 LISTED = [("train", house) for house in load_split("train").houses[::10]] if "train" in shipped_splits() else []
 CASES = [*sample([*SHIPPED, *LISTED], 3), *sample(FRESH, 2)]
 SMALL = CameraModel(width_px=320, height_px=240)
@@ -50,6 +52,13 @@ class Case:
     episodes: list[Episode]
     goals: dict[str, list[habitat.Json]]
     """Goals of each category with their view points."""
+    recipe: EpisodeRecipe = DEFAULT_RECIPE
+
+    @property
+    def floors_m(self) -> list[float]:
+        """Floor height of each storey that has rooms."""
+        heights = sorted(room.floor_z_m for room in self.scene.world.rooms)
+        return [z for n, z in enumerate(heights) if n == 0 or z - heights[n - 1] > 1.0]
 
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda case: f"{case[0]}-{case[1]}")
@@ -65,7 +74,7 @@ def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
         yield Case(scene, episodes, dict(find_reachable_goals(scene.task).listed))
     else:
         episodes = [episode for episode in split.episodes if episode.house == name]
-        yield Case(scene, episodes, goals_in_file(split, name))
+        yield Case(scene, episodes, goals_in_file(split, name), EPISODE_RECIPES[split_name])
     scene.close()
 
 
@@ -115,28 +124,30 @@ def test_movable_objects_overlap_others_by_less_than_a_centimetre(case: Case) ->
 
 
 def test_the_free_space_is_connected_and_reaches_every_room(case: Case) -> None:
-    space = case.scene.task.truth.space(0.0)
-    part = space.largest_part()
-    assert part.sum() > 0.97 * space.free.sum()
-    places = space.frame.to_metres(np.argwhere(part)[::7])
-    for room in case.scene.world.rooms:
-        inside = sum(room.contains(x, y) for x, y in places.tolist())
-        assert inside * 7 * space.frame.cell_m**2 > 0.1, room.name
+    for floor_m in case.floors_m:
+        space = case.scene.task.truth.space(floor_m)
+        part = space.largest_part()
+        assert part.sum() > 0.97 * space.free.sum()
+        places = space.frame.to_metres(np.argwhere(part)[::7])
+        for room in case.scene.world.rooms:
+            if abs(room.floor_z_m - floor_m) < 1.0:
+                inside = sum(room.contains(x, y) for x, y in places.tolist())
+                assert inside * 7 * space.frame.cell_m**2 > 0.1, room.name
 
 
 def test_every_goal_instance_can_be_reached_from_its_view_points(case: Case) -> None:
-    space = case.scene.task.truth.space(0.0)
-    part = space.largest_part()
     assert {episode.goal for episode in case.episodes} <= set(case.goals)
     for goal in sample(sorted(case.goals), GOALS):
-        region = case.scene.task.truth.target(goal).region
-        footprints = {footprint.instance.name: footprint for footprint in region.footprints}
         for entry in case.goals[goal]:
-            views = [habitat.from_position(view["agent_state"]["position"])[:2] for view in entry["view_points"]]
-            cells = space.frame.to_cells(views)  # files round to the millimetre
-            assert len(cells) >= 1
+            places = [habitat.from_position(view["agent_state"]["position"]) for view in entry["view_points"]]
+            assert len(places) >= 1
+            floor_m = min(case.floors_m, key=lambda z: abs(z - places[0][2]))
+            space = case.scene.task.truth.space(floor_m)
+            region = case.scene.task.truth.target(goal, floor_m).region
+            footprints = {footprint.instance.name: footprint for footprint in region.footprints}
+            cells = space.frame.to_cells([place[:2] for place in places])  # files round to the millimetre
             assert space.frame.inside(cells).all()
-            assert part[tuple(cells.T)].all()
+            assert space.largest_part()[tuple(cells.T)].all()
             assert region.reaches(footprints[entry["object_id"]], space.frame.to_metres(cells)).all()
 
 
@@ -145,7 +156,8 @@ def test_the_distance_from_start_to_goal_is_the_recorded_one_and_within_the_limi
         distance_m = case.scene.task.distance_from(episode.goal, episode.start)
         assert distance_m is not None, episode
         assert distance_m == pytest.approx(episode.shortest_path_m, abs=0.01)
-        assert MIN_DISTANCE_M <= distance_m <= MAX_DISTANCE_M
+        nearest_m = min(case.recipe.min_distance_m, case.recipe.only_instance_min_distance_m or math.inf)
+        assert nearest_m - 0.01 <= distance_m <= case.recipe.max_distance_m + 0.01
 
 
 def test_after_half_a_second_at_rest_a_start_touches_only_the_floor_and_only_with_wheels(case: Case) -> None:
@@ -164,11 +176,12 @@ def test_after_half_a_second_at_rest_a_start_touches_only_the_floor_and_only_wit
 
 
 def test_no_robot_view_shows_void(case: Case) -> None:
-    scene = case.scene
-    space, rng = scene.task.truth.space(0.0), np.random.default_rng(0)
-    cells = np.argwhere(space.free)
-    for _ in range(VIEWS):
-        x_m, y_m = space.frame.to_metres(cells[rng.integers(len(cells))])
-        pose = Pose(float(x_m), float(y_m), float(rng.uniform(-np.pi, np.pi)))
-        semantic = scene.camera.render(scene.world.data, pose, ("semantic",))["semantic"]
-        assert (semantic == 0).sum() == 0, pose
+    scene, rng = case.scene, np.random.default_rng(0)
+    for floor_m in case.floors_m:
+        space = scene.task.truth.space(floor_m)
+        cells = np.argwhere(space.free)
+        for _ in range(VIEWS // len(case.floors_m)):
+            x_m, y_m = space.frame.to_metres(cells[rng.integers(len(cells))])
+            pose = Pose(float(x_m), float(y_m), float(rng.uniform(-np.pi, np.pi)), floor_m)
+            semantic = scene.camera.render(scene.world.data, pose, ("semantic",))["semantic"]
+            assert (semantic == 0).sum() == 0, pose
