@@ -2,10 +2,12 @@
 
 python tools/generate_views.py --split train --views 100000 --out /data/views --workers 2
 python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide --workers 2
+python tools/generate_views.py --pool wide --furniture runs/models --views 100000 --out /data/views_models --workers 2
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
 of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
+With --furniture they are new as well, and have the imported models of the split `train` besides (docs/furniture.md).
 The same command continues a killed run; the same options give the same bytes. Several machines can share the work
 with --shard 0/4, 1/4, ...; the last to finish writes an index of all shards.
 """
@@ -34,6 +36,9 @@ from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.housegen.furniture import CATALOGUE
+from sim.housegen.generator import GeneratedHouse
+from sim.housegen.imported.catalogue import ImportedFurniture
+from sim.housegen.imported.library import sha256_of_models
 from sim.housegen.split_recipes import Recipe, train_recipe
 from sim.houses.house import House
 from sim.interface import CameraModel, ConfigError
@@ -56,6 +61,8 @@ class Args:
     """Houses of a shipped split, or of a folder with the same layout."""
     pool: str | None = None
     """wide: new houses only, with the furniture of train and many more styles."""
+    furniture: Path | None = None
+    """Folder of imported models (tools/import_furniture.py): new houses only, with those of the split train as well."""
     views: int = 1000
     """Number of views in all shards."""
     out: Path
@@ -130,7 +137,7 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
     tasks = []
     for number, first in enumerate(range(0, args.views, args.views_per_shard)):
         count = min(args.views_per_shard, args.views - first)
-        fresh = args.pool is not None or (number >= len(houses) and split.name == "train")
+        fresh = args.pool is not None or args.furniture is not None or (number >= len(houses) and split.name == "train")
         seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
         house = _recipe(args, seed).name if seed is not None else houses[number % len(houses)]
         tasks.append(ShardTask(number, count, house, seed))
@@ -162,13 +169,22 @@ def _house(args: Args, task: ShardTask) -> House:
     if task.fresh_seed is None:
         return load_split(args.split).load_house(task.house)
     try:
-        return House(task.house, _recipe(args, task.fresh_seed).make().spec)
+        return House(task.house, _made(args, task.fresh_seed).spec)
     except HouseError:  # this seed gives no house: another fixed one replaces it
-        return House(task.house, _recipe(args, task.fresh_seed + FRESH_SEEDS_FROM // 2).make().spec)
+        return House(task.house, _made(args, task.fresh_seed + FRESH_SEEDS_FROM // 2).spec)
+
+
+def _made(args: Args, seed: int) -> GeneratedHouse:
+    recipe = _recipe(args, seed)
+    if args.furniture is None:
+        return recipe.make()
+    return ImportedFurniture(args.furniture).make_house(seed, recipe.config())
 
 
 def _recipe(args: Args, seed: int) -> Recipe:
     recipe = train_recipe(seed)
+    if args.pool is None and args.furniture is not None:
+        return replace(recipe, name=f"models_{seed}")
     return replace(recipe, name=f"wide_{seed}", pool="wide") if args.pool == WIDE else recipe
 
 
@@ -197,6 +213,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         "split": split.name,
         "pool": args.pool,
         "styles_sha256": _styles_sha256() if args.pool == WIDE else None,
+        **({"furniture_sha256": sha256_of_models(args.furniture)} if args.furniture is not None else {}),
         "split_version": split.version,
         "split_sha256": split.sha256,
         "seed": args.seed,
@@ -227,6 +244,8 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
     if args.pool not in (None, WIDE) or (args.pool and args.split != "train"):
         raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
+    if args.furniture is not None and args.split != "train":
+        raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     return Shard.parse(args.shard).contains
@@ -234,7 +253,7 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
 
 def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
-    keys = ("split", "pool", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
+    keys = ("split", "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
     given = [(key, value) for key in keys if (value := getattr(args, key)) is not None]
     return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(value))}" for key, value in given) + " --out DIR"
 

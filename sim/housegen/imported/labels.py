@@ -1,7 +1,8 @@
 """The table that decides which category and uses an installed model has, by its name, its group and its size.
 
 The first rule that matches decides. Models that no rule matches are left out: outdoor things, vehicles, people, models
-that show things of several categories (a vanity with its basin and its mirror), and names that say too little.
+that show things of several categories (a vanity with its basin and its mirror), racks and rails without the clothes
+and towels that give them their name, and names that say too little.
 """
 
 from __future__ import annotations
@@ -64,9 +65,7 @@ _PLANTS = (
     r"|flowers|tulips|white lily|bonsai tree"
 )
 _TABLES = r"(oak |round |glass |black |wooden |wooden alder |wooden teak |folding |white )*table|table with tablecloth"
-_SOFAS = (
-    r"((winchester|clear|leather|burlap|futon|corner|rattan) )?(sofa|couch)( [23] seats)?|convertible sofa bz|day bed"
-)
+_SOFAS = r"((winchester|clear|leather|burlap|futon|corner|rattan) )?(sofa|couch)( [23] seats)?|convertible sofa bz"
 _RULES: tuple[_Rule, ...] = (
     # seats
     _Rule(r"(child|children|baby high|relax|deck|beach) chair|wheelchair|armchair ottoman", None),
@@ -85,7 +84,7 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(r"baby bed|crib|mezzanine bed|air mattress|sleeping bag", None),
     _Rule(r"(iron |child |bunk |captain's |hospital )?bed", _label("bed"), width_m=(0.8, 2.3), height_m=(0.3, 1.7)),
     # tables
-    _Rule(r"bedside table", _label("table", "nightstand")),
+    _Rule(r"bedside table", _label("chest_of_drawers", "nightstand")),
     _Rule(r"coffee table|rattan table", _label("table", "coffee"), INDOORS | _OUTDOOR_SEATS, height_m=(0.25, 0.6)),
     _Rule(r"table", _label("table", "coffee"), width_m=(0.7, 9.0), height_m=(0.25, 0.6)),
     _Rule(r"(wooden )?desk( table)?", _label("table", "desk"), width_m=(0.9, 2.0), height_m=(0.68, 1.2)),
@@ -100,14 +99,14 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(r"dresser( with drawers)?", _label("chest_of_drawers", "dresser")),
     _Rule(r"(full )?bookcase|(vertical )?shelves", _label("shelving", "bookcase"), width_m=(0.0, 1.7),
           height_m=(0.7, 2.4)),
-    _Rule(r"island( extension)?", _label("counter", "island"), height_m=(0.8, 1.0)),
+    _Rule(r"island", _label("counter", "island"), height_m=(0.8, 1.0)),
     # bathrooms
     _Rule(r"washbasin|small lavatory", _label("sink", "standing"), height_m=(0.7, 1.1), elevated=False),
     _Rule(r"washbasin|small lavatory", _label("sink", "standing", mount="wall"), height_m=(0.15, 0.7), elevated=True),
     _Rule(r"toilets unit", _label("toilet")),
     _Rule(r"shower stall", _label("shower")),
     _Rule(r"bath|bathtub|(corner|island) bath(tub)?", _label("bathtub"), height_m=(0.4, 1.2)),
-    _Rule(r"towel rack", _label("towel", "rail", mount="wall"), elevated=True),
+    _Rule(r"towel rack", _label("towel", "rail", mount="wall"), height_m=(0.3, 1.0), elevated=True),
     # plants, fires, training
     _Rule(_PLANTS, _label("plant", "floor"), height_m=(0.55, 2.2)),
     _Rule(_PLANTS, _label("plant", "top"), width_m=(0.0, 0.6), height_m=(0.0, 0.55)),
@@ -132,9 +131,6 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(r"toaster|coffee (maker|brewer|machine)|mixer|blender", _label("appliances", "small", mount="top"),
           width_m=(0.0, 0.45)),
     # clothes and small things
-    _Rule(r"clothes rack", _label("clothes", "rack")),
-    _Rule(r"clothes horse", _label("clothes", "drying")),
-    _Rule(r"clothes basket", _label("clothes", "floor")),
     _Rule(r"folded clothes", _label("clothes", "top", mount="top")),
     _Rule(r"upright piano", _label("furniture", "piano")),
     _Rule(r"screen", _label("furniture", "screen"), height_m=(1.2, 2.2)),

@@ -18,7 +18,7 @@ from sim.errors import ConfigError
 from sim.files import write_atomically
 from sim.housegen.furniture.item import Mount
 from sim.housegen.imported.labels import Size
-from sim.housegen.imported.meshes import UNIT_M, Part, read_parts, reduced
+from sim.housegen.imported.meshes import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, UNIT_M, Part, read_parts, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
 from sim.paths import assets_dir
@@ -74,7 +74,8 @@ def import_model(entry: Entry) -> tuple[Model, Shape]:
         Skipped: the model cannot be used.
     """
     content = entry.read(entry.file)
-    parts = reduced(read_parts(entry))
+    is_plant = entry.label.category == "plant"
+    parts = reduced(read_parts(entry), MAX_PLANT_TRIANGLES if is_plant else MAX_TRIANGLES)
     top = top_of(parts) if entry.label.category in WITH_TOP else None
     shape = Shape(parts, collision_boxes(parts, entry.label.category), top or ())
     low = np.min([part.vertices_m.min(axis=0) for part in parts], axis=0)
@@ -188,6 +189,16 @@ def read_index(folder: Path) -> list[Model]:
         if isinstance(error, ConfigError):
             raise
         raise ConfigError(f"'{file}' cannot be read ({error}): import the models again.") from None
+
+
+def sha256_of_models(folder: Path) -> str:
+    """Returns a hash of the models of a folder.
+
+    Raises:
+        ConfigError: there is no such folder.
+    """
+    read_index(folder)
+    return hashlib.sha256((folder / INDEX).read_bytes()).hexdigest()
 
 
 def _models(entries: Sequence[Mapping[str, Any]]) -> Iterator[Model]:

@@ -16,20 +16,25 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from sim.errors import ConfigError
 from sim.housegen.imported.sources import Entry, Skipped
 
-MAX_TRIANGLES = 1_500
-"""Triangles of a model after its reduction."""
+MAX_TRIANGLES, MAX_PLANT_TRIANGLES = 1_500, 2_000
+"""Triangles of a model after its reduction, exceeded where its shape would be lost; a plant has many leaves."""
 MAX_SOURCE_TRIANGLES = 1_500_000
 LEAST_TRIANGLES = 12
 """Triangles that every connected piece may have."""
+MAX_ERROR, ERROR_POINTS, QUERIES = 0.03, 4_000, 600
+"""Largest distance of a reduced piece from the piece, relative to its diagonal, and the points that measure it."""
 MAX_PARTS = 6
 """Colours of a model; the parts of the most similar colours are joined."""
 UNIT_M = 1e-3
 """Vertices are multiples of this length, as in house files."""
 _FORMATS = ("obj", "glb", "gltf", "ply", "stl", "off")
+DARKEST = 0.03
+"""Smallest red, green and blue: light and shade cannot be seen on black."""
 _SEE_THROUGH = 0.35
 """Opacity of glass."""
 
@@ -124,8 +129,8 @@ def _coloured(mesh: Any) -> Part:
         rgba = np.asarray(mesh.visual.main_color, dtype=float) / 255.0
     if getattr(material, "doubleSided", False):
         faces = np.concatenate([faces, faces[:, ::-1]])
-    r, g, b, a = (round(float(v), 3) for v in np.clip(rgba, 0.0, 1.0))
-    return Part(vertices, faces, (r, g, b, a))
+    r, g, b = (round(float(v), 3) for v in np.clip(rgba[:3], DARKEST, 1.0))
+    return Part(vertices, faces, (r, g, b, float(rgba[3])))
 
 
 def _opacity(material: Any, usual: float) -> float:
@@ -227,8 +232,9 @@ def reduced(parts: Sequence[Part], most: int = MAX_TRIANGLES) -> tuple[Part, ...
     """
     pieces = [(n, piece) for n, part in enumerate(parts) for piece in _pieces(_clean(part))]
     pieces.sort(key=lambda found: -float(_areas(found[1].vertices_m, found[1].faces).sum()))
-    pieces = pieces[: most // LEAST_TRIANGLES]
-    weights = np.sqrt([len(piece.faces) for _, piece in pieces])
+    least = np.cumsum([min(LEAST_TRIANGLES, len(piece.faces)) for _, piece in pieces])
+    pieces = pieces[: int((least <= most).sum())]
+    weights = np.sqrt([len(piece.faces) * _areas(piece.vertices_m, piece.faces).sum() for _, piece in pieces])
     made: dict[int, list[Part]] = {}
     for (n, piece), share in zip(pieces, weights / max(1e-9, float(weights.sum())), strict=True):
         made.setdefault(n, []).append(_simplified(piece, max(LEAST_TRIANGLES, int(share * most))))
@@ -261,7 +267,7 @@ def _simplified(piece: Part, wanted: int) -> Part:
     library = _library("fast_simplification")
     if wanted >= len(piece.faces):
         return piece
-    for target in (wanted, 2 * wanted):
+    for target in (wanted, 2 * wanted, 4 * wanted):
         if target >= len(piece.faces):
             return piece
         # Its limits on the error are for lengths of about 100.
@@ -276,8 +282,13 @@ def _simplified(piece: Part, wanted: int) -> Part:
 
 
 def _is_alike(made: Part, piece: Part) -> bool:
-    """Returns whether a reduced piece still has the extent and the area of the piece."""
+    """Returns whether a reduced piece has about the extent, the area and the surface of the piece."""
     if not len(made.faces):
+        return False
+    reach = MAX_ERROR * float(np.linalg.norm(np.ptp(piece.vertices_m, axis=0))) + 0.002
+    ours, theirs = _scattered(made), _scattered(piece)
+    pairs = ((ours, theirs), (theirs, ours))
+    if max(np.quantile(cKDTree(a).query(b[:QUERIES])[0], 0.97) for a, b in pairs) > reach:
         return False
     tolerance = 0.004 + 0.03 * np.ptp(piece.vertices_m, axis=0)
     ends = zip((made.vertices_m.min(axis=0), made.vertices_m.max(axis=0)),
@@ -285,6 +296,15 @@ def _is_alike(made: Part, piece: Part) -> bool:
     area = float(_areas(piece.vertices_m, piece.faces).sum())
     made_area = float(_areas(made.vertices_m, made.faces).sum())
     return all((np.abs(a - b) <= tolerance).all() for a, b in ends) and 0.6 * area <= made_area <= 1.4 * area
+
+
+def _scattered(part: Part) -> NDArray[np.float64]:
+    """Returns points on the triangles of a part, evenly spread, the same in each run."""
+    areas = _areas(part.vertices_m, part.faces)
+    rng = np.random.default_rng(0)
+    chosen = part.faces[rng.choice(len(areas), size=ERROR_POINTS, p=areas / areas.sum())]
+    weights = rng.dirichlet((1.0, 1.0, 1.0), size=ERROR_POINTS)
+    return (part.vertices_m[chosen] * weights[:, :, None]).sum(axis=1)
 
 
 def _clustered(piece: Part, wanted: int) -> Part:

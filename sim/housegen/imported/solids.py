@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import grey_closing
 
 from sim.housegen.imported.meshes import Part
 
 MAX_BOXES = 12
 MIN_SAVED_M3, MIN_SAVED_SHARE = 0.002, 0.015
 """A box is divided if that saves so much volume, and this share of the volume of the box around the model."""
-CUTS = 24
+CUTS, AHEAD = 24, 2
+"""Cells of the grid along an axis, and every how many of them a division is tried that pays by later ones only."""
 POINTS = 6_000
 MIN_SIDE_M = 0.01
 POT_M = 0.3
@@ -32,13 +36,16 @@ def collision_boxes(parts: tuple[Part, ...], category: str) -> NDArray[np.float6
         points = low if len(low) > 20 else points
     groups = [points]
     least = max(MIN_SAVED_M3, MIN_SAVED_SHARE * _volume(points))
+    cuts = [_best_cut(points)]
     while len(groups) < MAX_BOXES:
-        best = max(range(len(groups)), key=lambda n: _best_cut(groups[n])[0])
-        saved, axis, at = _best_cut(groups[best])
-        if saved < least:
-            break
+        best = max(range(len(groups)), key=lambda n: cuts[n][0])
+        saved, axis, at = cuts[best]
         below = groups[best][:, axis] < at
-        groups[best : best + 1] = [groups[best][below], groups[best][~below]]
+        if saved < least or below.all() or not below.any():
+            break
+        sides = [groups[best][below], groups[best][~below]]
+        groups[best : best + 1] = sides
+        cuts[best : best + 1] = [_best_cut(side) for side in sides]
     boxes = np.array([[*group.min(axis=0), *group.max(axis=0)] for group in groups])
     thin = boxes[:, 3:] - boxes[:, :3] < MIN_SIDE_M
     middle = 0.5 * (boxes[:, 3:] + boxes[:, :3])
@@ -59,6 +66,7 @@ def top_of(parts: tuple[Part, ...]) -> tuple[float, float, float, float, float] 
     cells = np.minimum(((points[:, :2] - low[:2]) / CELL_M).astype(int), shape - 1)
     heights = np.full(shape, -1.0)
     np.maximum.at(heights, (cells[:, 0], cells[:, 1]), points[:, 2])
+    heights = grey_closing(heights, size=(3, 3))  # cells without a point on their upper side
     levels = heights[(heights >= TOP_M[0]) & (heights <= TOP_M[1])]
     if len(levels) < MIN_TOP_SHARE * heights.size:
         return None
@@ -92,26 +100,84 @@ def _volume(points: NDArray) -> float:
     return float(np.prod(np.maximum(np.ptp(points, axis=0), MIN_SIDE_M)))
 
 
+@dataclass(frozen=True)
+class _Cells:
+    """The cells of a grid that a group of points fills."""
+
+    filled: NDArray[np.bool_]  # (i, j, k)
+    low_m: NDArray[np.float64]
+    cell_m: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, points: NDArray) -> _Cells:
+        """Returns a grid of at most `CUTS` cells along each axis."""
+        low, extent = points.min(axis=0), np.maximum(np.ptp(points, axis=0), MIN_SIDE_M)
+        shape = np.clip(np.ceil(extent / MIN_SIDE_M), 1, CUTS).astype(int)
+        filled = np.zeros(tuple(shape), dtype=bool)
+        index = np.minimum(((points - low) / extent * shape).astype(int), shape - 1)
+        filled[tuple(index.T)] = True
+        return cls(filled, low, extent / shape)
+
+
 def _best_cut(points: NDArray) -> tuple[float, int, float]:
-    """Returns the volume that the best division of the box around some points saves, its axis and its position."""
-    best = (0.0, 0, 0.0)
-    low, high, whole = points.min(axis=0), points.max(axis=0), _volume(points)
+    """Returns the volume that the best division of the box around some points saves, its axis and its position.
+
+    A division that saves nothing by itself counts by what the next ones save: under a table top are four legs.
+    """
+    cells = _Cells.of(points)
+    saved, axis, index = _direct_cut(cells.filled, cells.cell_m)
+    if saved < MIN_SAVED_M3:
+        saved, axis, index = _indirect_cut(cells)
+    return saved, axis, float(cells.low_m[axis] + index * cells.cell_m[axis])
+
+
+def _indirect_cut(cells: _Cells) -> tuple[float, int, int]:
+    """Returns the division after which one more on each side saves most."""
+    best = (0.0, 0, 0)
     for axis in range(3):
-        if high[axis] - low[axis] < 4 * MIN_SIDE_M:
-            continue
-        order = points[np.argsort(points[:, axis], kind="stable")]
-        first_low, first_high = np.minimum.accumulate(order), np.maximum.accumulate(order)
-        last_low = np.minimum.accumulate(order[::-1])[::-1]
-        last_high = np.maximum.accumulate(order[::-1])[::-1]
-        for at in np.linspace(low[axis], high[axis], CUTS + 1)[1:-1]:
-            n = int(np.searchsorted(order[:, axis], at))
-            if not 0 < n < len(order):
-                continue
-            sides = (first_high[n - 1] - first_low[n - 1], last_high[n] - last_low[n])
-            saved = whole - sum(float(np.prod(np.maximum(side, MIN_SIDE_M))) for side in sides)
+        for index in range(1, cells.filled.shape[axis], AHEAD):
+            below, above = np.split(cells.filled, [index], axis=axis)
+            saved = sum(_direct_cut(side, cells.cell_m)[0] for side in (below, above))
             if saved > best[0]:
-                best = (saved, axis, float(at))
+                best = (saved, axis, index)
     return best
+
+
+def _direct_cut(filled: NDArray[np.bool_], cell_m: NDArray[np.float64]) -> tuple[float, int, int]:
+    """Returns the volume saved, the axis and the first cell of the upper side of the best division of a grid."""
+    best = (0.0, 0, 0)
+    if not filled.any():
+        return best
+    for axis in range(3):
+        if filled.shape[axis] < 2:
+            continue
+        low, high = _ranges(filled, axis)
+        below = _volumes(np.minimum.accumulate(low), np.maximum.accumulate(high), cell_m)
+        above = _volumes(np.minimum.accumulate(low[::-1])[::-1], np.maximum.accumulate(high[::-1])[::-1], cell_m)
+        saved = below[-1] - below[:-1] - above[1:]
+        n = int(saved.argmax())
+        if saved[n] > best[0]:
+            best = (float(saved[n]), axis, n + 1)
+    return best
+
+
+def _ranges(filled: NDArray[np.bool_], axis: int) -> tuple[NDArray, NDArray]:
+    """Returns the first and the last filled cell (n, 3) of every layer across an axis; beyond the grid if empty."""
+    count = filled.shape[axis]
+    low, high = np.full((count, 3), 10**6), np.full((count, 3), -1)
+    occupied = filled.any(axis=tuple(other for other in range(3) if other != axis))
+    low[occupied, axis] = high[occupied, axis] = np.flatnonzero(occupied)
+    for other in range(3):
+        if other != axis:
+            seen = np.moveaxis(filled, (axis, other), (0, 1)).any(axis=2)
+            low[occupied, other] = seen[occupied].argmax(axis=1)
+            high[occupied, other] = seen.shape[1] - 1 - seen[occupied][:, ::-1].argmax(axis=1)
+    return low, high
+
+
+def _volumes(low: NDArray, high: NDArray, cell_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the volumes of boxes of cells; empty ones have none."""
+    return np.prod(np.maximum(high - low + 1, 0) * cell_m, axis=1)
 
 
 def _largest_rectangle(cells: NDArray[np.bool_]) -> tuple[int, int, int, int]:
