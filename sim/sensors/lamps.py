@@ -1,8 +1,8 @@
 """Chooses the lamps that light an image: fixed-function OpenGL has eight lights, a house has one lamp per room.
 
 Directional lights are always on. Of the lamps, those nearest to the region that the camera looks at are on, unless a
-wall is in between; the nearest casts shadows. So each room is lit by its own lamp, and an image needs one shadow map
-in every house. Lamps of other storeys are off.
+wall is in between; the nearest casts the shadows of `sim.sensors.shading`. So each room is lit by its own lamp, and an
+image needs one map of shadows in every house.
 """
 
 from __future__ import annotations
