@@ -103,6 +103,15 @@ _IN_SCENE = (
     f"{_RUN} --house {{tmp}}/s/flat.xml --labels {{tmp}}/s/labels.json --episodes 1 --agent oracle --record"
     " --out {tmp}/run"
 )
+_MODELS = (
+    _FOREIGN.replace("foreign", "models") + 'write_folder(Path("{tmp}/source"), chairs=8)\'',
+    f"{PYTHON} tools/import_furniture.py --source {{tmp}}/source --out {{tmp}}/models",
+)
+_TRANSFER = (
+    *_MODELS,
+    f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --transfer-test --houses 1 --out {{tmp}}/transfer",
+    f"{PYTHON} tools/make_episodes.py --split {{tmp}}/transfer --recipe val --episodes 3",
+)
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
 
 TRIALS: dict[str, tuple[str, ...] | Only] = {
@@ -196,6 +205,36 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --house runs/my_house.xml --goal stool --episodes 2": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
         f"{_RUN} --house {{tmp}}/my_house.xml --goal stool --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    f"{PYTHON} tools/import_furniture.py --source /usr/share/sweethome3d/furniture --out runs/models": Only(
+        "needs Debian's package; a catalogue of its form is read in tests/sim/housegen/test_imported.py"
+    ),
+    f"{PYTHON} tools/import_furniture.py --source my_models --out runs/my_models": _MODELS,
+    f"{PYTHON} tools/gallery.py --sheet --furniture runs/models --out runs/models_sheets": (
+        *_MODELS,
+        f"{PYTHON} tools/gallery.py --sheet --furniture {{tmp}}/models --categories table --out {{tmp}}/sheets",
+    ),
+    f"{PYTHON} tools/generate_houses.py --furniture runs/models --houses 4 --out runs/furnished": (
+        *_MODELS,
+        f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --houses 1 --out {{tmp}}/furnished",
+    ),
+    f"{PYTHON} tools/generate_views.py --pool wide --furniture runs/models --views 20000 --shrink 2"
+    " --out views_models": (
+        *_MODELS,
+        f"{PYTHON} tools/generate_views.py --pool wide --furniture {{tmp}}/models --views 4 --shrink 4 --profile fast"
+        " --out {tmp}/views --workers 1",
+    ),
+    f"{PYTHON} tools/generate_houses.py --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
+    f"{PYTHON} tools/make_episodes.py --split runs/transfer --recipe val": _TRANSFER,
+    f"{PYTHON} tools/generate_views.py --split runs/transfer --views 2000 --shrink 2 --profile fast"
+    " --out views_transfer": (
+        *_TRANSFER,
+        f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 4 --shrink 4 --profile fast"
+        " --out {tmp}/views --workers 1",
+    ),
+    f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
+        *_TRANSFER,
+        f"{_RUN} --split {{tmp}}/transfer --episodes 1 --agent oracle --workers 1 --out {{tmp}}/run",
     ),
     f"{PYTHON} tools/gallery.py --sheet --categories stool --pool train --out runs/gallery": (
         f"{PYTHON} tools/gallery.py --sheet --categories fireplace --pool train --out {{tmp}}/gallery",
@@ -346,5 +385,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
 `{tmp}` is a scratch folder. Commands with `--help` need no line.
 """
 
-STAND_INS = ("my_house.xml", "my_settings.toml", "flat.xml", "labels.json", "carrier.xml", "rednet_semmap_mp3d_40.pth")
+STAND_INS = (
+    "my_models",
+    "/usr/share/sweethome3d/furniture",
+    "my_house.xml",
+    "my_settings.toml",
+    "flat.xml",
+    "labels.json",
+    "carrier.xml",
+    "rednet_semmap_mp3d_40.pth",
+)
 """Files of the reader's that the docs speak of and that are not there."""

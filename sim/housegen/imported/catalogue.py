@@ -19,8 +19,8 @@ from sim.housegen.generator import GeneratedHouse, HouseConfig, generate_house
 from sim.housegen.imported.library import Model, ModelSplit, Shape, read_index, read_shape
 from sim.housegen.triangles import mesh_shape
 
-WITHOUT_USES = frozenset(("sofa", "gym_equipment"))
-"""Categories that rooms ask for without a use: one imported model replaces all own styles, whatever their uses."""
+WITHOUT_USES = frozenset(("sofa",))
+"""Categories that rooms never ask for by use: imported models replace all own styles, whatever their uses."""
 _MESH_NAME = re.compile(r"(i[0-9a-f]{8})-\d+")
 
 

@@ -116,7 +116,7 @@ def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, given: Mapping[str, 
     if label is None:
         return name, f"no category for it (group {given.get('category', '')})"
     return Entry(
-        ident=given.get("id", f"{file.stem}#{model}"), name=name, file=model, origin=f"{file.name}:{model}",
+        ident=given.get("id", f"{file.stem}#{model}"), name=name, file=model, origin=f"{file.stem}:{model}",
         label=label, size_m=size_m, elevation_m=elevation_m, author=given.get("creator", ""),
         licence=given.get("license", licence), read=lambda path: _read_zip(archive, path), rotation=turn,
     )  # fmt: skip
