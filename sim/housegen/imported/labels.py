@@ -60,10 +60,8 @@ def _label(category: str, *uses: str, mount: Mount = "floor") -> Label:
 
 
 _OUTDOOR_SEATS = frozenset(("Exterior",))
-_PLANTS = (
-    r"(little |decorative |indoor |succulent |spider )?plant|ficus|yucca|spathiphyllum|bamboo|cactus|orchids"
-    r"|flowers|tulips|white lily|bonsai tree"
-)
+_PLANTS = r"(little |decorative |indoor |succulent |spider )?plant|ficus|yucca|spathiphyllum|bamboo|cactus|bonsai tree"
+_CUT_FLOWERS = r"orchids|flowers|tulips|white lily"
 _TABLES = r"(oak |round |glass |black |wooden |wooden alder |wooden teak |folding |white )*table|table with tablecloth"
 _SOFAS = r"((winchester|clear|leather|burlap|futon|corner|rattan) )?(sofa|couch)( [23] seats)?|convertible sofa bz"
 _RULES: tuple[_Rule, ...] = (
@@ -108,8 +106,9 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(r"bath|bathtub|(corner|island) bath(tub)?", _label("bathtub"), height_m=(0.4, 1.2)),
     _Rule(r"towel rack", _label("towel", "rail", mount="wall"), height_m=(0.3, 1.0), elevated=True),
     # plants, fires, training
+    _Rule(_CUT_FLOWERS, _label("plant", "top", mount="top"), width_m=(0.0, 0.6), height_m=(0.0, 0.65)),
     _Rule(_PLANTS, _label("plant", "floor"), height_m=(0.55, 2.2)),
-    _Rule(_PLANTS, _label("plant", "top"), width_m=(0.0, 0.6), height_m=(0.0, 0.55)),
+    _Rule(_PLANTS, _label("plant", "top", mount="top"), width_m=(0.0, 0.6), height_m=(0.0, 0.55)),
     _Rule(r"fireplace", _label("fireplace"), height_m=(0.8, 2.6)),
     _Rule(r"treadmill|indoor bike|fitness tower", _label("gym_equipment", "machine")),
     _Rule(r"abdominal bench|punching ball", _label("gym_equipment", "weights")),

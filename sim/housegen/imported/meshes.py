@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 from sim.errors import ConfigError
 from sim.housegen.imported.sources import Entry, Skipped
@@ -288,7 +288,7 @@ def _is_alike(made: Part, piece: Part) -> bool:
     reach = MAX_ERROR * float(np.linalg.norm(np.ptp(piece.vertices_m, axis=0))) + 0.002
     ours, theirs = _scattered(made), _scattered(piece)
     pairs = ((ours, theirs), (theirs, ours))
-    if max(np.quantile(cKDTree(a).query(b[:QUERIES])[0], 0.97) for a, b in pairs) > reach:
+    if max(np.quantile(KDTree(a).query(b[:QUERIES])[0], 0.97) for a, b in pairs) > reach:
         return False
     tolerance = 0.004 + 0.03 * np.ptp(piece.vertices_m, axis=0)
     ends = zip((made.vertices_m.min(axis=0), made.vertices_m.max(axis=0)),
@@ -316,7 +316,8 @@ def _clustered(piece: Part, wanted: int) -> Part:
         _, group = np.unique(index, axis=0, return_inverse=True)
         group = group.reshape(-1)
         middle = np.stack([np.bincount(group, piece.vertices_m[:, k]) for k in range(3)], axis=1)
-        made = _clean(Part(middle / np.bincount(group)[:, None], group[piece.faces].astype(np.int32), piece.rgba))
+        middle = np.asarray(middle / np.bincount(group)[:, None], dtype=np.float64)
+        made = _clean(Part(middle, group[piece.faces].astype(np.int32), piece.rgba))
         if len(made.faces) <= wanted:
             return made
     return made

@@ -52,7 +52,7 @@ def collision_boxes(parts: tuple[Part, ...], category: str) -> NDArray[np.float6
     boxes[:, :3] = np.where(thin, middle - 0.5 * MIN_SIDE_M, boxes[:, :3])
     boxes[:, 3:] = np.where(thin, middle + 0.5 * MIN_SIDE_M, boxes[:, 3:])
     boxes[:, 2] = np.maximum(boxes[:, 2], 0.0)
-    return np.round(boxes, 3)
+    return np.asarray(np.round(boxes, 3), dtype=np.float64)
 
 
 def top_of(parts: tuple[Part, ...]) -> tuple[float, float, float, float, float] | None:
@@ -169,9 +169,9 @@ def _ranges(filled: NDArray[np.bool_], axis: int) -> tuple[NDArray, NDArray]:
     low[occupied, axis] = high[occupied, axis] = np.flatnonzero(occupied)
     for other in range(3):
         if other != axis:
-            seen = np.moveaxis(filled, (axis, other), (0, 1)).any(axis=2)
-            low[occupied, other] = seen[occupied].argmax(axis=1)
-            high[occupied, other] = seen.shape[1] - 1 - seen[occupied][:, ::-1].argmax(axis=1)
+            seen = np.asarray(np.moveaxis(filled, (axis, other), (0, 1)).any(axis=2))[occupied]
+            low[occupied, other] = seen.argmax(axis=1)
+            high[occupied, other] = filled.shape[other] - 1 - seen[:, ::-1].argmax(axis=1)
     return low, high
 
 

@@ -91,7 +91,7 @@ def _sweet_home(file: Path) -> Iterator[Found]:
     except (zipfile.BadZipFile, OSError, Skipped) as error:
         yield file.name, f"the file cannot be read ({error})"
         return
-    header = dict(found.groups() for line in text.splitlines() if (found := _HEADER.fullmatch(line)))
+    header = {found[1]: found[2] for line in text.splitlines() if (found := _HEADER.fullmatch(line))}
     models: dict[int, dict[str, str]] = {}
     for line in text.splitlines():
         if found := _PROPERTY.fullmatch(line):

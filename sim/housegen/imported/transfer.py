@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from sim.housegen.rooms import PlanKind
 from sim.housegen.split_recipes import Recipe
 
 FIRST_SEED = 50_000
-_SHAPES = (
+_SHAPES: tuple[tuple[PlanKind, float, tuple[str, ...]], ...] = (
     ("flat", 95.0, ("gym",)),
     ("corridor", 140.0, ("office",)),
     ("loop", 130.0, ("gym", "laundry")),

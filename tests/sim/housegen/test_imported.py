@@ -159,13 +159,16 @@ def test_models_without_a_sure_label_are_left_out(name: str, group: str) -> None
     assert label_of(name, group, (0.5, 0.5, 0.9)) is None
 
 
-def test_the_shipped_catalogue_has_every_category_and_use_of_the_labels() -> None:
+def test_the_shipped_catalogue_has_every_category_use_and_mount_of_the_labels() -> None:
     from sim.housegen.imported.labels import _RULES
 
     for rule in _RULES:
         if rule.label is not None:
             known = {use for style in CATALOGUE.styles(rule.label.category) for use in style.uses}
             assert set(rule.label.uses) <= known, rule
+            for use in rule.label.uses or (None,):
+                mounts = {style.mount for style in CATALOGUE.styles(rule.label.category, use=use)}
+                assert rule.label.mount in mounts, rule
 
 
 def test_the_split_depends_on_names_only_and_gives_the_transfer_test_a_model(tmp_path: Path) -> None:
