@@ -38,7 +38,7 @@ class EpisodeRecipe:
     """The same for a goal with one reachable instance on the storey; None: no other limit."""
     max_distance_m: float = 30.0
     """Largest geodesic distance; 30 m are 120 forwards, so 500 steps suffice with the turns."""
-    view_points: int = 24
+    view_points: int = 8
     """Largest number of view points of a goal instance in the files."""
 
     def min_distance_for(self, instances: int) -> float:
