@@ -20,7 +20,7 @@ from sim import cli
 from sim.housegen.imported.library import Model, import_entries, transfer_list, with_splits, write_index
 from sim.housegen.imported.meshes import check_installed
 from sim.housegen.imported.sources import Entry, read_source
-from sim.interface import GOAL_CATEGORIES
+from sim.interface import GOAL_CATEGORIES, ConfigError
 
 REPORT_EVERY = 50
 
@@ -40,6 +40,8 @@ class Args:
 def main(args: Args) -> int:
     """Imports all models; returns 1 if none could be imported."""
     check_installed()
+    if args.out.exists() and not args.out.is_dir():
+        raise ConfigError(f"--out '{args.out}' is a file, not a folder.")
     found = list(read_source(args.source))
     by_ident = {entry.ident: entry for entry in found if isinstance(entry, Entry)}
     left_out = [entry for entry in found if not isinstance(entry, Entry)]

@@ -316,8 +316,8 @@ def _clustered(piece: Part, wanted: int) -> Part:
         _, group = np.unique(index, axis=0, return_inverse=True)
         group = group.reshape(-1)
         middle = np.stack([np.bincount(group, piece.vertices_m[:, k]) for k in range(3)], axis=1)
-        middle = np.asarray(middle / np.bincount(group)[:, None], dtype=np.float64)
-        made = _clean(Part(middle, group[piece.faces].astype(np.int32), piece.rgba))
+        joined = np.asarray(middle / np.bincount(group)[:, None], dtype=np.float64)
+        made = _clean(Part(joined, group[piece.faces].astype(np.int32), piece.rgba))
         if len(made.faces) <= wanted:
             return made
     return made
@@ -338,4 +338,4 @@ def _clean(part: Part) -> Part:
     faces = faces[np.abs(np.cross(b - a, c - a)).sum(axis=1) > 0]
     first = np.argmin(faces, axis=1)[:, None]  # each triangle once for each of its sides
     faces = np.unique(np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1), axis=0)
-    return _used(Part(unique * UNIT_M, faces.astype(np.int32), part.rgba))
+    return _used(Part(np.asarray(unique * UNIT_M, dtype=np.float64), faces.astype(np.int32), part.rgba))

@@ -108,7 +108,9 @@ def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, given: Mapping[str, 
         turn = np.array(given.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), dtype=float).reshape(3, 3)
         size_m = _allowed((depth, width, height))
         model = given["model"].lstrip("/")
-    except (KeyError, ValueError, Skipped) as error:
+    except Skipped as reason:
+        return name, str(reason)
+    except (KeyError, ValueError) as error:
         return name, f"its entry cannot be read ({error})"
     if given.get("doorOrWindow") == "true":
         return name, "a door or a window"
@@ -170,7 +172,9 @@ def _row_entry(folder: Path, row: Mapping[str, Any]) -> Found:
         size_m = _allowed((float(row["depth_m"]), float(row["width_m"]), float(row["height_m"])))
         front = math.radians(float(row.get("front_deg") or 0.0))
         elevation_m = float(row.get("elevation_m") or 0.0)
-    except (TypeError, ValueError, Skipped) as error:
+    except Skipped as reason:
+        return file, str(reason)
+    except (TypeError, ValueError) as error:
         return file, f"its row cannot be read ({error})"
     mount = row.get("mount") or "floor"
     uses = row.get("uses") or ()
@@ -202,5 +206,5 @@ def _read_file(folder: Path, path: str) -> bytes:
 def _allowed(size_m: Size) -> Size:
     if not all(SIZE_M[0] <= side <= SIZE_M[1] for side in size_m):
         sides = " x ".join(f"{side:g}" for side in size_m)
-        raise Skipped(f"its size {sides} m is outside of {SIZE_M[0]:g}-{SIZE_M[1]:g} m")
+        raise Skipped(f"a side is outside of {SIZE_M[0]:g}-{SIZE_M[1]:g} m (it is {sides} m large)")
     return size_m
