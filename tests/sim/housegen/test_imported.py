@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import importlib
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from sim.errors import ConfigError
+from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
+from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.generator import HouseConfig, generate_house
+from sim.housegen.imported import meshes
 from sim.housegen.imported.catalogue import ImportedFurniture, style_of
 from sim.housegen.imported.labels import label_of
 from sim.housegen.imported.library import (
+    TRANSFER_PART,
     Model,
     Shape,
+    _drawn,
     import_entries,
     import_model,
     read_index,
@@ -27,6 +34,8 @@ from sim.housegen.imported.library import (
 from sim.housegen.imported.meshes import MAX_TRIANGLES, Part, check_installed, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped, read_source
+from sim.housegen.mjcf import HouseBuilder, PlacedItem
+from sim.housegen.movables import split_movable
 from sim.houses.writing import house_text
 from tests.helpers.models import CHAIR, MATERIALS, obj_text, properties, write_catalogue, write_folder
 
@@ -124,6 +133,31 @@ def test_a_fine_mesh_keeps_its_extent_and_its_thin_pieces() -> None:
     assert np.ptp(made.vertices_m, axis=0) == pytest.approx([0.8, 0.8, 1.5], abs=0.02)
 
 
+def test_a_piece_that_the_library_destroys_is_joined_on_a_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=5, radius=0.4)
+    destroyer = SimpleNamespace(simplify=lambda vertices, faces, target_count: (0.3 * vertices, faces[:target_count]))
+    monkeypatch.setattr(meshes, "_library", lambda name: destroyer)
+    (made,) = reduced([Part(np.asarray(ball.vertices), np.asarray(ball.faces), (1, 0, 0, 1))])
+    assert np.ptp(made.vertices_m, axis=0) == pytest.approx([0.8, 0.8, 0.8], abs=0.05)
+    assert len(made.faces) <= 2 * MAX_TRIANGLES
+
+
+def test_a_model_in_a_house_collides_with_its_boxes_only(tmp_path: Path) -> None:
+    models = import_all(write_folder(tmp_path / "source"), tmp_path / "out")
+    table = next(model for model in models if model.category == "table")
+    style = style_of(tmp_path / "out", table, "train")
+    item = Catalogue([style]).make_item("table", np.random.default_rng(0), pool="train")
+    builder = HouseBuilder("test")
+    builder.add(PlacedItem(item))
+    model = builder.spec.compile()
+    hits = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+    assert hits.sum() == len(read_shape(tmp_path / "out", table).boxes_m)
+    assert (model.geom_group[hits] == 3).all()
+    assert set(model.geom_type[~hits]) == {int(mujoco.mjtGeom.mjGEOM_MESH)}
+    assert split_movable(item) == (item, ())
+
+
 def test_only_the_pot_of_a_plant_collides() -> None:
     trimesh = pytest.importorskip("trimesh")
     pot = trimesh.creation.box((0.3, 0.3, 0.3), transform=trimesh.transformations.translation_matrix((0, 0, 0.15)))
@@ -175,6 +209,10 @@ def test_the_split_depends_on_names_only_and_gives_the_transfer_test_a_model(tmp
     models = import_all(write_folder(tmp_path / "source", chairs=8), tmp_path / "out")
     chairs = [model for model in models if model.category == "chair"]
     assert {model.split for model in chairs} == {"train", "transfer"}
+    three = [replace(models[0], ident=f"my_models#{name}.obj") for name in ("a", "c", "d")]
+    assert not any(_drawn(model) % TRANSFER_PART == 0 for model in three)
+    assert [model.split for model in with_splits(three)].count("transfer") == 1
+    assert not any(model.split == "transfer" for model in with_splits(three[:2]))
     again = with_splits(list(reversed(models)))
     assert {m.ident: m.split for m in again} == {m.ident: m.split for m in models}
 
