@@ -18,7 +18,8 @@ from sim.errors import ConfigError
 from sim.files import write_atomically
 from sim.housegen.furniture.item import Mount
 from sim.housegen.imported.labels import Size
-from sim.housegen.imported.meshes import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, UNIT_M, Part, read_parts, reduced
+from sim.housegen.imported.meshes import Part, read_parts
+from sim.housegen.imported.reduction import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, UNIT_M, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
 from sim.paths import assets_dir

@@ -1,6 +1,6 @@
 """Turns the file of a model into few meshes of plain colour, in the frame of an item and in metres.
 
-Reading is by trimesh, and the reduction to a number of triangles by fast-simplification: the extra `models`.
+Reading is by trimesh, of the extra `models`; `reduction` makes fewer triangles of what is read.
 """
 
 from __future__ import annotations
@@ -14,24 +14,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import KDTree
 
 from sim.errors import ConfigError
 from sim.housegen.imported.sources import Entry, Skipped
 
-MAX_TRIANGLES, MAX_PLANT_TRIANGLES = 1_500, 2_000
-"""Triangles of a model after its reduction, exceeded where its shape would be lost; a plant has many leaves."""
 MAX_SOURCE_TRIANGLES = 1_500_000
-LEAST_TRIANGLES = 12
-"""Triangles that every connected piece may have."""
-MAX_ERROR, ERROR_POINTS, QUERIES = 0.03, 4_000, 600
-"""Largest distance of a reduced piece from the piece, relative to its diagonal, and the points that measure it."""
 MAX_PARTS = 6
 """Colours of a model; the parts of the most similar colours are joined."""
-UNIT_M = 1e-3
-"""Vertices are multiples of this length, as in house files."""
 _FORMATS = ("obj", "glb", "gltf", "ply", "stl", "off")
 DARKEST = 0.03
 """Smallest red, green and blue: light and shade cannot be seen on black."""
@@ -51,7 +40,7 @@ class Part:
 def check_installed() -> None:
     """Raises ConfigError if a package of the extra `models` is missing."""
     for module in ("trimesh", "fast_simplification", "PIL"):
-        _library(module)
+        library(module)
 
 
 def read_parts(entry: Entry) -> tuple[Part, ...]:
@@ -60,7 +49,7 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     Raises:
         Skipped: the file cannot be read, or has no surface.
     """
-    trimesh = _library("trimesh")
+    trimesh = library("trimesh")
     kind = posixpath.splitext(entry.file)[1].lower().lstrip(".")
     if kind not in _FORMATS:
         raise Skipped(f"its format '{kind}' is none of {', '.join(_FORMATS)}")
@@ -78,7 +67,8 @@ def read_parts(entry: Entry) -> tuple[Part, ...]:
     return _joined(_fitted([part for part in raw if part.rgba[3] > 0.02], entry))
 
 
-def _library(name: str) -> Any:
+def library(name: str) -> Any:
+    """Returns a package of the extra `models`; raises ConfigError if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -159,12 +149,13 @@ def _shown_colour(mesh: Any, material: Any, vertices: NDArray, faces: NDArray) -
         middle = np.mod(uv[faces].mean(axis=1), 1.0)
         columns = np.minimum((middle[:, 0] * pixels.shape[1]).astype(int), pixels.shape[1] - 1)
         rows = np.minimum(((1.0 - middle[:, 1]) * pixels.shape[0]).astype(int), pixels.shape[0] - 1)
-        samples, weights = pixels[rows, columns], _areas(vertices, faces)
+        samples, weights = pixels[rows, columns], areas(vertices, faces)
     weights = weights * samples[:, 3] + 1e-9
     return (samples[:, :3] * weights[:, None]).sum(axis=0) / weights.sum()
 
 
-def _areas(vertices: NDArray, faces: NDArray) -> NDArray[np.float64]:
+def areas(vertices: NDArray, faces: NDArray) -> NDArray[np.float64]:
+    """Returns the areas of triangles."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
 
@@ -191,151 +182,29 @@ def _fitted(parts: Sequence[Part], entry: Entry) -> list[Part]:
 
 def _joined(parts: Sequence[Part]) -> tuple[Part, ...]:
     """Returns at most `MAX_PARTS` parts of different colours: those of the most similar colours are joined."""
-    groups = [([part], float(_areas(part.vertices_m, part.faces).sum()), np.array(part.rgba)) for part in parts]
+    groups = [([part], float(areas(part.vertices_m, part.faces).sum()), np.array(part.rgba)) for part in parts]
     groups = [group for group in groups if group[1] > 1e-7]
     if not groups:
         raise Skipped("its mesh has no area")
     while len(groups) > 1:
-        colours, areas = np.array([group[2] for group in groups]), np.array([group[1] for group in groups])
+        colours, sizes = np.array([group[2] for group in groups]), np.array([group[1] for group in groups])
         apart = np.abs(colours[:, None] - colours[None]).sum(axis=2)
-        cost = apart * np.minimum(areas[:, None], areas[None]) / areas.sum() + np.eye(len(groups)) * 9.0
+        cost = apart * np.minimum(sizes[:, None], sizes[None]) / sizes.sum() + np.eye(len(groups)) * 9.0
         cost[apart < 0.04] = 0.0
         np.fill_diagonal(cost, 9.0)
         i, j = sorted(int(n) for n in np.unravel_index(int(cost.argmin()), cost.shape))
         if len(groups) <= MAX_PARTS and cost[i, j] > 0.002:
             break
-        total = areas[i] + areas[j]
-        colour = (colours[i] * areas[i] + colours[j] * areas[j]) / total
+        total = sizes[i] + sizes[j]
+        colour = (colours[i] * sizes[i] + colours[j] * sizes[j]) / total
         groups[i] = (groups[i][0] + groups[j][0], float(total), colour)
         del groups[j]
-    return tuple(_one(group, colour) for group, _, colour in groups)
+    return tuple(merged(group, colour) for group, _, colour in groups)
 
 
-def _one(parts: Sequence[Part], colour: NDArray[np.float64]) -> Part:
+def merged(parts: Sequence[Part], colour: NDArray[np.float64]) -> Part:
+    """Returns one part of several, in a colour."""
     starts = np.cumsum([0, *(len(part.vertices_m) for part in parts[:-1])])
     faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=True)]).astype(np.int32)
     r, g, b, a = (round(float(v), 3) for v in colour)
     return Part(np.vstack([part.vertices_m for part in parts]), faces, (r, g, b, 1.0 if a > 0.9 else _SEE_THROUGH))
-
-
-# ---- number of triangles ---------------------------------------------------------------------------------------------
-
-
-def reduced(parts: Sequence[Part], most: int = MAX_TRIANGLES) -> tuple[Part, ...]:
-    """Returns the parts with about `most` triangles in total at most.
-
-    Every connected piece is reduced by itself, so that the reduction does not remove a thin leg or a rail. Of very many
-    pieces (leaves) the largest stay.
-
-    Raises:
-        Skipped: nothing is left of the model.
-    """
-    pieces = [(n, piece) for n, part in enumerate(parts) for piece in _pieces(_clean(part))]
-    pieces.sort(key=lambda found: -float(_areas(found[1].vertices_m, found[1].faces).sum()))
-    least = np.cumsum([min(LEAST_TRIANGLES, len(piece.faces)) for _, piece in pieces])
-    pieces = pieces[: int((least <= most).sum())]
-    weights = np.sqrt([len(piece.faces) * _areas(piece.vertices_m, piece.faces).sum() for _, piece in pieces])
-    made: dict[int, list[Part]] = {}
-    for (n, piece), share in zip(pieces, weights / max(1e-9, float(weights.sum())), strict=True):
-        made.setdefault(n, []).append(_simplified(piece, max(LEAST_TRIANGLES, int(share * most))))
-    joined = [_clean(_one(of_part, np.array(parts[n].rgba))) for n, of_part in sorted(made.items())]
-    joined = [part for part in joined if len(part.faces) >= 2 and len(part.vertices_m) >= 4]
-    if not joined:
-        raise Skipped("nothing is left of its mesh at the resolution of 1 mm")
-    return tuple(joined)
-
-
-def _pieces(part: Part) -> list[Part]:
-    """Returns the connected pieces of a part; triangles that touch at a vertex are connected."""
-    count = len(part.vertices_m)
-    if not len(part.faces):
-        return []
-    rows, columns = part.faces[:, [0, 1]].ravel(), part.faces[:, [1, 2]].ravel()
-    graph = coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape=(count, count))
-    _, of_vertex = connected_components(graph, directed=False)
-    of_face = of_vertex[part.faces[:, 0]]
-    order = np.argsort(of_face, kind="stable")
-    groups = np.split(part.faces[order], np.flatnonzero(np.diff(of_face[order])) + 1)
-    return [_used(Part(part.vertices_m, faces, part.rgba)) for faces in groups]
-
-
-def _simplified(piece: Part, wanted: int) -> Part:
-    """Returns a piece with about `wanted` triangles, or more where it would lose its extent.
-
-    The library fails on some pieces that are no surface of a body; their vertices are joined on a grid instead.
-    """
-    library = _library("fast_simplification")
-    if wanted >= len(piece.faces):
-        return piece
-    for target in (wanted, 2 * wanted, 4 * wanted):
-        if target >= len(piece.faces):
-            return piece
-        # Its limits on the error are for lengths of about 100.
-        scale = 100.0 / float(np.ptp(piece.vertices_m, axis=0).max())
-        vertices, faces = library.simplify(
-            (piece.vertices_m * scale).astype(np.float32), piece.faces, target_count=target
-        )
-        made = _clean(Part(np.asarray(vertices) / scale, np.asarray(faces, dtype=np.int32), piece.rgba))
-        if len(made.faces) <= 2 * target and _is_alike(made, piece):
-            return made
-    return _clustered(piece, 2 * wanted)
-
-
-def _is_alike(made: Part, piece: Part) -> bool:
-    """Returns whether a reduced piece has about the extent, the area and the surface of the piece."""
-    if not len(made.faces):
-        return False
-    reach = MAX_ERROR * float(np.linalg.norm(np.ptp(piece.vertices_m, axis=0))) + 0.002
-    ours, theirs = _scattered(made), _scattered(piece)
-    pairs = ((ours, theirs), (theirs, ours))
-    if max(np.quantile(KDTree(a).query(b[:QUERIES])[0], 0.97) for a, b in pairs) > reach:
-        return False
-    tolerance = 0.004 + 0.03 * np.ptp(piece.vertices_m, axis=0)
-    ends = zip((made.vertices_m.min(axis=0), made.vertices_m.max(axis=0)),
-               (piece.vertices_m.min(axis=0), piece.vertices_m.max(axis=0)), strict=True)  # fmt: skip
-    area = float(_areas(piece.vertices_m, piece.faces).sum())
-    made_area = float(_areas(made.vertices_m, made.faces).sum())
-    return all((np.abs(a - b) <= tolerance).all() for a, b in ends) and 0.6 * area <= made_area <= 1.4 * area
-
-
-def _scattered(part: Part) -> NDArray[np.float64]:
-    """Returns points on the triangles of a part, evenly spread, the same in each run."""
-    areas = _areas(part.vertices_m, part.faces)
-    rng = np.random.default_rng(0)
-    chosen = part.faces[rng.choice(len(areas), size=ERROR_POINTS, p=areas / areas.sum())]
-    weights = rng.dirichlet((1.0, 1.0, 1.0), size=ERROR_POINTS)
-    return (part.vertices_m[chosen] * weights[:, :, None]).sum(axis=1)
-
-
-def _clustered(piece: Part, wanted: int) -> Part:
-    """Returns a piece with all vertices in a cell of a grid joined, the grid as fine as the number allows."""
-    low, extent = piece.vertices_m.min(axis=0), float(np.ptp(piece.vertices_m, axis=0).max())
-    made = piece
-    for cells in (64, 48, 32, 24, 16, 12, 8, 6):
-        index = np.rint((piece.vertices_m - low) / extent * cells).astype(np.int64)
-        _, group = np.unique(index, axis=0, return_inverse=True)
-        group = group.reshape(-1)
-        middle = np.stack([np.bincount(group, piece.vertices_m[:, k]) for k in range(3)], axis=1)
-        joined = np.asarray(middle / np.bincount(group)[:, None], dtype=np.float64)
-        made = _clean(Part(joined, group[piece.faces].astype(np.int32), piece.rgba))
-        if len(made.faces) <= wanted:
-            return made
-    return made
-
-
-def _used(part: Part) -> Part:
-    """Returns a part without the vertices that no triangle has."""
-    used, faces = np.unique(part.faces, return_inverse=True)
-    return Part(part.vertices_m[used], faces.reshape(-1, 3).astype(np.int32), part.rgba)
-
-
-def _clean(part: Part) -> Part:
-    """Returns a part with vertices in whole millimetres, each once, and without triangles that have no area."""
-    grid = np.rint(part.vertices_m / UNIT_M).astype(np.int64)
-    unique, index = np.unique(grid, axis=0, return_inverse=True)
-    faces = index.reshape(-1)[part.faces]
-    a, b, c = (unique[faces[:, k]] for k in range(3))
-    faces = faces[np.abs(np.cross(b - a, c - a)).sum(axis=1) > 0]
-    first = np.argmin(faces, axis=1)[:, None]  # each triangle once for each of its sides
-    faces = np.unique(np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1), axis=0)
-    return _used(Part(np.asarray(unique * UNIT_M, dtype=np.float64), faces.astype(np.int32), part.rgba))

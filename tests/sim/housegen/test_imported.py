@@ -15,7 +15,7 @@ from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.imported import meshes
+from sim.housegen.imported import reduction
 from sim.housegen.imported.catalogue import ImportedFurniture, style_of
 from sim.housegen.imported.labels import label_of
 from sim.housegen.imported.library import (
@@ -31,7 +31,8 @@ from sim.housegen.imported.library import (
     with_splits,
     write_index,
 )
-from sim.housegen.imported.meshes import MAX_TRIANGLES, Part, check_installed, reduced
+from sim.housegen.imported.meshes import Part, check_installed
+from sim.housegen.imported.reduction import MAX_TRIANGLES, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped, read_source
 from sim.housegen.mjcf import HouseBuilder, PlacedItem
@@ -137,7 +138,7 @@ def test_a_piece_that_the_library_destroys_is_joined_on_a_grid(monkeypatch: pyte
     trimesh = pytest.importorskip("trimesh")
     ball = trimesh.creation.icosphere(subdivisions=5, radius=0.4)
     destroyer = SimpleNamespace(simplify=lambda vertices, faces, target_count: (0.3 * vertices, faces[:target_count]))
-    monkeypatch.setattr(meshes, "_library", lambda name: destroyer)
+    monkeypatch.setattr(reduction, "library", lambda name: destroyer)
     (made,) = reduced([Part(np.asarray(ball.vertices), np.asarray(ball.faces), (1, 0, 0, 1))])
     assert np.ptp(made.vertices_m, axis=0) == pytest.approx([0.8, 0.8, 0.8], abs=0.05)
     assert len(made.faces) <= 2 * MAX_TRIANGLES
