@@ -17,9 +17,7 @@ _LAYERS: Mapping[str, type] = MappingProxyType(
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
         **{"frames_in_view": np.uint16, "found_step": np.int16},
         **dict.fromkeys(("obstacle_evidence", "drop_evidence"), np.int8),
-        **dict.fromkeys(
-            ("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_
-        ),
+        **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_),
         **dict.fromkeys(("visited", "trail", "rejected", "set_aside", "seen_drop"), np.bool_),
     }
 )

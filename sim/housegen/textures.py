@@ -157,15 +157,18 @@ _ALL = (
            colours=((0.80, 0.70, 0.76), (0.58, 0.70, 0.68), (0.93, 0.89, 0.80), (0.48, 0.42, 0.60), (0.70, 0.62, 0.44),
                     (0.28, 0.24, 0.32))),
     # palettes of small objects (furniture/parts/palette_mesh.py): one colour a column
-    *(_entry(f"small_{name}", "train", 0.0, palette, 101, colours=(*_SMALL_TRAIN[:6], *accents.split(), *_SMALL_TRAIN[6:]))
+    *(_entry(f"small_{name}", "train", 0.0, palette, 101,
+             colours=(*_SMALL_TRAIN[:6], *accents.split(), *_SMALL_TRAIN[6:]))
       for name, accents in (
           ("red", "8f2f2a 2f4a70 d9a441 3f6a4a e4dccb 5a3a55"), ("blue", "27527a c96f3f e6d9a0 6f8fa8 8a2f3a 33363c"),
-          ("green", "4a7a4f d8c27a 2c3f5f b9603f 8fa98a 6a2f3f"), ("sand", "c9a878 7a3f2f 41706f e0cf4f 94566a 2f4a3f"))),
+          ("green", "4a7a4f d8c27a 2c3f5f b9603f 8fa98a 6a2f3f"),
+          ("sand", "c9a878 7a3f2f 41706f e0cf4f 94566a 2f4a3f"))),
     *(_entry(f"small_{name}", "heldout", 0.0, palette, 102,
              colours=(*_SMALL_HELDOUT[:6], *accents.split(), *_SMALL_HELDOUT[6:]))
       for name, accents in (
           ("plum", "6a3f72 7fb0c0 cf7f97 b7bf5a f0dcc2 30424f"), ("teal", "1f6a6f e0a58a 5f4f8a a8c6b0 c2506f e8d38f"),
-          ("rose", "c97a8a 46506f a9b04a 7f5f9f 2f7f80 efc6a0"), ("moss", "7f8f3f b5563a 8f9fc0 4a2f4f dcb05f 5f8f86"))),
+          ("rose", "c97a8a 46506f a9b04a 7f5f9f 2f7f80 efc6a0"),
+          ("moss", "7f8f3f b5563a 8f9fc0 4a2f4f dcb05f 5f8f86"))),
     # rugs: one picture a rug
     _entry("rug_stripes", "train", 0.0, rug, 91, colours=(_CREAM, _NAVY, _TEAL, _CREAM), pattern="stripes"),
     _entry("rug_diamonds", "train", 0.0, rug, 92, colours=(_RED, _CREAM, _NAVY, _RED), pattern="diamonds"),

@@ -190,7 +190,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
     f"{PYTHON} tools/check_houses.py --pool heldout --seeds 200 --workers 2": (
-        f"{PYTHON} tools/check_houses.py --pool heldout --seeds 1 --kind studio --views 2",
+        f"{PYTHON} tools/check_houses.py --pool heldout --seeds 1 --workers 1 --kind studio --views 2",
     ),
     f"{PYTHON} tools/make_episodes.py --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
@@ -341,7 +341,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "--out {tmp}/paper",
     ),
     # docs/traps.md
-    f"{_RUN} --split traps --semantics gt --episodes 19": (
+    f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
     f"{PYTHON} tools/trap_report.py --out runs/traps": (

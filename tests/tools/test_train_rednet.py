@@ -102,7 +102,7 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
     write_views(tmp_path / "val", 1)
     with pytest.raises(ConfigError, match="fewer views than one batch of 2"):
         main(options(tmp_path))
-    with pytest.raises(ConfigError, match="--size must be one of compact, compact-geometry, .*, got 'huge'"):
+    with pytest.raises(ConfigError, match=r"--size must be one of compact, compact-geometry, .*, got 'huge'"):
         main(options(tmp_path, size="huge"))
     with pytest.raises(ConfigError, match=r"--window-px must be at least 32 .*, got 16"):
         main(options(tmp_path, window_px=16))

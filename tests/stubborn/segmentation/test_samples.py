@@ -75,9 +75,7 @@ def test_windows_have_one_size_and_all_positions_and_scales() -> None:
         nearer = INPUTS["depth"].zoomed(cut, window.width_px, window.height_px)
         assert rgb.shape == (30, 40, 3)
         assert (rgb.dtype, nearer.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
-        metres = np.round(
-            nearer[..., 0] * (40 / cut.shape[1])
-        )  # half the depth at twice the size
+        metres = np.round(nearer[..., 0] * (40 / cut.shape[1]))  # half the depth at twice the size
         assert (metres % 1000 == semantic).all()  # depth and labels are of the same pixels
         assert np.abs(rgb[..., 0] - metres // 1000).max() <= 1  # colour is an average around them
         spans.append(float(semantic[0, -1]) - semantic[0, 0])
