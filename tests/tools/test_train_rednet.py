@@ -88,7 +88,8 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     assert card["started_from"] == {key: earlier[key] for key in ("step", "hours", "options")}
     assert card["options"]["window_px"] == "32"
     assert (earlier["block_px"], card["block_px"]) == (1, 2)
-    assert torch.allclose(before.conv1.weight, after.conv1.weight, atol=1e-4)
+    weights = [network.state_dict()["conv1.weight"] for network in (before, after)]
+    assert torch.allclose(*weights, atol=1e-4)
     assert (
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
