@@ -88,7 +88,7 @@ def test_train_continues_with_new_houses_and_no_other_split_does() -> None:
     fresh = [task.fresh_seed for task in train[200:]]
     assert len(set(fresh)) == 30
     assert min(seed for seed in fresh if seed is not None) >= FRESH_SEEDS_FROM
-    assert {task.house for task in val[:20]} == {task.house for task in val[20:40]} == set(splits["val"].houses)
+    assert {task.house for task in val[:30]} == {task.house for task in val[30:60]} == set(splits["val"].houses)
     assert all(task.fresh_seed is None for task in val)
 
 
