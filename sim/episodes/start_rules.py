@@ -27,7 +27,7 @@ LEAST_START_M2 = 1.0
 FARTHER_PATH_M = 1.0
 """Where no path leads within `NEAR_PATH_M` of a hazard, one within this distance counts."""
 VIEWS = 6
-"""Headings that are looked at around a start, 60 degrees apart; the camera's view is 79 degrees wide."""
+"""Headings of the camera around a start that are checked, 60 degrees apart; the camera's view is 79 degrees wide."""
 EDGE_STRETCH = 2.5
 """An object covers up to 1 / cos(39.5 deg)^3 = 2.2 times as much of the frame at its edge as in its middle."""
 

@@ -72,7 +72,7 @@ def is_same_design(a: Design, b: Design) -> bool:
 
 
 class FurnitureSource:
-    """A source of furniture for one home, which knows what stands in its rooms."""
+    """A source of furniture for one home, which counts the items in its rooms."""
 
     def __init__(
         self,

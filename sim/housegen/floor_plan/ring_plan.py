@@ -24,7 +24,7 @@ from sim.housegen.rectangles import Rect, Side
 
 @dataclass(frozen=True, kw_only=True)
 class Ring:
-    """The measures of a ring and of what lies around it, metres."""
+    """The lengths of a ring and of its surroundings, metres."""
 
     width: float
     """Extent of the core along x."""

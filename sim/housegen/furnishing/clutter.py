@@ -22,7 +22,7 @@ from sim.housegen.rectangles import Rect
 PER_TOP, PER_TOP_M2, MOST_ON_TOP = 1.0, 4.0, 7
 """Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
 FLOOR_PER_M2, MOST_ON_FLOOR = 0.3, 6
-"""Things on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
+"""Small objects on the floor of a room at clutter 1 by its area in square metres, and the largest number."""
 ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "hallway": ("shoes", "shoes", "bag"),
@@ -37,7 +37,7 @@ ON_FLOOR: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "kitchen": ("bag",),
     }
 )
-"""Uses of the things on the floor by kind of room."""
+"""Uses of the small objects on the floor by kind of room."""
 _FLAT_TRIES = 6
 
 
@@ -59,7 +59,7 @@ def add_clutter(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> None:
-    """Puts small objects that suit an item on each of its tops; on both sides of what stands there already."""
+    """Puts small objects that suit an item on each of its tops; on both sides of the objects there."""
     for number, surface in enumerate(host.item.surfaces):
         if surface.kind != "top":
             continue
@@ -89,7 +89,7 @@ def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Placement | None:
-    """Puts a thing on the floor: flat things beside furniture, the others at a wall."""
+    """Puts a small object on the floor: flat ones beside furniture, the others at a wall."""
     item = source.make("objects", use)
     if item is None or item.mount != "floor":
         return None
@@ -99,7 +99,7 @@ def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Plac
 
 
 def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> Placement | None:
-    """Lays a flat thing on free floor beside a piece of furniture."""
+    """Lays a flat object on free floor beside a piece of furniture."""
     hosts = [
         p for p in layout.placements if p.item.mount == "floor" and not p.item.walk_over and p.item.size_m[2] > 0.3
     ]

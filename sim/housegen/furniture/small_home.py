@@ -1,4 +1,4 @@
-"""Small objects of living rooms and bedrooms, and things that lie on floors: shoes, bags, toys, cables.
+"""Small objects of living rooms and bedrooms, and objects that lie on floors: shoes, bags, toys, cables.
 
 Each is one palette mesh. What lies on a floor and is higher than 3 cm collides as its convex hull; flat things do not.
 """
