@@ -7,7 +7,7 @@ categories have few pixels.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,7 +103,7 @@ def fit_temperature(logits: Float32[Tensor, "k classes"], truth: Int64[Tensor, "
     return float(log_t.detach().exp())
 
 
-def _minimise(parameters: list[Tensor], loss_of: Any) -> None:
+def _minimise(parameters: list[Tensor], loss_of: Callable[[], Tensor]) -> None:
     """Minimises a function of some parameters."""
     optimiser = torch.optim.LBFGS(parameters, lr=0.1, max_iter=50)
 

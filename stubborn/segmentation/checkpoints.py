@@ -20,7 +20,7 @@ from safetensors.torch import save_file
 from torch import Tensor
 
 from sim.interface import ConfigError
-from stubborn.segmentation.networks import FAMILIES, Network, NetworkConfig, build_network, family
+from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
 
 _WRAPPERS = ("model_state", "state_dict", "model")
@@ -117,7 +117,7 @@ def _read_checkpoint(file: Path) -> Mapping[str, Any]:
     return content
 
 
-def _config(file: Path, metadata: dict[str, Any]) -> NetworkConfig:
+def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
     """Takes the configuration of the network out of the metadata and returns it; the published one where there is none.
 
     Raises:

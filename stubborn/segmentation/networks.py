@@ -12,12 +12,12 @@ from stubborn.segmentation.unet import MobileEncoder, UNet, UNetConfig
 
 Network = RedNet | UNet
 """A network with `forward` (logits at full size), `pyramid` (logits at several sizes) and `config`."""
-NetworkConfig = RedNetConfig | UNetConfig
+Architecture = RedNetConfig | UNetConfig
 FAMILIES: Mapping[str, tuple[type[RedNetConfig], type[RedNet]] | tuple[type[UNetConfig], type[UNet]]] = (
     MappingProxyType({"rednet": (RedNetConfig, RedNet), "unet": (UNetConfig, UNet)})
 )
 """Class of configuration and class of network, by the name that files of weights store."""
-NETWORKS: Mapping[str, NetworkConfig] = MappingProxyType(
+NETWORKS: Mapping[str, Architecture] = MappingProxyType(
     {
         "compact": COMPACT,
         "compact-geometry": replace(COMPACT, second="geometry"),
@@ -29,7 +29,7 @@ NETWORKS: Mapping[str, NetworkConfig] = MappingProxyType(
 """Networks by the name that `--size` of tools/train_rednet.py takes."""
 
 
-def build_network(config: NetworkConfig) -> Network:
+def build_network(config: Architecture) -> Network:
     """Returns a network with random weights."""
     return UNet(config) if isinstance(config, UNetConfig) else RedNet(config)
 

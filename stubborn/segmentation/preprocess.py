@@ -16,7 +16,7 @@ RGB_STD = np.array([0.544, 0.521, 0.499], np.float32)
 DEPTH_MEAN, DEPTH_STD = 0.213, 0.285
 """Statistics of the published network, for RGB / 255 and for depth scaled to [0, 1] over the sensor's range."""
 STRIDE_PX = 32
-"""Height and width of a RedNet's input must be multiples of this: five halvings."""
+"""Height and width of a network's input must be multiples of this: five halvings."""
 
 
 class Padding(NamedTuple):
@@ -36,6 +36,12 @@ class Padding(NamedTuple):
     def inner_half(self) -> tuple[slice, slice]:
         """Rows and columns of the image in the padded image at half its size."""
         return slice(self.top // 2, -(self.bottom // 2) or None), slice(self.left // 2, -(self.right // 2) or None)
+
+
+def require_whole_strides(height_px: int, width_px: int) -> None:
+    """Raises ConfigError where height or width is not a multiple of `STRIDE_PX`."""
+    if height_px % STRIDE_PX or width_px % STRIDE_PX:
+        raise ConfigError(f"A network takes multiples of {STRIDE_PX} pixels each way, got {height_px} x {width_px}.")
 
 
 def padding(height_px: int, width_px: int) -> Padding:

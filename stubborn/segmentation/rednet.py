@@ -20,7 +20,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from sim.interface import MPCAT40, ConfigError
 from stubborn.segmentation.inputs import INPUTS, InputKind
-from stubborn.segmentation.preprocess import STRIDE_PX
+from stubborn.segmentation.preprocess import require_whole_strides
 
 CLASSES = len(MPCAT40) - 1
 """Number of mpcat40 categories without void: channel c of the output is category id c + 1."""
@@ -181,9 +181,7 @@ class RedNet(nn.Module):
         Raises:
             ConfigError: height or width is not a multiple of 32.
         """
-        height, width = rgb.shape[-2:]
-        if height % STRIDE_PX or width % STRIDE_PX:
-            raise ConfigError(f"RedNet takes multiples of {STRIDE_PX} pixels each way, got {height} x {width}.")
+        require_whole_strides(*rgb.shape[-2:])
         skips = self._encode(rgb, depth)
         stages = (self.deconv1, self.deconv2, self.deconv3, self.deconv4)
         heads = (self.out5_conv_custom, self.out4_conv_custom, self.out3_conv_custom, self.out2_conv_custom)

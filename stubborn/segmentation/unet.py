@@ -22,7 +22,7 @@ from torch.nn import functional
 from sim.interface import ConfigError
 from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.lite0 import Lite0
-from stubborn.segmentation.preprocess import STRIDE_PX
+from stubborn.segmentation.preprocess import require_whole_strides
 from stubborn.segmentation.rednet import CLASSES, BasicBlock
 
 EncoderKind = Literal["dense", "lite0"]
@@ -85,9 +85,7 @@ class UNet(nn.Module):
         Raises:
             ConfigError: height or width is not a multiple of 32.
         """
-        height, width = rgb.shape[-2:]
-        if height % STRIDE_PX or width % STRIDE_PX:
-            raise ConfigError(f"A U-Net takes multiples of {STRIDE_PX} pixels each way, got {height} x {width}.")
+        require_whole_strides(*rgb.shape[-2:])
         skips = self.encoder(rgb, channels)
         x = self.context(skips[-1])
         outputs: list[Tensor] = []

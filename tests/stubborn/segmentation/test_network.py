@@ -58,9 +58,23 @@ def test_the_frame_is_not_changed_and_the_same_frame_gives_the_same_scores(
 ) -> None:
     before = {name: image.copy() for name, image in frame.items()}
     segmenter = NetworkSegmenter(model)
-    first, second = segmenter.scores(frame, "bed"), segmenter.scores(frame, "bed")
+    again = {name: image.copy() for name, image in frame.items()}  # another array: the last frame's result is kept
+    first, second = segmenter.scores(frame, "bed"), segmenter.scores(again, "bed")
     assert np.array_equal(first.target, second.target)
     assert all(np.array_equal(before[name], frame[name]) for name in frame)
+
+
+def test_scores_and_posteriors_of_one_frame_take_one_pass_of_the_network(
+    model: RedNet, frame: dict[str, np.ndarray], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    segmenter, passes = NetworkSegmenter(model), []
+    compute = segmenter.logits
+    monkeypatch.setattr(segmenter, "logits", lambda rgb, depth_m: passes.append(1) or compute(rgb, depth_m))
+    bed, posteriors = segmenter.scores(frame, "bed"), segmenter.posteriors(frame)
+    np.testing.assert_array_equal(bed.target, posteriors[MPCAT40_ID["bed"] - 1])
+    assert len(passes) == 1
+    segmenter.scores({name: image.copy() for name, image in frame.items()}, "bed")
+    assert len(passes) == 2
 
 
 def test_padding_keeps_every_pixel_in_its_place(model: RedNet) -> None:
