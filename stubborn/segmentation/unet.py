@@ -34,11 +34,11 @@ class UNetConfig:
     """The size of a U-Net."""
 
     encoder: EncoderKind = "dense"
-    widths: tuple[int, int, int, int, int] = (24, 48, 96, 160, 256)
+    widths: tuple[int, int, int, int, int] = (16, 32, 64, 128, 256)
     """Channels of the encoder (for `lite0`: of its geometric part) at 1/2, 1/4, 1/8, 1/16 and 1/32 of the input."""
-    blocks: tuple[int, int, int, int] = (2, 2, 2, 2)
+    blocks: tuple[int, int, int, int] = (1, 2, 3, 3)
     """Residual blocks of the dense encoder at 1/4, 1/8, 1/16 and 1/32."""
-    decoder: tuple[int, int, int, int] = (24, 48, 96, 128)
+    decoder: tuple[int, int, int, int] = (16, 24, 48, 96)
     """Channels of the decoder at 1/2, 1/4, 1/8 and 1/16."""
     classes: int = CLASSES
     second: InputKind = "geometry"
