@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,17 +21,26 @@ class GeomScene:
 
     Args:
         model: compiled world.
+        unhidden: ids of geoms that may be shown although their group is not rendered, such as those of the robot.
     """
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, unhidden: Sequence[int] = ()) -> None:
         self._model = model
         self._groups = model.geom_group.copy()
+        self._shown_groups = self._groups.copy()
+        self._shown_groups[list(unhidden)] = 0
         self._option = _scene_options()
         self._view = mujoco.MjvCamera()
         self.scene = mujoco.MjvScene(model, maxgeom=model.ngeom + 32)
 
     def fill(
-        self, data: mujoco.MjData, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, slopes: tuple[float, float]
+        self,
+        data: mujoco.MjData,
+        geoms: NDArray[np.intp],
+        eye_m: NDArray,
+        axes: NDArray,
+        slopes: tuple[float, float],
+        near_m: float = Z_NEAR_M,
     ) -> None:
         """Fills the scene with these geoms and the active lights, seen from the eye; the headlight is at the eye.
 
@@ -40,12 +50,13 @@ class GeomScene:
             eye_m: (3,) optical centre in the world.
             axes: (3, 3) the camera's forward, left and up as rows.
             slopes: tangents of half the horizontal and half the vertical field of view.
+            near_m: near plane; nothing nearer to the eye is rendered.
 
         Raises:
             RenderError: MuJoCo left a geom out.
         """
         group = np.full_like(self._groups, _HIDDEN_GROUP)
-        group[geoms] = self._groups[geoms]
+        group[geoms] = self._shown_groups[geoms]
         self._model.geom_group[:] = group
         _stand_at(self._view, eye_m, axes[0])
         mujoco.mjv_updateScene(
@@ -54,7 +65,7 @@ class GeomScene:
         self._model.geom_group[:] = self._groups
         if self.scene.ngeom != len(geoms):
             raise RenderError(f"The scene holds {self.scene.ngeom} geoms, but {len(geoms)} were expected.")
-        _aim(self.scene, eye_m, axes, slopes)
+        _aim(self.scene, eye_m, axes, slopes, near_m)
 
     def render_ids(self, rect: mujoco.MjrRect, context: mujoco.MjrContext) -> None:
         """Renders each geom of the scene in a colour that encodes its index, without light."""
@@ -84,15 +95,17 @@ def _stand_at(view: mujoco.MjvCamera, eye_m: NDArray, forward: NDArray) -> None:
     view.elevation = math.degrees(math.asin(max(-1.0, min(1.0, float(forward[2])))))
 
 
-def _aim(scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, slopes: tuple[float, float]) -> None:
+def _aim(
+    scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, slopes: tuple[float, float], near_m: float
+) -> None:
     """Sets the position, the axes and the frustum of the scene's cameras."""
-    top = Z_NEAR_M * slopes[1]
+    top = near_m * slopes[1]
     for gl_camera in scene.camera:  # left and right eye; without stereo MuJoCo renders their average
         gl_camera.pos[:] = eye_m
         gl_camera.forward[:] = axes[0]
         gl_camera.up[:] = axes[2]
         gl_camera.orthographic = 0
-        gl_camera.frustum_near, gl_camera.frustum_far = Z_NEAR_M, Z_FAR_M
+        gl_camera.frustum_near, gl_camera.frustum_far = near_m, Z_FAR_M
         gl_camera.frustum_top, gl_camera.frustum_bottom = top, -top
         gl_camera.frustum_center = 0.0
-        gl_camera.frustum_width = Z_NEAR_M * slopes[0]
+        gl_camera.frustum_width = near_m * slopes[0]

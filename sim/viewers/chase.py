@@ -1,0 +1,154 @@
+"""Renders the robot in third person: from behind and above, with everything between it and the eye cut away.
+
+The near plane lies just before the robot, so that no wall or ceiling hides it, and the room ahead stays whole. Colours
+are shaded as those of the robot's camera (`sim.sensors.shading`).
+"""
+
+from __future__ import annotations
+
+import math
+import weakref
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.env.scene import Scene
+from sim.geometry.pose import Pose
+from sim.gl import mujoco
+from sim.houses.labels import geoms_of, rendered_geoms
+from sim.interface import CameraModel
+from sim.robot.body import PREFIX
+from sim.sensors.lamps import Lamps
+from sim.sensors.occlusion import Visibility
+from sim.sensors.opengl import Z_FAR_M, Z_NEAR_M, free_contexts, make_frame_buffer, make_gl_context
+from sim.sensors.profiles import get_profile
+from sim.sensors.scene import GeomScene
+from sim.sensors.shading import make_shading
+from sim.viewers.viewer import Colour
+
+BEHIND_M, ABOVE_M = 1.9, 1.95
+"""Position of the eye relative to the robot's position on the floor."""
+AIM_M = (0.45, 0.45)
+"""The optical axis goes through the point this far ahead of the robot, at this height."""
+CUT_M = 0.45
+"""The near plane is this much nearer to the eye than the robot's axis."""
+FAR_M = 9.0
+"""Geoms farther from the eye than this are left out."""
+HFOV_RAD = math.radians(70.0)
+OUTSIDE: Colour = (36, 40, 48)
+"""Colour of pixels that show nothing: the outside of the house."""
+_DARK, _LENS, _ARROW = (0.10, 0.12, 0.16, 1.0), (0.35, 0.75, 1.0, 1.0), (0.13, 0.35, 0.80, 1.0)
+_LENS_M, _BAND_M = 0.045, 0.05
+"""Radius of the lens and half the height of the band around the robot, below its top."""
+
+
+class ChaseView:
+    """Renders pictures of the robot in one scene.
+
+    Args:
+        scene: world of the house.
+        width_px: width of the pictures.
+        height_px: height of the pictures.
+
+    Raises:
+        RenderError: there is no OpenGL context.
+    """
+
+    def __init__(self, scene: Scene, *, width_px: int = 400, height_px: int = 250) -> None:
+        model, labels = scene.world.model, scene.world.labels
+        self._world = scene.world
+        self._size = CameraModel(width_px=width_px, height_px=height_px, hfov_rad=HFOV_RAD)
+        self._rect = mujoco.MjrRect(0, 0, width_px, height_px)
+        self._color = np.zeros((height_px, width_px, 3), np.uint8)
+        self._depth = np.zeros((height_px, width_px), np.float32)
+        profile = get_profile("fast")
+        self._gl = make_gl_context(self._size)
+        self._gl.make_current()
+        self._context = make_frame_buffer(model, self._size, profile)
+        self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
+        self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
+        robot = np.flatnonzero(geoms_of(model, PREFIX))
+        visual = rendered_geoms(model)
+        self._geoms = np.union1d(np.flatnonzero(visual), robot)
+        self._reach_m = FAR_M + np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[self._geoms]
+        self._scene = GeomScene(model, unhidden=robot.tolist())
+        self._lamps = Lamps(model, Visibility(model, visual, self._size, Z_NEAR_M), np.flatnonzero(visual))
+        self._shading = make_shading(model, self._size, profile)
+        up = math.tan(0.5 * self._size.vfov_rad)
+        self._slopes = (up * width_px / height_px, up)
+
+    def render(self) -> NDArray[np.uint8]:
+        """Returns the picture of the world's current state, uint8 RGB (height_px, width_px, 3)."""
+        data, pose = self._world.data, self._world.pose
+        eye_m, axes = eye_and_axes(pose)
+        robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
+        near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
+        self._gl.make_current()
+        offset = data.geom_xpos[self._geoms] - eye_m
+        near_enough = np.linalg.norm(offset, axis=1) < self._reach_m
+        bound = self._world.model.geom_rbound[self._geoms]
+        ahead = (offset @ axes[0] + bound > near_m) | (bound <= 0.0)
+        lamps = self._lamps.choose(data, robot_m, axes[0] * (1.0, 1.0, 0.0))
+        self._lamps.switch_on(lamps)
+        self._scene.fill(data, self._geoms[near_enough & ahead], eye_m, axes, self._slopes, near_m)
+        self._lamps.restore()
+        self._mark_front(pose)
+        return self._drawn(near_m, eye_m, axes)
+
+    def close(self) -> None:
+        """Frees the renderer."""
+        self._finalizer()
+
+    def _drawn(self, near_m: float, eye_m: NDArray, axes: NDArray) -> NDArray[np.uint8]:
+        """Returns the picture of the filled scene."""
+        flags = self._scene.scene.flags
+        flags[:] = 0
+        flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
+        mujoco.mjr_restoreBuffer(self._context)
+        mujoco.mjr_render(self._rect, self._scene.scene, self._context)
+        mujoco.mjr_readPixels(self._color, self._depth, self._rect, self._context)
+        # The shading expects the depth buffer of the robot's camera, whose near plane is another one.
+        raw = self._depth * np.float32(_depth_slope(near_m) / _depth_slope(Z_NEAR_M))
+        picture = self._color[::-1].copy()
+        if self._shading is not None:
+            picture = self._shading.apply(self._color, raw, self._world.data, None, eye_m, axes, None)
+        picture[raw[::-1] <= 0.0] = OUTSIDE
+        return picture
+
+    def _mark_front(self, pose: Pose) -> None:
+        """Adds a band with a lens and an arrow to the robot, which show where its front is."""
+        robot = self._world.robot
+        forward = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
+        top_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + robot.height_m])
+        band_m = top_m - (0.0, 0.0, 2.2 * _BAND_M)
+        lens_m, reach = band_m + robot.radius_m * forward, 0.8 * robot.radius_m * forward
+        self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
+        self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
+        lid_m = top_m + (0.0, 0.0, 0.03)
+        arrow = self._add(mujoco.mjtGeom.mjGEOM_ARROW, (0.01, 0.01, 0.01), lid_m, _ARROW)
+        mujoco.mjv_connector(arrow, mujoco.mjtGeom.mjGEOM_ARROW, 0.022, lid_m - reach, lid_m + reach)
+
+    def _add(
+        self, kind: mujoco.mjtGeom, size: tuple[float, float, float], at_m: NDArray, rgba: tuple[float, ...]
+    ) -> mujoco.MjvGeom:
+        """Adds a geom to the filled scene that is not in the world, and returns it."""
+        scene = self._scene.scene
+        geom = scene.geoms[scene.ngeom]
+        mujoco.mjv_initGeom(geom, kind, np.array(size), at_m, np.eye(3).ravel(), np.array(rgba, np.float32))
+        scene.ngeom += 1
+        return geom
+
+
+def _depth_slope(near_m: float) -> float:
+    """Returns by how much the inverse of the depth grows from the far plane to the near plane, 1 / m."""
+    return (Z_FAR_M - near_m) / (Z_FAR_M * near_m)
+
+
+def eye_and_axes(pose: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the eye behind and above a robot, (3,) in the world, and the axes (forward, left, up) as rows."""
+    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+    eye_m = np.array([pose.x_m - BEHIND_M * c, pose.y_m - BEHIND_M * s, pose.floor_z_m + ABOVE_M])
+    aim_m = np.array([pose.x_m + AIM_M[0] * c, pose.y_m + AIM_M[0] * s, pose.floor_z_m + AIM_M[1]])
+    forward = (aim_m - eye_m) / np.linalg.norm(aim_m - eye_m)
+    left = np.array([-s, c, 0.0])
+    return eye_m, np.stack([forward, left, np.cross(forward, left)])
