@@ -1,32 +1,132 @@
-"""Writes files atomically: a reader finds the complete file or none."""
+"""Writes files atomically, so that a reader finds the complete file or none, and keeps names from data in their folder.
+
+Every file of this project is written by this module, except for those that grow line by line (`results.jsonl`).
+"""
 
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sim.errors import ConfigError
 
+_PREFIX_LETTERS = 40
+"""Letters of a file's name that the name of its part file begins with, so that long names stay allowed."""
+_TRIAL_BYTES = 4096
+"""A trial of whether a folder can be written writes this much, which fails on a full disk."""
 
-def write_atomically(path: Path, content: bytes) -> None:
-    """Writes a file atomically and creates its folder.
+
+def inside(folder: Path, name: str, *, what: str) -> Path:
+    """Returns the path of a name that comes from data, in the folder to which it belongs.
+
+    Every path that data can choose is made by this function, so that no data can have files written elsewhere.
+
+    Args:
+        folder: the folder; it need not exist.
+        name: a file name, or a relative path.
+        what: kind of the name for the error message, for example "view".
 
     Raises:
+        ConfigError: the name is empty, too long, absolute, or leads out of the folder, also by a symbolic link.
+    """
+    path = folder / name
+    try:
+        base, target = folder.resolve(), path.resolve()
+        path.is_file()
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"The {what} {name!r} is no name of a file: {_reason(error)}.") from None
+    if not name or target == base or not target.is_relative_to(base):
+        raise ConfigError(f"The {what} {name!r} leads out of its folder '{folder}'; a name inside it is allowed.")
+    _require_short(path, f"The {what}")
+    return path
+
+
+def require_writable(path: Path, *, name: str, folder: bool) -> None:
+    """Checks that a path can be written, before the work whose result goes there; nothing is created.
+
+    Args:
+        path: the file or the folder.
+        name: the option that gave it, for the error message.
+        folder: whether the path is that of a folder.
+
+    Raises:
+        ConfigError: the name is too long, the path is of the other kind, or its folder is not writable.
+    """
+    try:
+        _require_short(path, name)
+        if path.exists() and path.is_dir() != folder:
+            kinds = ("a folder", "a file")
+            raise ConfigError(f"{name} '{path}' is {kinds[folder]}; give the path of {kinds[not folder]}.")
+        nearest = path
+        while not nearest.exists() and nearest != nearest.parent:
+            nearest = nearest.parent
+        if nearest == path and not folder:
+            nearest = path.parent
+        if not nearest.is_dir():
+            raise ConfigError(f"{name} '{path}' cannot be written: '{nearest}' is a file, not a folder.")
+        with tempfile.TemporaryFile(dir=nearest) as file:  # it has no name, so nothing of it stays
+            file.write(b"\0" * _TRIAL_BYTES)
+    except ConfigError:
+        raise
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"{name} {str(path)!r} cannot be written: {_reason(error)}.") from None
+
+
+def write_atomically(path: Path, content: bytes | str) -> None:
+    """Writes a file atomically and creates its folder; text is written as UTF-8.
+
+    Raises:
+        OSError: the file cannot be written; the earlier file, if there is one, is unchanged.
+    """
+    write_together({path: content})
+
+
+def write_together(files: Mapping[Path, bytes | str]) -> None:
+    """Writes several files, each atomically; none is replaced before all of them are complete on the disk.
+
+    Raises:
+        OSError: a file cannot be written; then no earlier file has changed.
+    """
+    parts: dict[Path, str] = {}
+    try:
+        for path, content in files.items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, parts[path] = tempfile.mkstemp(
+                dir=path.parent, prefix=f".{path.name[:_PREFIX_LETTERS]}.", suffix=".part"
+            )
+            with os.fdopen(handle, "wb") as file:
+                file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
+            os.chmod(parts[path], 0o644)  # mkstemp gives permissions to the owner only
+        for path, part in parts.items():
+            os.replace(part, path)
+    except BaseException:  # also on Ctrl-C: the part files are removed
+        for part in parts.values():
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+        raise
+
+
+def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
+    """Writes a picture, uint8 RGB (h, w, 3), in the format of the file's suffix.
+
+    Raises:
+        ConfigError: there is no such format.
         OSError: the file cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    import cv2  # only the tools that draw need it
+
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.chmod(part, 0o644)  # mkstemp gives permissions to the owner only
-        os.replace(part, path)
-    except BaseException:  # also on Ctrl-C: the part file is removed
-        with contextlib.suppress(OSError):
-            os.unlink(part)
-        raise
+        _, content = cv2.imencode(file.suffix or "none", np.ascontiguousarray(picture[..., ::-1]))
+    except cv2.error:
+        raise ConfigError(f"'{file}' has no suffix of a picture format; .png and .jpg are allowed.") from None
+    write_atomically(file, content.tobytes())
 
 
 def part_file(file: Path, *, what: str) -> Path:
@@ -44,9 +144,20 @@ def part_file(file: Path, *, what: str) -> Path:
     part = file.with_name(f".{file.stem}.part-{os.getpid()}{file.suffix}")
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        for left_over in file.parent.glob(f".{file.stem}.part-*{file.suffix}"):
+        for left_over in file.parent.glob(f".{glob.escape(file.stem)}.part-*{file.suffix}"):
             left_over.unlink()
         part.touch()
     except OSError as error:
         raise ConfigError(f"Cannot write the {what} '{file}': {error.strerror}.") from None
     return part
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return (error.strerror or str(error)) if isinstance(error, OSError) else str(error)
+
+
+def _require_short(path: Path, name: str) -> None:
+    """Raises ConfigError where a part of a path is longer than file systems allow."""
+    for part in path.parts:
+        if len(part.encode(errors="surrogateescape")) > 255:
+            raise ConfigError(f"{name} has a name of {len(part)} letters, which is too long: at most 255 bytes.")

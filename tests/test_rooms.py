@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 ROOMS = (
     ("sim.errors",),
     ("sim.geometry",),
-    ("sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.cli", "sim.configuration"),
+    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.cli", "sim.configuration"),
     ("sim.houses",),
     ("sim.robot",),
     ("sim.sensors",),
@@ -42,7 +42,7 @@ AGENT_ROOMS = (
     ("stubborn.agents",),
 )
 """The rooms of `stubborn`, lowest first."""
-KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry")
+KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry", "sim.reading")
 """Modules of `sim` that `stubborn` may import."""
 COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop")
 """Modules that may import both `sim` and `stubborn`."""

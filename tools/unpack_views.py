@@ -17,8 +17,7 @@ import cv2
 import numpy as np
 
 from sim import cli
-from sim.files import write_atomically
-from sim.interface import ConfigError
+from sim.files import inside, write_atomically
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard
 
 
@@ -49,15 +48,13 @@ def _unpack(out: Path, view: LabelledView) -> None:
         "depth": np.rint(view.depth_m * 1000.0).astype(np.uint16),
         "semantic": view.semantic,
     }
-    record = out / "record" / f"{view.key}.json"
+    record = inside(out / "record", f"{view.key}.json", what="key of a view")
     if record.is_file():  # written last
         return
-    try:
-        for folder, image in images.items():
-            write_atomically(out / folder / f"{view.key}.png", cv2.imencode(".png", image)[1].tobytes())
-        write_atomically(record, json.dumps(view.record, sort_keys=True).encode())
-    except OSError as error:
-        raise ConfigError(f"'{out}' cannot be written: {error.strerror or error}.") from None
+    for folder, image in images.items():
+        file = inside(out / folder, f"{view.key}.png", what="key of a view")
+        write_atomically(file, cv2.imencode(".png", image)[1].tobytes())
+    write_atomically(record, json.dumps(view.record, sort_keys=True))
 
 
 if __name__ == "__main__":

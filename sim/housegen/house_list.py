@@ -16,15 +16,42 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version as package_version
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Literal
+
+import msgspec
 
 from sim.errors import ConfigError, HouseError
-from sim.files import write_atomically
+from sim.files import inside, write_atomically
+from sim.housegen.rooms import PlanKind
 from sim.housegen.split_recipes import Recipe
 from sim.paths import assets_dir
+from sim.reading import Count, Name, read_json
 
 LIST_FILE = "houses.json"
 CACHE_VARIABLE = "STUBBORN_CACHE_DIR"
+
+
+class _Entry(msgspec.Struct, forbid_unknown_fields=True):
+    """A house of the file: its recipe and its checksum."""
+
+    name: Name
+    seed: Count
+    pool: Literal["train", "heldout", "wide"]
+    kind: PlanKind
+    area_m2: Annotated[float, msgspec.Meta(gt=0.0, le=10_000.0)]
+    rooms: tuple[Name, ...]
+    movable: bool
+    sha256: Annotated[str, msgspec.Meta(pattern=r"^[0-9a-f]{64}\Z")]
+    storeys: Literal[1, 2] = 1
+    hazards: tuple[Name, ...] = ()
+
+
+class _List(msgspec.Struct):
+    """The file."""
+
+    version: Name
+    made_with: dict[str, str]
+    houses: list[_Entry]
 
 
 @dataclass(frozen=True)
@@ -45,8 +72,8 @@ class HouseList:
     @property
     def paths(self) -> dict[str, Path]:
         """Path of each house in the cache; the file exists once the house was generated."""
-        folder = cache_dir() / self.version / self.split
-        return {name: folder / f"{name}.xml" for name in self.recipes}
+        folder = inside(cache_dir(), self.version, what="version of the list of houses") / self.split
+        return {name: inside(folder, f"{name}.xml", what="name of a listed house") for name in self.recipes}
 
     def fetch(self, name: str) -> Path:
         """Returns the file of a house; it is generated now if it does not exist or differs from the list.
@@ -130,21 +157,22 @@ def read_house_list(folder: Path) -> HouseList:
         ConfigError: the file does not have the form that `write_house_list` writes.
     """
     file = folder / LIST_FILE
+    content = read_json(file, _List, what="House list")
+    recipes = [Recipe.from_json(msgspec.structs.asdict(entry)) for entry in content.houses]
+    found = HouseList(
+        folder.resolve().name,
+        content.version,
+        {recipe.name: recipe for recipe in recipes},
+        {entry.name: entry.sha256 for entry in content.houses},
+        content.made_with,
+    )
+    if len(found.recipes) < len(recipes):
+        raise ConfigError(f"House list '{file}' has two houses of one name; names must differ.")
     try:
-        content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        recipes = [Recipe.from_json(entry) for entry in content["houses"]]
-        sha256 = {entry["name"]: str(entry["sha256"]) for entry in content["houses"]}
-        return HouseList(
-            folder.resolve().name,
-            str(content["version"]),
-            {recipe.name: recipe for recipe in recipes},
-            sha256,
-            {str(part): str(there) for part, there in content["made_with"].items()},
-        )
-    except (AttributeError, KeyError, TypeError, ValueError, OSError) as error:
-        raise ConfigError(
-            f"House list '{file}' cannot be read: {error!r}. tools/generate_houses.py writes it."
-        ) from None
+        _ = found.paths
+    except ConfigError as error:
+        raise ConfigError(f"House list '{file}': {error}") from None
+    return found
 
 
 def write_house_list(folder: Path, houses: Sequence[tuple[Recipe, str]], *, version: str) -> None:
@@ -152,7 +180,7 @@ def write_house_list(folder: Path, houses: Sequence[tuple[Recipe, str]], *, vers
     lines = [json.dumps(recipe.to_json() | {"sha256": sha256}) for recipe, sha256 in houses]
     head = json.dumps({"version": version, "made_with": versions_here()})
     text = head[:-1] + ', "houses": [\n' + ",\n".join(lines) + "\n]}\n"
-    (folder / LIST_FILE).write_text(text, encoding="utf-8")
+    write_atomically(folder / LIST_FILE, text)
 
 
 def copy_textures(folder: Path) -> None:

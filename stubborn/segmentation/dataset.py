@@ -7,25 +7,51 @@ reader needs only the standard library and OpenCV, and its errors name the broke
 
 from __future__ import annotations
 
-import json
 import math
 import tarfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import cv2
+import msgspec
 import numpy as np
 import torch
 from jaxtyping import Float32, Float64, Shaped, UInt8
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
+from sim.reading import MAX_BYTES, Count, parse_json, read_json, require_small_image
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
 """mpcat40 ids of the goal categories."""
 _PARTS = ("rgb", "depth", "semantic", "json")
+
+
+class _NoteConfig(msgspec.Struct):
+    """Options that the views of a shard were stored with."""
+
+    shrink: Annotated[int, msgspec.Meta(ge=1, le=64)] = 1
+
+
+class _Note(msgspec.Struct):
+    """The JSON note beside a shard: the part that says how its views were stored."""
+
+    config: _NoteConfig = msgspec.field(default_factory=_NoteConfig)
+
+
+class _PixelNote(msgspec.Struct):
+    """The part of a note that counts pixels."""
+
+    pixels: dict[str, Count]
+
+
+class _ViewNote(msgspec.Struct):
+    """The part of a note that counts views."""
+
+    views: Count
+    views_with: dict[str, Count]
 
 
 @dataclass(frozen=True)
@@ -63,8 +89,9 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
     parts: dict[str, bytes] = {}
     key = ""
     try:
-        with tarfile.open(file) as archive:
+        with tarfile.open(file, mode="r:") as archive:  # a compressed file could expand without end
             for member in archive:
+                _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
                 if parts and name != key:
                     yield _decoded(file, key, parts)
@@ -73,8 +100,18 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
                 key, parts[suffix.split(".")[0]] = name, b"" if content is None else content.read()
             if parts:
                 yield _decoded(file, key, parts)
-    except (tarfile.TarError, OSError, EOFError) as error:
+    except (tarfile.TarError, OSError, EOFError, ValueError) as error:
+        if isinstance(error, ConfigError):
+            raise
         raise ConfigError(f"Shard '{file}' is broken: {error}. tools/generate_views.py makes it again.") from None
+
+
+def _require_small_file(file: Path, member: tarfile.TarInfo) -> None:
+    """Raises ConfigError where a member of a shard is a link, a device, a sparse file or too large."""
+    if not member.isreg() or member.issparse():
+        raise ConfigError(f"Shard '{file}': '{member.name}' is no plain file; a shard holds plain files only.")
+    if member.size > MAX_BYTES:
+        raise ConfigError(f"Shard '{file}': '{member.name}' has {member.size >> 20} MB, at most {MAX_BYTES >> 20}.")
 
 
 class ViewDataset(IterableDataset):
@@ -155,7 +192,7 @@ def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     for shard in shards:
         note = shard.with_suffix(".json")
         if note.is_file():
-            pixels = json.loads(note.read_text(encoding="utf-8"))["pixels"]
+            pixels = read_json(note, _PixelNote, what="Note of a shard").pixels
             counts += [pixels.get(name, 0) for name in MPCAT40]
         else:
             for view in read_shard(shard):
@@ -176,9 +213,9 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
             raise ConfigError(
                 f"Shard '{shard}' has no note '{note.name}' beside it; tools/generate_views.py writes it."
             )
-        content = json.loads(note.read_text(encoding="utf-8"))
-        counts += [content["views_with"].get(name, 0) for name in MPCAT40]
-        total += int(content["views"])
+        content = read_json(note, _ViewNote, what="Note of a shard")
+        counts += [content.views_with.get(name, 0) for name in MPCAT40]
+        total += content.views
     return counts / max(total, 1)
 
 
@@ -218,8 +255,7 @@ def stored_block_px(shards: Sequence[Path]) -> int:
     shrinks = set()
     for shard in shards:
         note = shard.with_suffix(".json")
-        config = json.loads(note.read_text(encoding="utf-8")).get("config", {}) if note.is_file() else {}
-        shrinks.add(int(config.get("shrink", 1)))
+        shrinks.add(read_json(note, _Note, what="Note of a shard").config.shrink if note.is_file() else 1)
     if len(shrinks) > 1:
         raise ConfigError(f"The shards in '{shards[0].parent}' were shrunk by different factors: {sorted(shrinks)}.")
     return shrinks.pop() if shrinks else 1
@@ -259,21 +295,23 @@ def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
     rgb = _image(file, key, "rgb", parts, cv2.IMREAD_COLOR)
     depth = _image(file, key, "depth", parts, cv2.IMREAD_UNCHANGED)
     semantic = _image(file, key, "semantic", parts, cv2.IMREAD_UNCHANGED)
+    if (depth.dtype, semantic.dtype) != (np.uint16, np.uint8):
+        raise ConfigError(
+            f"Shard '{file}': view '{key}' has depth of {depth.dtype} and labels of {semantic.dtype}; wanted are "
+            "uint16 and uint8."
+        )
     if not rgb.shape[:2] == depth.shape == semantic.shape:
         raise ConfigError(f"Shard '{file}': the images of view '{key}' differ in size.")
     if semantic.max() >= len(MPCAT40):
         raise ConfigError(f"Shard '{file}': view '{key}' has category {semantic.max()}, mpcat40 ends at 40.")
-    try:
-        record = json.loads(parts["json"])
-    except ValueError:
-        raise ConfigError(f"Shard '{file}': the record of view '{key}' is not JSON.") from None
+    record = parse_json(parts["json"], dict[str, Any], where=f"Shard '{file}': the record of view '{key}'")
     colour = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), np.uint8)
     return LabelledView(key, colour, depth.astype(np.float32) / 1000.0, semantic, record)
 
 
 def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> Shaped[np.ndarray, "h w *channels"]:
-    buffer = np.frombuffer(parts[part], np.uint8)
-    image = cv2.imdecode(buffer, flag) if buffer.size else None
+    require_small_image(parts[part], where=f"Shard '{file}': the {part} image of view '{key}'")
+    image = cv2.imdecode(np.frombuffer(parts[part], np.uint8), flag)
     if image is None:
         raise ConfigError(f"Shard '{file}': the {part} image of view '{key}' cannot be read.")
     return image

@@ -125,6 +125,23 @@ def test_the_error_of_a_broken_list_names_the_file(split: Split, tmp_path: Path,
         load_split(tmp_path / "tiny")
 
 
+@pytest.mark.parametrize("version", ["../../outside", "/tmp/outside", "..", "."])
+def test_a_version_that_leads_out_of_the_cache_is_refused_and_nothing_is_written(
+    version: str, maker: Maker, tmp_path: Path
+) -> None:
+    with pytest.raises(ConfigError, match="leads out of its folder"):
+        listed_split(tmp_path / "tiny", maker.text.encode(), version=version)
+    assert not (tmp_path / "outside").exists()
+    assert not (tmp_path / "cache").exists()
+
+
+def test_a_house_name_that_leads_out_of_the_cache_is_refused(split: Split, tmp_path: Path) -> None:
+    file = tmp_path / "tiny" / "houses.json"
+    file.write_text(file.read_text().replace('"tiny_00"', '"../../../outside"'))
+    with pytest.raises(ConfigError, match=r"houses\.json.*leads out of its folder"):
+        load_split(tmp_path / "tiny")
+
+
 def test_a_recipe_to_json_and_back_is_identity() -> None:
     for recipe in (STUDIO, train_recipe(7), *SPLITS["val"]):
         assert Recipe.from_json(json.loads(json.dumps(recipe.to_json()))) == recipe

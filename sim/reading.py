@@ -1,0 +1,227 @@
+"""Reads files that people, other programs or earlier runs wrote: with declared types, bounded, one message per fault.
+
+The types are those of msgspec: a `msgspec.Struct` names the fields that a file must have and their types, and the
+aliases below bound numbers and names. JSON has no NaN and no infinity here, nesting and size are limited, and a
+message names the file, the line, the field, what was found and what is wanted.
+"""
+
+from __future__ import annotations
+
+import gzip
+import re
+import struct
+import unicodedata
+import zipfile
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, TypeVar
+
+import msgspec
+from msgspec import Meta
+
+from sim.errors import ConfigError, ObjectNavError
+
+T = TypeVar("T")
+MAX_BYTES = 64 << 20
+"""Largest JSON file that is read, also after decompression; the largest that ships has 0.3 MB."""
+MAX_LINES_BYTES = 512 << 20
+"""Largest file of lines (`results.jsonl`): about 700,000 episodes."""
+MAX_PIXELS = 64_000_000
+"""Pixels of the largest image that is decoded."""
+
+Metres = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
+"""A coordinate or a length."""
+Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
+"""Any other measured number."""
+Count = Annotated[int, Meta(ge=0, le=10**12)]
+Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z")]
+"""An id or a name: text without control characters, which a terminal would obey."""
+
+
+class Lines(NamedTuple):
+    """The lines of a file that grows while it is written."""
+
+    values: list[dict[str, Any]]
+    whole_bytes: int
+    """Length of the complete lines."""
+    torn: str
+    """A sentence on an incomplete last line that was left out; "" where there is none."""
+
+
+def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> bytes:
+    """Returns the content of a file.
+
+    Args:
+        file: the file.
+        what: kind of the file for the error message, for example "Episode file".
+        error: class of the error.
+        most: largest number of bytes.
+
+    Raises:
+        ObjectNavError: of class `error`; the file does not exist, cannot be read or is too large.
+    """
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(most + 1)
+    except (OSError, ValueError) as fault:
+        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if len(content) > most:
+        raise error(f"{what} '{file}' is too large: at most {most >> 20} MB are read.")
+    return content
+
+
+def read_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
+    """Returns the content of a JSON file as the declared type.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read or has other content.
+    """
+    return parse_json(read_bytes(file, what=what, error=error), kind, where=f"{what} '{file}'", error=error)
+
+
+def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[ObjectNavError] = ConfigError) -> T:
+    """Returns the content of a gzipped JSON file as the declared type.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, expands to more than `MAX_BYTES`, or has other
+            content.
+    """
+    try:
+        with gzip.open(file, "rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
+        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if len(content) > MAX_BYTES:
+        raise error(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
+    return parse_json(content, kind, where=f"{what} '{file}'", error=error)
+
+
+def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError] = ConfigError) -> Lines:
+    """Returns the JSON objects of a file with one per line, each checked against a type; all their fields are kept.
+
+    A last line without its end, or one of zero bytes as some file systems leave it after a power failure, is what a
+    killed process leaves. It is left out and described in `Lines.torn`.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, or a line before the last is broken.
+    """
+    if not file.exists():
+        return Lines([], 0, "")
+    content = read_bytes(file, what=what, error=error, most=MAX_LINES_BYTES)
+    whole = content[: content.rfind(b"\n") + 1]
+    rest = content[len(whole) :]
+    values = []
+    for number, line in enumerate(whole.splitlines(), start=1):
+        where = f"{what} '{file}', line {number}"
+        value = parse_json(line, dict[str, Any], where=where, error=error)
+        convert(value, kind, where=where, error=error)
+        values.append(value)
+    torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
+    return Lines(values, len(whole), torn)
+
+
+def parse_json(
+    content: bytes | str, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError
+) -> T:
+    """Returns JSON text as the declared type.
+
+    Args:
+        content: the text.
+        kind: any type that msgspec knows.
+        where: the file and line for the error message.
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the text is not JSON, nested too deeply, or of another type.
+    """
+    try:
+        return msgspec.json.decode(content, type=kind)
+    except msgspec.ValidationError as fault:
+        raise error(f"{where}{_fault(fault)}") from None
+    except RecursionError:
+        raise error(f"{where} is nested too deeply.") from None
+    except (msgspec.DecodeError, UnicodeError) as fault:
+        empty = not content.strip(b"\0 \n\r\t" if isinstance(content, bytes) else "\0 \n\r\t")
+        raise error(f"{where} is {'empty' if empty else f'not JSON: {fault}'}.") from None
+
+
+def convert(value: Any, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError) -> T:
+    """Returns a value of JSON's types as the declared type.
+
+    Raises:
+        ObjectNavError: of class `error`; it is of another type.
+    """
+    try:
+        return msgspec.convert(value, kind)
+    except (msgspec.ValidationError, OverflowError) as fault:
+        raise error(f"{where}{_fault(fault)}") from None
+    except RecursionError:
+        raise error(f"{where} is nested too deeply.") from None
+
+
+def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNavError] = ConfigError) -> None:
+    """Raises an error where a zip file (`.npz`, a PyTorch file) is none, or expands to more than `most` bytes."""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+    except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError, struct.error) as fault:
+        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    if size > most:
+        raise error(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
+
+
+def image_size_px(content: bytes) -> tuple[int, int] | None:
+    """Returns width and height of a PNG or JPEG image from its header; None where it is neither."""
+    if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
+        width, height = struct.unpack(">II", content[16:24])
+        return width, height
+    position = 2
+    while content[:2] == b"\xff\xd8" and position + 9 <= len(content) and content[position] == 0xFF:
+        marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
+        if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
+            height, width = struct.unpack(">HH", content[position + 5 : position + 9])
+            return width, height
+        position += 2 + max(length, 1)
+    return None
+
+
+def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
+    """Raises an error where an image is no PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
+    size = image_size_px(content)
+    if size is None:
+        raise error(f"{where} is neither a PNG nor a JPEG image.")
+    if size[0] * size[1] > MAX_PIXELS:
+        raise error(f"{where} has {size[0]} x {size[1]} pixels; at most {MAX_PIXELS // 1_000_000} million are allowed.")
+
+
+def printable(text: str) -> str:
+    """Returns text in which control characters and lone surrogates are written as escapes, for a terminal."""
+    return "".join(
+        letter if letter in "\n\t" or unicodedata.category(letter) not in ("Cc", "Cs", "Zl", "Zp") else _escape(letter)
+        for letter in text
+    )
+
+
+def first_unprintable(words: Iterable[str]) -> str | None:
+    """Returns the first word with a control character or a byte that is no UTF-8; None where there is none."""
+    return next((word for word in words if printable(word) != word or "\n" in word or "\t" in word), None)
+
+
+def reason_of(fault: Exception) -> str:
+    """Returns the reason of an error in a few words: that of the operating system, else the error's message."""
+    if isinstance(fault, OSError) and fault.strerror:
+        return fault.strerror
+    return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
+
+
+def _escape(letter: str) -> str:
+    return letter.encode("unicode_escape", errors="backslashreplace").decode("ascii")
+
+
+def _fault(fault: Exception) -> str:
+    """Returns msgspec's message with the field before it: ", field 'episodes[...].goal': expected str, got int."."""
+    message, _, path = str(fault).replace("`", "").partition(" - at ")
+    path = re.sub(r"^(?:key in )?\$\.?", "", path)
+    field = f", field '{path}'" if path else ""
+    return f"{field}: {message[:1].lower()}{message[1:]}."

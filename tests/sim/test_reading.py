@@ -1,0 +1,112 @@
+"""Typed reading: a message names file, line, field, what was found and what is wanted."""
+
+from __future__ import annotations
+
+import gzip
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import cv2
+import msgspec
+import numpy as np
+import pytest
+
+from sim import reading
+from sim.errors import HouseError
+from sim.interface import ConfigError
+
+
+class Row(msgspec.Struct):
+    """A row of a file."""
+
+    name: reading.Name
+    at: list[reading.Metres]
+    seed: int = 0
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("", "is empty"),
+        ("\0\0\0\0", "is empty"),
+        ("{", "not JSON"),
+        ('{"name": "a"}', "missing required field at"),
+        ('{"name": 5, "at": []}', r"field 'name': expected str, got int"),
+        ('{"name": "a", "at": [0.5, "b"]}', r"field 'at\[1\]': expected float, got str"),
+        ('{"name": "a", "at": [NaN]}', "not JSON"),
+        ('{"name": "a", "at": [Infinity]}', "not JSON"),
+        ('{"name": "a", "at": [1e308]}', r"field 'at\[0\]': expected float <= 10000"),
+        ('{"name": "a", "at": [1e999]}', "out of range"),
+        ('{"name": "\\u001b[31m", "at": []}', "field 'name'"),
+        ('{"name": "\\ud800", "at": []}', "not JSON"),
+        ('{"name": "a", "at": [], "more": ' + "[" * 100_000, "nested too deeply|not JSON"),
+        ("7", "expected object, got int"),
+        ("1" * 10_000, "rows.json"),
+    ],
+)
+def test_content_of_another_type_is_one_line_that_names_the_field(content: str, told: str, tmp_path: Path) -> None:
+    file = tmp_path / "rows.json"
+    file.write_text(content)
+    with pytest.raises(HouseError, match=told) as caught:
+        reading.read_json(file, Row, what="Rows", error=HouseError)
+    assert str(file) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b'{"name": "a", "at": []}\n\n{"name": "b", "at": []}\n', "line 2 is empty"),
+        (b'{"name": "a", "at": []}\n\0\0\0\0\n', "line 2 is empty"),
+        (b'{"name": "a", "at": []}\n{"name": "b"}\n', "line 2: object missing required field at"),
+        (b'{"name": "a", "at": []}\n[]\n', "line 2: expected object, got array"),
+    ],
+)
+def test_a_broken_line_is_named_by_its_number(content: bytes, told: str, tmp_path: Path) -> None:
+    (tmp_path / "rows.jsonl").write_bytes(content)
+    with pytest.raises(ConfigError, match=told):
+        reading.read_lines(tmp_path / "rows.jsonl", Row, what="Rows")
+
+
+@pytest.mark.parametrize("torn", [b'{"name": "b"', b"\0\0\0\0", b"\xff"])
+def test_a_torn_last_line_is_left_out_and_said(torn: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "rows.jsonl"
+    whole = b'{"name": "a", "at": [], "more": 1}\n'
+    file.write_bytes(whole + torn)
+    lines = reading.read_lines(file, Row, what="Rows")
+    assert lines.values == [{"name": "a", "at": [], "more": 1}]
+    assert lines.whole_bytes == len(whole)
+    assert "line 2" in lines.torn
+    file.write_bytes(whole)
+    assert reading.read_lines(file, Row, what="Rows").torn == ""
+
+
+def test_what_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reading, "MAX_BYTES", 1 << 20)
+    (tmp_path / "bomb.gz").write_bytes(gzip.compress(b"[" + b" " * (4 << 20), compresslevel=1))
+    with pytest.raises(ConfigError, match="expands to more than 1 MB"):
+        reading.read_gzip_json(tmp_path / "bomb.gz", list[Any], what="Rows")
+    with zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.npy", b"\0" * (8 << 20))
+    with pytest.raises(ConfigError, match="expands to 8 MB; at most 1 MB"):
+        reading.require_small_zip(tmp_path / "bomb.npz", what="Rows", most=1 << 20)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".jpg"])
+def test_the_size_of_an_image_is_read_from_its_header(suffix: str) -> None:
+    content = cv2.imencode(suffix, np.zeros((30, 50, 3), np.uint8))[1].tobytes()
+    assert reading.image_size_px(content) == (50, 30)
+    reading.require_small_image(content, where="Image")
+    with pytest.raises(ConfigError, match="neither a PNG nor a JPEG"):
+        reading.require_small_image(content[:10], where="Image")
+    bomb = content[:16] + (60_000).to_bytes(4, "big") * 2 + content[24:]
+    if suffix == ".png":
+        with pytest.raises(ConfigError, match="60000 x 60000"):
+            reading.require_small_image(bomb, where="Image")
+
+
+def test_control_characters_and_lone_surrogates_are_written_as_escapes() -> None:
+    assert reading.printable("a\x1b[31mb\u009bc\udcff [d] é") == "a\\x1b[31mb\\x9bc\\udcff [d] é"
+    assert reading.first_unprintable(["a b", "ü"]) is None
+    assert reading.first_unprintable(["a", "b\x1b[0m"]) == "b\x1b[0m"
