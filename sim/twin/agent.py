@@ -1,0 +1,103 @@
+"""The Stubborn agent in a plan: its map comes from the plan's camera, everything else is the agent itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from sim.geometry.pose import Pose
+from sim.interface import GOAL_CATEGORIES, CameraModel, Observation, RobotModel
+from sim.plans.episode import PlanEpisode
+from sim.plans.sight import Look, PlanCamera
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.mapping.mapper import Sighting
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+
+class TwinAgent(StubbornAgent):
+    """A `StubbornAgent` whose frames are looks in a plan; with ground truth, so that a candidate is the target."""
+
+    def __init__(self, config: AgentConfig, camera: CameraModel | None = None) -> None:
+        """Builds the agent; `begin` gives it an episode."""
+        self._episode: PlanEpisode | None = None
+        super().__init__(
+            camera=camera or CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter(), config=config
+        )
+
+    def begin(self, episode: PlanEpisode, seed: int) -> None:
+        """Starts an episode."""
+        self._episode = episode
+        self.reset(episode.goal, seed)
+
+    def _map(self, observation: Observation, pose: Pose) -> Sighting:
+        """Enters the look from the present pose into the map, and returns the target points in it."""
+        assert self._episode is not None
+        look = self._episode.camera.look(self._episode.robot.pose, self.goal, self.navmap, pose, self.step)
+        self._episode.see(look)
+        return note_sighting(self, look, pose)
+
+
+def note_sighting(agent: StubbornAgent, look: Look, pose: Pose) -> Sighting:
+    """Returns the target points of a look, and notes the side from which they were seen."""
+    navmap = agent.navmap
+    if look.touched is not None:
+        navmap.grow_known(*look.touched)
+    rows, cols = look.target_rows, look.target_cols
+    x_m, y_m = navmap.frame.centres(rows, cols)
+    to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
+    distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
+    navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
+    navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
+    return Sighting(rows, cols, distance_m)
+
+
+def play(
+    agent: TwinAgent, camera: PlanCamera, goal: str, start: Pose, *, seed: int, until_sight: bool = False
+) -> Mapping[str, Any]:
+    """Runs one episode and returns its metrics.
+
+    Args:
+        agent: the agent; the episode's map remains in it.
+        camera: of the plan.
+        goal: the goal category.
+        start: in the world.
+        seed: of the agent.
+        until_sight: the episode ends with the first frame that shows the goal.
+
+    Raises:
+        EpisodeError: no STOP for the goal succeeds anywhere in the plan.
+    """
+    episode = PlanEpisode(camera, goal, start)
+    agent.begin(episode, seed)
+    while not episode.done:
+        action = agent.act(observation_of(episode))
+        if until_sight and episode.first_seen_step is not None:
+            break
+        episode.act(action)
+    if episode.stopped or not until_sight:
+        _look_once_more(agent, episode)
+    return {**episode.metrics(), "end_reason": "stop" if episode.stopped else "max_steps"}
+
+
+def observation_of(episode: PlanEpisode) -> Observation:
+    """Returns the pose sensors and the goal; a plan has no images."""
+    pose = episode.pose
+    return {
+        "gps": np.array([pose.x_m, pose.y_m], np.float32),
+        "compass": np.array([pose.yaw_rad], np.float32),
+        "objectgoal": np.array([GOAL_CATEGORIES.index(episode.goal)], np.int64),
+    }
+
+
+def _look_once_more(agent: TwinAgent, episode: PlanEpisode) -> None:
+    """Counts the frame after the last action, which no agent sees."""
+    look = episode.camera.look(episode.robot.pose, episode.goal, agent.navmap, episode.pose, episode.num_steps)
+    episode.see(look)
+
+
+def twin_config(config: AgentConfig) -> AgentConfig:
+    """Returns the configuration without what a plan has no data for: drops of the floor."""
+    return replace(config, mapping=replace(config.mapping, drops=replace(config.mapping.drops, enabled=False)))
