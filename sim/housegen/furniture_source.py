@@ -183,16 +183,17 @@ class FurnitureSource:
 
     def _new(self, category: str, style: str, use: str | None, hints: Mapping[str, Any]) -> Item:
         asked = hints if use is None else {"use": use, **hints}
-        return self._catalogue.make_item(category, self.rng, pool=self.pool, style=style, **asked)
+        return self._catalogue.make_item(category, self.rng, pool=self.pool, style=style, reshape=True, **asked)
 
     def _least_used(self, category: str, use: str | None, key: str, fresh: bool) -> str:
         """Returns a style that the home has least often, one that the last calls did not return where `fresh`."""
         placed = self._placed_styles()
-        names = [style.name for style in self._catalogue.styles(category, self.pool, use)]
+        names = [style.name for style in self._catalogue.offered(category, self.pool, use, self.rng)]
+        others = [style.name for style in self._catalogue.styles(category, self.pool, use)]
         tried = self._tried.setdefault(key, set())
         if not fresh:
             tried.clear()
-        left = [name for name in names if name not in tried] or names
+        left = [n for n in names if n not in tried] or [n for n in others if n not in tried] or names
         if category == "objects" and len(self._small_styles) >= MOST_SMALL_STYLES:
             left = [name for name in left if name in self._small_styles] or left
 
@@ -214,7 +215,7 @@ class FurnitureSource:
             if not items:
                 items.extend(known[n] for n in self.rng.permutation(len(known)).tolist())
             return items.pop()
-        names = [style.name for style in self._catalogue.styles(category, self.pool, use)]
+        names = [style.name for style in self._catalogue.offered(category, self.pool, use, self.rng)]
         if category in _ONE_STYLE:
             style = self._set_style.setdefault(repr((category, use)), self.pick(names))
         else:

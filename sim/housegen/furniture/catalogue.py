@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ import numpy as np
 
 from sim.errors import ConfigError
 from sim.housegen.furniture.item import Item, Mount, Pool
+from sim.housegen.furniture.reshape import may_reshape, reshaped
 from sim.housegen.furniture.workbench import Workbench
 from sim.interface import MPCAT40_ID
 
@@ -19,6 +21,11 @@ HINTS: frozenset[str] = frozenset(
     {"use", "width_m", "depth_m", "height_m", "looks", "with_sink", "with_hob", "cushions"}
 )
 """All hints that `Catalogue.make_item` accepts."""
+FREE_SHARE = 0.35
+"""Probability that an item of a `wide` house has a free style, where there is one for its use."""
+RESHAPED_SHARE = 0.25
+"""Probability that an item of a `wide` house in another style gets other proportions; twice as much where there is no
+free style for its use. About half of all items thus have a shape of their own."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +45,8 @@ class Style:
     mount: Mount = "floor"
     walk_over: bool = False
     """True: items lie flat on the floor, and other objects may stand on them."""
+    free: bool = False
+    """True: a generator that combines parts at random, so that hardly two items have the same shape."""
 
     def shown_in(self, pool: Pool) -> bool:
         """Returns True if houses of this pool may show the style."""
@@ -85,6 +94,20 @@ class Catalogue:
         shown = (style for style in self._by_category[category] if pool is None or style.shown_in(pool))
         return tuple(style for style in shown if use is None or use in style.uses)
 
+    def offered(self, category: str, pool: Pool, use: str | None, rng: np.random.Generator) -> tuple[Style, ...]:
+        """Returns the styles from which one item is chosen: for `wide`, sometimes the free ones only.
+
+        Other pools draw nothing from `rng`.
+
+        Raises:
+            ConfigError: the catalogue has no such category.
+        """
+        fitting = self.styles(category, pool, use)
+        free = tuple(style for style in fitting if style.free)
+        if not free:
+            return fitting
+        return free if rng.random() < FREE_SHARE else tuple(style for style in fitting if not style.free) or free
+
     def with_styles(self, *styles: Style) -> Catalogue:
         """Returns a new catalogue that has these styles as well, after the others of their categories.
 
@@ -107,8 +130,9 @@ class Catalogue:
         return Catalogue(itertools.chain.from_iterable(kept))
 
     def make_item(
-        self, category: str, rng: np.random.Generator, *, pool: Pool, style: str | None = None, **hints: Any
-    ) -> Item:
+        self, category: str, rng: np.random.Generator, *, pool: Pool, style: str | None = None, reshape: bool = False,
+        **hints: Any,
+    ) -> Item:  # fmt: skip
         """Builds one piece of furniture.
 
         The same arguments and the same state of `rng` give the same item. Without `style`, one of the pool's styles
@@ -119,6 +143,8 @@ class Catalogue:
             rng: source of all random draws.
             pool: "train", "heldout" or "wide"; `wide` has the styles of `train` and more.
             style: name of a style of that pool; None draws one.
+            reshape: items of `wide`, and what lies on them, sometimes get other proportions (`reshape.py`). Other
+                pools ignore it.
             **hints: see the tables.
 
         ================ =========================================================================================
@@ -181,9 +207,17 @@ class Catalogue:
             raise ConfigError(f"make_item knows no hint '{unknown[0]}'. It knows: {', '.join(sorted(HINTS))}.")
         use = hints.get("use")
         chosen = self._named(category, pool, style) if style is not None else self._drawn(category, rng, pool, use)
-        bench = Workbench(rng, pool, hints, self.make_item)
+        reshape = reshape and pool == "wide"
+        bench = Workbench(rng, pool, hints, functools.partial(self.make_item, reshape=reshape))
         chosen.build(bench)
-        return bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
+        item = bench.finish(category, chosen.name, chosen.mount, walk_over=chosen.walk_over)
+        if reshape and not chosen.free and rng.random() < self._reshaped_share(category, use) and may_reshape(item):
+            return reshaped(item, rng, hints)
+        return item
+
+    def _reshaped_share(self, category: str, use: str | None) -> float:
+        free = any(style.free for style in self.styles(category, "wide", use))
+        return RESHAPED_SHARE if free else 2 * RESHAPED_SHARE
 
     def _named(self, category: str, pool: Pool, name: str) -> Style:
         of_pool = self.styles(category, pool)
@@ -194,7 +228,7 @@ class Catalogue:
         raise ConfigError(f"'{category}' has no style '{name}' in pool '{pool}'. It has: {known}.")
 
     def _drawn(self, category: str, rng: np.random.Generator, pool: Pool, use: str | None) -> Style:
-        fitting = self.styles(category, pool, use)
+        fitting = self.offered(category, pool, use, rng)
         if fitting:
             return fitting[int(rng.integers(len(fitting)))]
         uses = sorted({use for style in self.styles(category, pool) for use in style.uses})

@@ -15,7 +15,7 @@ from sim.housegen.furniture.shapes import chamfered_box, frustum, named_mesh, pi
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _mattress_size(w: Workbench, widest: float = 1.80) -> tuple[float, float]:
+def mattress_size(w: Workbench, widest: float = 1.80) -> tuple[float, float]:
     """Returns (length, width) of a mattress; hint `width_m` selects the largest width that is not above it."""
     hinted = w.hints.get("width_m")
     widths = [v for v in (0.80, 0.90, 1.00, 1.20, 1.40, 1.60, 1.80) if v <= widest + 1e-6]
@@ -71,7 +71,7 @@ def _pillows(w: Workbench, x: float, width: float, top: float) -> None:
         w.mesh(pillow((0.40, 0.42, 0.14), 4.0), (x + 0.55, 0.0, top + 0.15), w.new_look("fabric"), tilt=0.9)
 
 
-def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, thick: float, hang: float) -> None:
+def bedding(w: Workbench, x0: float, length: float, width: float, top: float, thick: float, hang: float) -> None:
     """Adds a mattress from x0 towards the foot with tucked, crumpled, folded or spread bedding, and pillows."""
     linen, duvet, x1 = w.look("linen"), w.look("bedding"), x0 + length
     w.mesh(
@@ -115,7 +115,7 @@ def _bedding(w: Workbench, x0: float, length: float, width: float, top: float, t
 
 def bunk(w: Workbench) -> None:
     """Builds two beds above each other between four posts, with guard rails and a ladder, of wood or steel tube."""
-    length, width = _mattress_size(w, 1.20)
+    length, width = mattress_size(w, 1.20)
     tube = w.chance(0.35)
     look = w.look("iron") if tube else parts.wood_look(w)
     post = 0.04 if tube else w.length(0.06, 0.09)
@@ -156,7 +156,7 @@ def bunk(w: Workbench) -> None:
 
 def hospital(w: Workbench) -> None:
     """Builds a care bed on castors with a jointed mattress, end boards and often side rails."""
-    length, width = 2.0, min(0.90, _mattress_size(w, 1.0)[1])
+    length, width = 2.0, min(0.90, mattress_size(w, 1.0)[1])
     frame, board = w.look("metal"), w.look("plastic") if w.chance(0.5) else w.look("wood")
     top, thick, raised = w.length(0.48, 0.68), w.length(0.12, 0.16), w.choice((0.0, 0.25, 0.5, 0.8))
     half, base = 0.5 * width + 0.02, top - thick
@@ -213,7 +213,7 @@ def hospital(w: Workbench) -> None:
 
 def pallet(w: Workbench) -> None:
     """Builds a mattress on one or two layers of pallets."""
-    length, width = _mattress_size(w)
+    length, width = mattress_size(w)
     wood, dark, thick = w.look("wood"), w.look("dark"), w.length(0.14, 0.26)
     out = w.choice((0.0, 0.05, 0.25))
     half, x = 0.5 * width + (0.06 if out else 0.0), (-0.03, length + out)
@@ -234,12 +234,12 @@ def pallet(w: Workbench) -> None:
             w.box((-0.055, -0.03), (-half, half), (z, z + w.length(0.06, 0.1)), wood)
         for side in BOTH_SIDES:
             w.box((-0.09, -0.05), parts.centred(side * 0.7 * half, 0.09), (0.0, tall), wood)
-    _bedding(w, 0.0, length, width, base + thick, thick, thick)
+    bedding(w, 0.0, length, width, base + thick, thick, thick)
 
 
 def box_spring(w: Workbench) -> None:
     """Builds upholstered boxes with a mattress and a topper, and a plain, channelled, winged or no headboard."""
-    length, width = _mattress_size(w)
+    length, width = mattress_size(w)
     cloth, half, foot = w.look("fabric"), 0.5 * width + 0.01, w.length(0.05, 0.14)
     box, thick = w.length(0.20, 0.34), w.length(0.18, 0.28)
     base = foot + box
@@ -269,12 +269,12 @@ def box_spring(w: Workbench) -> None:
             w.mesh(frustum((0.34, 0.06), (0.24, 0.06), head, (-0.05, 0.0)), (0.06, side * (half + 0.03), 0.0), cloth)
     w.mesh(chamfered_box((length, width, thick), 0.03), (0.5 * length, 0.0, base + 0.5 * thick), w.new_look("linen"))
     topper = w.length(0.06, 0.10)
-    _bedding(w, 0.0, length, width, base + thick + topper, topper + 0.01, w.choice((0.15, 0.3, base + thick - 0.02)))
+    bedding(w, 0.0, length, width, base + thick + topper, topper + 0.01, w.choice((0.15, 0.3, base + thick - 0.02)))
 
 
 def arched(w: Workbench) -> None:
     """Builds a light bed frame with round legs and an arched headboard, solid, of cane or of rods."""
-    length, width = _mattress_size(w)
+    length, width = mattress_size(w)
     look = w.look(w.choice(("wood", "wicker", "lacquer")))
     thick, low = w.length(0.16, 0.24), w.length(0.20, 0.34)
     half, base = 0.5 * width + w.choice((0.02, 0.06)), low + 0.03
@@ -307,7 +307,7 @@ def arched(w: Workbench) -> None:
         for i in range(9):
             y, z = edge[2 + i]
             w.rod((-0.02, 0.35 * y, base), (-0.02, y, z), 0.009, look)
-    _bedding(w, 0.0, length, width, base + thick, thick, thick)
+    bedding(w, 0.0, length, width, base + thick, thick, thick)
 
 
 STYLES: tuple[Style, ...] = (

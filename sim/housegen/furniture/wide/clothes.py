@@ -13,7 +13,7 @@ from sim.housegen.furniture.wide import garments
 from sim.housegen.furniture.workbench import Range, Workbench
 
 
-def _hanging_row(w: Workbench, x: float, y: Range, rail: float, room: float, metal: Look, most: int) -> None:
+def hanging_row(w: Workbench, x: float, y: Range, rail: float, room: float, metal: Look, most: int) -> None:
     """Adds garments on hangers in a row under a rail, none longer than `room`."""
     count = min(most, max(2, int((y[1] - y[0]) / w.length(0.07, 0.16))))
     for i in range(count):
@@ -45,7 +45,7 @@ def a_frame(w: Workbench) -> None:
             c, shoe = -y + 0.25 + 0.26 * i, w.new_look("leather")
             for side in BOTH_SIDES:
                 w.ellipsoid((0.0, c + 0.05 * side, 0.25), (0.13, 0.042, 0.045), shoe, solid=False)
-    _hanging_row(w, 0.0, (-y + 0.16, y - 0.16), rail, rail - 0.32, w.look("metal"), 9)
+    hanging_row(w, 0.0, (-y + 0.16, y - 0.16), rail, rail - 0.32, w.look("metal"), 9)
 
 
 def double_rail(w: Workbench) -> None:
@@ -62,14 +62,14 @@ def double_rail(w: Workbench) -> None:
     middle = 0.5 * high + 0.06
     if w.chance(0.6):
         w.rod((0.0, -y + 0.02, middle), (0.0, y - 0.02, middle), 0.013, metal)
-        _hanging_row(w, 0.0, (-y + 0.10, y - 0.10), middle, middle - 0.1, metal, 6)
+        hanging_row(w, 0.0, (-y + 0.10, y - 0.10), middle, middle - 0.1, metal, 6)
     else:
         w.box((-deep, deep), (-y + 0.02, y - 0.02), (0.07, 0.09), metal)
         for i in range(w.whole(1, 3)):
             c = -y + 0.22 + 0.3 * i
             if c < y - 0.15:
                 w.mesh(chamfered_box((0.3, 0.26, w.length(0.06, 0.2)), 0.03), (0.0, c, 0.12), garments.garment_look(w))
-    _hanging_row(w, 0.0, (-y + 0.10, y - 0.10), high, high - middle - 0.03, metal, 7)
+    hanging_row(w, 0.0, (-y + 0.10, y - 0.10), high, high - middle - 0.03, metal, 7)
 
 
 def dress_form(w: Workbench) -> None:
@@ -176,7 +176,7 @@ def pipe_rail(w: Workbench) -> None:
                 (0.5 * out, w.length(-0.2, 0.2) * width, tall + 0.035),
                 garments.garment_look(w),
             )
-    _hanging_row(w, out, (-y + 0.10, y - 0.10), rail, rail, metal, 9)
+    hanging_row(w, out, (-y + 0.10, y - 0.10), rail, rail, metal, 9)
 
 
 def hung_flat(w: Workbench) -> None:

@@ -11,7 +11,7 @@ from sim.housegen.furniture.shapes import Ring, hoop, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _weight_discs(w: Workbench, x: float, y: float, z: float, side: int, radius: float, count: int) -> float:
+def weight_discs(w: Workbench, x: float, y: float, z: float, side: int, radius: float, count: int) -> float:
     """Adds weight discs on a bar along y, outwards from `y`, and returns the y where they end."""
     for i in range(count):
         thick, r = 0.035, radius * (1.0 - 0.18 * i)
@@ -48,7 +48,7 @@ def squat_rack(w: Workbench) -> None:
     z, reach, x = w.length(0.95, 1.40), 0.5 * w.length(1.80, 2.10), post + t + 0.025
     for side in BOTH_SIDES:
         w.box((post, post + 0.12), (side * (half - t) - 0.03, side * (half - t) + 0.03), (z - 0.06, z - 0.014), iron)
-        end = _weight_discs(w, x, side * (reach - 0.30), z, side, w.length(0.18, 0.225), w.whole(1, 3))
+        end = weight_discs(w, x, side * (reach - 0.30), z, side, w.length(0.18, 0.225), w.whole(1, 3))
         w.rod((x, end, z), (x, side * reach, z), 0.025, steel)
     w.rod((x, -reach + 0.25, z), (x, reach - 0.25, z), 0.015, steel)
     if cage and w.chance(0.6):
@@ -76,7 +76,7 @@ def plate_tree(w: Workbench) -> None:
         z = 0.30 + (high - 0.42) * i / (levels - 1)
         for side in BOTH_SIDES:
             w.rod((0.0, side * 0.02, z), (0.0, side * 0.26, z), 0.024, steel)
-            _weight_discs(w, 0.0, side * 0.05, z, side, (0.225, 0.17, 0.125)[i] * w.length(0.9, 1.0), w.whole(1, 3))
+            weight_discs(w, 0.0, side * 0.05, z, side, (0.225, 0.17, 0.125)[i] * w.length(0.9, 1.0), w.whole(1, 3))
         if twin:
             reach = 0.03 + (foot - 0.08) * (high - z) / (high - 0.05)
             w.box((-reach, reach), (-0.035, 0.035), (z - 0.03, z + 0.03), iron)

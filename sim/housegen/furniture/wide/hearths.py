@@ -15,7 +15,7 @@ from sim.housegen.furniture.shapes import Ring, frustum, loft, named_mesh
 from sim.housegen.furniture.workbench import Point, Range, Workbench
 
 
-def _wall_above_arch(x: Range, half: float, spring: float, rise: float, top: float) -> MeshShape:
+def wall_above_arch(x: Range, half: float, spring: float, rise: float, top: float) -> MeshShape:
     """Returns the wall above an arched opening |y| < half, from the arch that starts at `spring` up to `top`."""
     n = 12
     angles = np.linspace(0.0, math.pi, n)
@@ -42,7 +42,7 @@ def _extruded(profile_yz: list[tuple[float, float]], x: Range) -> MeshShape:
     return named_mesh("prism", [(at, y, z) for at in x for y, z in profile_yz])
 
 
-def _logs(w: Workbench, at: Point, half: float, *, burning: float = 0.7) -> None:
+def logs(w: Workbench, at: Point, half: float, *, burning: float = 0.7) -> None:
     """Adds logs that lie across each other, with flames with the probability `burning`."""
     x, y, z = at
     wood = w.look("wood")
@@ -121,7 +121,7 @@ def smoke_hood(w: Workbench) -> None:
         for side in BOTH_SIDES:
             y = side * (half - 0.05)
             w.box((0.0, 0.7 * deep), (y - 0.05, y + 0.05), (plinth, hood), stone)
-    _logs(w, (0.5 * deep, 0.0, plinth + 0.05), 0.35 * half)
+    logs(w, (0.5 * deep, 0.0, plinth + 0.05), 0.35 * half)
     if w.chance(0.4):
         w.box((0.05, 0.35), (-0.7 * half, 0.7 * half), (0.03, plinth - 0.04), w.look("char"), solid=False)
         w.box((deep, deep + 0.004), (-0.6 * half, 0.6 * half), (0.03, plinth - 0.03), w.look("char"), solid=False)
@@ -148,7 +148,7 @@ def glass_corner(w: Workbench) -> None:
     for z in (base, base + high - 0.03):
         w.box((deep - 0.03, deep + 0.004), (-half, left), (z, z + 0.03), dark, solid=False)
         w.box((0.05, deep), (-half - 0.003, -half + 0.02), (z, z + 0.03), dark, solid=False)
-    _logs(w, (0.55 * deep, 0.5 * (left - half), base + 0.02), 0.45 * half, burning=0.85)
+    logs(w, (0.55 * deep, 0.5 * (left - half), base + 0.02), 0.45 * half, burning=0.85)
     if w.chance(0.5):
         reach = half + w.length(0.3, 0.9)
         w.box((0.0, deep + 0.05), (-half, reach), (base - 0.08, base - 0.02), w.look("stone"))
@@ -183,7 +183,7 @@ def inglenook(w: Workbench) -> None:
         for i in range(5):
             y = 0.11 * (i - 2)
             w.rod((deep - 0.10, y, z - 0.01), (deep - 0.10, y, z + 0.12), 0.008, iron, solid=False)
-    _logs(w, (0.5 * (pier + deep) - 0.02, 0.0, z), 0.22)
+    logs(w, (0.5 * (pier + deep) - 0.02, 0.0, z), 0.22)
 
 
 def overmantel(w: Workbench) -> None:
@@ -202,7 +202,7 @@ def overmantel(w: Workbench) -> None:
         w.box((0.03, deep - 0.03), (y[0], y[1]), (0.0, frame_top), iron)
         y = sorted((side * (mouth + 0.06), side * (insert - 0.03)))
         w.box((deep - 0.03, deep - 0.022), (y[0], y[1]), (0.04, frame_top - 0.06), tile, solid=False)
-    w.mesh(_wall_above_arch((0.03, deep - 0.03), mouth, spring, mouth, frame_top), (0.0, 0.0, 0.0), iron)
+    w.mesh(wall_above_arch((0.03, deep - 0.03), mouth, spring, mouth, frame_top), (0.0, 0.0, 0.0), iron)
     w.box((0.03, deep), (-insert, insert), (frame_top, shelf), wood)
     w.box((0.0, deep + 0.10), (-half, half), (shelf, shelf + 0.045), wood)
     turned = w.chance(0.5)
@@ -252,7 +252,7 @@ def log_wall(w: Workbench) -> None:
     _fire_chamber(w, (0.0, deep), (c - box, c + box), (bench, bench + high), 0.05, dark)
     w.box((0.0, deep), (c - box, c + box), (bench + high, bench + high + 0.05), dark)
     w.box((0.05, deep - 0.05), (c - box + 0.05, c + box - 0.05), (bench, bench + 0.03), w.look("char"))
-    _logs(w, (0.5 * deep, c, bench + 0.03), 0.22)
+    logs(w, (0.5 * deep, c, bench + 0.03), 0.22)
     if w.chance(0.6):
         w.box((0.02, deep - 0.08), (c - 0.6 * box, c + 0.6 * box), (bench + high + 0.05, w.height(2.30, 2.50)), stone)
     else:
@@ -363,7 +363,7 @@ def arched_oven(w: Workbench) -> None:
         w.box((0.10, deep), (y[0], y[1]), (0.0, top), look)
         c = side * (mouth - 0.004)
         w.box((0.10, deep - 0.03), (c - 0.004, c + 0.004), (0.0, spring), w.look("char"), solid=False)
-    w.mesh(_wall_above_arch((0.10, deep), mouth, spring, mouth * w.length(0.6, 1.0), top), (0.0, 0.0, 0.0), look)
+    w.mesh(wall_above_arch((0.10, deep), mouth, spring, mouth * w.length(0.6, 1.0), top), (0.0, 0.0, 0.0), look)
     if store:
         w.box((0.10, deep), (-mouth, mouth), (shelf - 0.08, shelf), look)
         r = 0.055
@@ -377,7 +377,7 @@ def arched_oven(w: Workbench) -> None:
     w.box(
         (deep - 0.02, deep + w.length(0.10, 0.35)), (-half - 0.02, half + 0.02), (shelf - 0.06, shelf), w.look("stone")
     )
-    _logs(w, (0.5 * deep, 0.0, shelf), 0.55 * mouth)
+    logs(w, (0.5 * deep, 0.0, shelf), 0.55 * mouth)
     kind = w.whole(0, 2)
     if kind == 0:
         w.mesh(

@@ -24,7 +24,7 @@ def _sprig(w: Workbench, x: float, y: float, z: float, tall: float, look: Look) 
         w.bar(a, b, 0.004, 0.09 * tall, look, solid=False)
 
 
-def _painting(w: Workbench, x: float, y: Range, z: Range) -> None:
+def painting(w: Workbench, x: float, y: Range, z: Range) -> None:
     """Adds a painting to a sheet: bands, a twig, blocks or a skyline."""
     wide, tall, kind = y[1] - y[0], z[1] - z[0], w.whole(0, 3)
     if kind == 0:
@@ -57,7 +57,7 @@ def poster_on_clips(w: Workbench) -> None:
     w.box((0.0, 0.003), (-y, y), (0.0, z), w.look(w.choice(("paper", "linen", "paint"))), solid=False)
     margin = w.length(0.0, 0.08)
     low = w.length(0.05, 0.30)
-    _painting(w, 0.006, (-y + margin, y - margin), (low * z, z - margin - 0.02))
+    painting(w, 0.006, (-y + margin, y - margin), (low * z, z - margin - 0.02))
     metal, kind = w.look(w.choice(("dark", "chrome", "brass"))), w.whole(0, 2)
     for side in BOTH_SIDES:
         c = side * (y - w.choice((0.05, 0.25)) * wide)
@@ -133,7 +133,7 @@ def picture_ledge(w: Workbench) -> None:
         inner = ((low + border, high - border), (z[0] + border, z[1] - border))
         w.box((0.0, x + 0.003), *inner, w.look("paper"), solid=False)
         pad = w.length(0.0, 0.05)
-        _painting(w, x + 0.006, (inner[0][0] + pad, inner[0][1] - pad), (inner[1][0] + pad, inner[1][1] - pad))
+        painting(w, x + 0.006, (inner[0][0] + pad, inner[0][1] - pad), (inner[1][0] + pad, inner[1][1] - pad))
     w.mount_height_m = 1.50 - 0.5 * highest
 
 

@@ -12,7 +12,7 @@ from sim.housegen.furniture.shapes import Ring, drape, hoop, loft
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _shower_fittings(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None:
+def shower_fittings(w: Workbench, x: float, y: float, floor: float, metal: Look) -> None:
     """Adds shower fittings to a back wall at x: a rail with hand shower, an arm, an exposed pipe or a column."""
     kind, z = w.choice(("bar", "arm", "exposed", "column")), floor + w.length(0.95, 1.1)
     if kind == "column":
@@ -92,7 +92,7 @@ def tiled_niche(w: Workbench) -> None:
         )
     if w.chance(0.5):
         w.box((x[0] + 0.04, x[0] + 0.34), (inner[1] - 0.30, inner[1]), (0.03, 0.45), tile)
-    _shower_fittings(w, x[0] + 0.04, w.length(-0.15, 0.1) * width, 0.03, metal)
+    shower_fittings(w, x[0] + 0.04, w.length(-0.15, 0.1) * width, 0.03, metal)
 
 
 def crittall(w: Workbench) -> None:
@@ -124,7 +124,7 @@ def crittall(w: Workbench) -> None:
     else:
         w.rod((face, end - 0.02, high - 0.02), (x[0], end - 0.02, high - 0.02), 0.010, iron)
     w.box((x[0] - 0.015, x[0] + 0.012), (-0.14, 0.14), (tray - 0.01, 2.02), w.look("ceramic"), solid=False)
-    _shower_fittings(w, x[0] + 0.012, 0.0, tray, metal)
+    shower_fittings(w, x[0] + 0.012, 0.0, tray, metal)
 
 
 def care_shower(w: Workbench) -> None:
@@ -164,7 +164,7 @@ def care_shower(w: Workbench) -> None:
     w.rod((x[0] + 0.30, y[0] + 0.07, 0.7), (x[0] + 0.30, y[0] + 0.07, 1.35), 0.016, metal)
     for c in (0.72, 1.33):
         w.rod((x[0] + 0.30, y[0] + 0.02, c), (x[0] + 0.30, y[0] + 0.07, c), 0.014, metal)
-    _shower_fittings(w, x[0] + 0.02, -0.15, 0.025, metal)
+    shower_fittings(w, x[0] + 0.02, -0.15, 0.025, metal)
 
 
 def timber_shower(w: Workbench) -> None:
@@ -192,7 +192,7 @@ def timber_shower(w: Workbench) -> None:
             z = 0.25 + i * 0.24
             w.box((x[0] + 0.025, x[1]), (y[0], y[0] + 0.02), (z, z + w.choice((0.10, 0.16))), wood)
         w.box((x[1] - 0.05, x[1]), (y[0], y[0] + 0.05), (0.05, high), wood)
-    _shower_fittings(w, x[0] + 0.025, 0.0, 0.075, metal)
+    shower_fittings(w, x[0] + 0.025, 0.0, 0.075, metal)
 
 
 def hoop_curtain(w: Workbench) -> None:

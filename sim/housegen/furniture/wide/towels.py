@@ -10,7 +10,7 @@ from sim.housegen.furniture.shapes import chamfered_box, drape
 from sim.housegen.furniture.workbench import Workbench
 
 
-def _towel_look(w: Workbench) -> Look:
+def towel_look(w: Workbench) -> Look:
     """Returns a new look for a towel."""
     return w.new_look("towel") if w.chance(0.8) else w.new_look("linen")
 
@@ -37,15 +37,13 @@ def hotel_rack(w: Workbench) -> None:
         w.length(0.5, 0.85) * width,
         tall - 0.11,
         w.length(0.5, 0.8) * tall,
-        _towel_look(w),
+        towel_look(w),
     )
-    z, cloth = tall + 0.004, _towel_look(w)
+    z, cloth = tall + 0.004, towel_look(w)
     for i in range(w.whole(1, 4)):
         thick = w.length(0.04, 0.07)
         size = (0.9 * deep, width * w.length(0.5, 0.85), thick)
-        w.mesh(
-            chamfered_box(size, 0.02), (0.03 + 0.45 * deep, 0.0, z + 0.5 * thick), cloth if i % 2 else _towel_look(w)
-        )
+        w.mesh(chamfered_box(size, 0.02), (0.03 + 0.45 * deep, 0.0, z + 0.5 * thick), cloth if i % 2 else towel_look(w))
         z += thick - 0.004
 
 
@@ -66,7 +64,7 @@ def hanging_rungs(w: Workbench) -> None:
         if i == 0 or w.chance(0.75):
             wide = w.length(0.4, 0.75) * width
             parts.towel_over_bar(
-                w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), _towel_look(w)
+                w, 0.068, w.length(-0.05, 0.05), z, wide, w.length(0.24, 0.36), w.length(0.15, 0.28), towel_look(w)
             )
 
 
@@ -97,7 +95,7 @@ def panel_radiator(w: Workbench) -> None:
             w.rod((0.045, side * (y - 0.03), z), (0.11, side * (y - 0.03), z), 0.008, metal)
         drop = w.length(0.24, 0.32) * high
         parts.towel_over_bar(
-            w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, _towel_look(w)
+            w, 0.11, 0.0, z, w.length(0.6, 0.9) * width, drop, w.length(0.5, 1.0) * drop, towel_look(w)
         )
 
 
@@ -118,7 +116,7 @@ def towel_line(w: Workbench) -> None:
         y, drop = -0.5 * width + 0.04 + (i + 0.5) * each, z if i == low else w.length(0.45, 0.95) * z
         wide = min(each - 0.03, w.length(0.3, 0.7))
         w.mesh(
-            drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), _towel_look(w)
+            drape(wide, drop, w.length(0.03, 0.07), w.whole(1, 4)), (out - 0.015, y, z - drop + 0.004), towel_look(w)
         )
         for side in BOTH_SIDES:
             c = y + side * (0.5 * wide - 0.02)
@@ -143,7 +141,7 @@ def towel_tiers(w: Workbench) -> None:
         wide = w.length(0.35, 0.85) * width
         drop = z if i == count - 1 else w.length(0.5, 0.95) * z
         shift = w.length(-0.5, 0.5) * (width - wide - 0.04)
-        parts.towel_over_bar(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, _towel_look(w))
+        parts.towel_over_bar(w, x, shift, z, wide, drop, w.length(0.4, 0.9) * drop, towel_look(w))
     w.box((0.0, last), (-0.5 * width, -0.5 * width + 0.01), (top - 0.01, top + 0.01), metal)
 
 
@@ -175,7 +173,7 @@ def towel_airer(w: Workbench) -> None:
         x, z = wires[int(i)]
         wide = w.length(0.4, 0.9) * width
         parts.towel_over_bar(
-            w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), _towel_look(w)
+            w, x, w.length(-0.4, 0.4) * (width - wide), z, wide, w.length(0.35, 0.6), w.length(0.3, 0.5), towel_look(w)
         )
 
 
@@ -204,7 +202,7 @@ def towel_cart(w: Workbench) -> None:
                 if base + thick > z + room - 0.02:
                     break
                 size = (depth - w.length(0.04, 0.08), width * (0.80 if stacks == 1 else 0.42), thick)
-                w.mesh(chamfered_box(size, 0.022), (0.0, c, base + 0.5 * thick), _towel_look(w))
+                w.mesh(chamfered_box(size, 0.022), (0.0, c, base + 0.5 * thick), towel_look(w))
                 base += thick - 0.003
     w.rod((x[1] - 0.01, y[0], high - 0.012), (x[1] - 0.01, y[1], high - 0.012), 0.01, frame)
     w.rod((x[0] + 0.01, y[0], high - 0.012), (x[0] + 0.01, y[1], high - 0.012), 0.01, frame)
@@ -217,14 +215,14 @@ def towel_dropped(w: Workbench) -> None:
         w.mesh(
             chamfered_box((w.length(0.4, 0.6), 0.34, 0.04), 0.015),
             (0.0, 0.0, 0.02),
-            _towel_look(w),
+            towel_look(w),
             turn=w.length(0.0, 1.5),
         )
         z = 0.03
     for i in range(w.whole(1, 3)):
         shape = parts.crumpled_cloth(w, w.length(0.35, 0.85), w.length(0.3, 0.55), w.length(0.06, 0.22))
         at = (w.length(-0.1, 0.1), w.length(-0.1, 0.1), z)
-        w.mesh(shape, at, _towel_look(w), turn=w.length(0.0, 3.0), solid=i == 0)
+        w.mesh(shape, at, towel_look(w), turn=w.length(0.0, 3.0), solid=i == 0)
         z += 0.02
 
 
@@ -241,7 +239,7 @@ def towel_tray(w: Workbench) -> None:
         for i in range(count):
             c, tall = y[0] + 0.015 + (i + 0.5) * each, w.length(0.15, 0.24)
             size = (deep - 0.03, each - 0.003, tall)
-            w.mesh(chamfered_box(size, 0.025), (0.0, c, 0.012 + 0.5 * tall), _towel_look(w))
+            w.mesh(chamfered_box(size, 0.025), (0.0, c, 0.012 + 0.5 * tall), towel_look(w))
         return
     z = 0.012
     for i in range(w.whole(2, 4)):
@@ -249,7 +247,7 @@ def towel_tray(w: Workbench) -> None:
         w.mesh(
             chamfered_box((s * (deep - 0.03), s * (wide - 0.03), thick), 0.02),
             (0.0, 0.0, z + 0.5 * thick),
-            _towel_look(w),
+            towel_look(w),
         )
         z += thick - 0.004
 
