@@ -1,47 +1,222 @@
-"""Command lines from dataclasses; a user's error is one line on stderr and exit status 2."""
+"""Command lines from dataclasses, and the one guard of all commands: what goes wrong is one line on stderr.
+
+`run` is the entry point of every command of `sim` and `tools`. Exit status 2 is an error that the user can correct: a
+wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command takes,
+shows the traceback as well.
+
+An option's range is declared with its type (`Seed`, `Count`, `Share`, ...), and is checked here; a file or folder that
+the command writes is an `OutFile` or `OutFolder`, and is refused before any work where it cannot be written.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import io
+import math
+import os
 import re
+import signal
 import sys
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+import threading
+import traceback
+import types
+import typing
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Annotated, Any, NoReturn, TypeVar
 
 import tyro
+from msgspec import Meta
 
-from sim.errors import ConfigError, EpisodeError, HouseError, RenderError, WorkersError
+from sim.errors import ConfigError, ObjectNavError, debug, debugging
+from sim.files import require_writable
+from sim.reading import first_unprintable, printable, reason_of
 
 ArgsT = TypeVar("ArgsT")
-USAGE_ERRORS = (ConfigError, EpisodeError, HouseError, RenderError, WorkersError)
+USAGE_ERRORS = (ObjectNavError,)
 """Errors that the user can correct; they are printed in one line, without a traceback."""
+DEBUG_HELP = "Every command also takes --debug, which shows the traceback of an error."
 
 
-def run(args_type: type[ArgsT], main: Callable[[ArgsT], int], argv: Sequence[str] | None = None) -> int:
-    """Parses the command line into `args_type` and returns the exit status of `main`; 2 after a `USAGE_ERRORS`."""
-    try:
-        return main(parse(args_type, argv))
-    except USAGE_ERRORS as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
-        return 2
+@dataclasses.dataclass(frozen=True)
+class Written:
+    """Marks an option as the path of what the command writes."""
+
+    folder: bool
+
+
+Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+Count = Annotated[int, Meta(ge=1, le=10_000_000)]
+"""A number of things, at least one."""
+Amount = Annotated[int, Meta(ge=0, le=10_000_000)]
+"""A number of things, which may be none."""
+Share = Annotated[float, Meta(ge=0.0, le=1.0)]
+Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
+NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]
+OutFile = Annotated[Path, Written(folder=False)]
+OutFolder = Annotated[Path, Written(folder=True)]
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM: ends the command like Ctrl-C, so that its workers end and its unfinished files are removed."""
+
+
+def run(
+    args_type: type[ArgsT],
+    main: Callable[[ArgsT], int],
+    argv: Sequence[str] | None = None,
+    *,
+    stopped: str = "Stopped.",
+) -> int:
+    """Parses the command line into `args_type` and returns the exit status of `main`, or that of its error.
+
+    Args:
+        args_type: dataclass of the options.
+        main: the command.
+        argv: the words of the command line; those of the process when None.
+        stopped: what Ctrl-C and SIGTERM print.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    _print_any_text()
+    with debugging("--debug" in words), _sigterm_ends():
+        try:
+            args = parse(args_type, [word for word in words if word != "--debug"])
+            check(args)
+            return main(args)
+        except BrokenPipeError:  # the reader of our output has ended, as `head` does
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            return 1
+        except USAGE_ERRORS as error:
+            return _refused(str(error))
+        except OSError as error:
+            names = " and ".join(f"'{name}'" for name in (error.filename, error.filename2) if name is not None)
+            return _refused(f"{names or 'A file'} cannot be read or written: {reason_of(error)}.")
+        except MemoryError:
+            return _refused("There is not enough memory for this.")
+        except KeyboardInterrupt as stop:
+            print(f"\n{stopped}", file=sys.stderr)
+            return 143 if isinstance(stop, Terminated) else 130
 
 
 def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
     """Returns the command line as an `args_type`.
 
     Raises:
-        ConfigError: an option does not exist or its value cannot be read.
+        ConfigError: an option does not exist, or its value cannot be read or is no printable text.
         SystemExit: status 0 after `--help`.
     """
+    words = sys.argv[1:] if argv is None else argv
+    if (bad := first_unprintable(words)) is not None:
+        raise ConfigError(f"'{printable(bad)}' holds a control character or a byte that is not UTF-8; give plain text.")
     messages = io.StringIO()
+    description = f"{(args_type.__doc__ or '').strip()}\n\n{DEBUG_HELP}"
     try:
         with contextlib.redirect_stderr(messages):
-            return tyro.cli(args_type, args=argv, config=(tyro.conf.FlagCreatePairsOff,))
+            return tyro.cli(args_type, args=argv, description=description, config=(tyro.conf.FlagCreatePairsOff,))
     except SystemExit as stop:
         if stop.code in (0, None):
             raise
         raise ConfigError(_message_in_box(messages.getvalue())) from None
+
+
+def check(args: Any) -> None:
+    """Checks that options are in the ranges of their types, and that what the command writes can be written.
+
+    Raises:
+        ConfigError: an option is not; the message names it, its value and what is allowed.
+    """
+    hints = typing.get_type_hints(type(args), include_extras=True)
+    for field in dataclasses.fields(args):
+        _check_value(f"--{field.name.replace('_', '-')}", getattr(args, field.name), hints[field.name])
+
+
+def _check_value(name: str, value: Any, hint: Any) -> None:
+    """Raises ConfigError where a value is not in the range of its type."""
+    if value is None:
+        return
+    if dataclasses.is_dataclass(value):
+        for field in dataclasses.fields(value):
+            _check_value(f"{name}.{field.name.replace('_', '-')}", getattr(value, field.name), Any)
+        return
+    if isinstance(value, tuple):
+        inner = next(iter(typing.get_args(_bare(hint))), Any)
+        for each in value:
+            _check_value(name, each, inner)
+        return
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ConfigError(f"{name} must be a finite number, got {value}.")
+    for mark in _marks(hint):
+        if isinstance(mark, Written):
+            require_writable(value, name=name, folder=mark.folder)
+        elif isinstance(mark, Meta):
+            _require_range(name, value, mark)
+
+
+def _require_range(name: str, value: float, mark: Meta) -> None:
+    """Raises ConfigError where a number is beyond the bounds of its type."""
+    bounds = (
+        ("at least", mark.ge, lambda low: value >= low),
+        ("more than", mark.gt, lambda low: value > low),
+        ("at most", mark.le, lambda high: value <= high),
+        ("less than", mark.lt, lambda high: value < high),
+    )
+    for words, bound, holds in bounds:
+        if bound is not None and not holds(bound):
+            raise ConfigError(f"{name} must be {words} {bound:g}, got {value}.")
+
+
+def _bare(hint: Any) -> Any:
+    """Returns a type without `Annotated` and `| None`."""
+    while True:
+        if typing.get_origin(hint) is Annotated:
+            hint = hint.__origin__
+        elif typing.get_origin(hint) in (typing.Union, types.UnionType):
+            hint = next(each for each in typing.get_args(hint) if each is not type(None))
+        else:
+            return hint
+
+
+def _marks(hint: Any) -> Iterator[Any]:
+    """Yields the marks of a type, also of one inside `| None`."""
+    if typing.get_origin(hint) is Annotated:
+        yield from hint.__metadata__
+        yield from _marks(hint.__origin__)
+    elif typing.get_origin(hint) in (typing.Union, types.UnionType):
+        for each in typing.get_args(hint):
+            yield from _marks(each)
+
+
+def _refused(message: str) -> int:
+    """Prints an error in one line, after its traceback with `--debug`; returns the exit status."""
+    if debug():
+        traceback.print_exc()
+    print(f"error: {printable(' '.join(message.split()))}", file=sys.stderr)
+    return 2
+
+
+@contextlib.contextmanager
+def _sigterm_ends() -> Iterator[None]:
+    """Has SIGTERM raise `Terminated`; only the main thread of a process can."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, _raise_terminated)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _raise_terminated(number: int, frame: types.FrameType | None) -> NoReturn:
+    raise Terminated
+
+
+def _print_any_text() -> None:
+    """Has text that the terminal's encoding does not know printed as escapes, in place of an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _message_in_box(box: str) -> str:

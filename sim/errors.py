@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+from collections.abc import Iterator
+
+DEBUG_VARIABLE = "STUBBORN_DEBUG"
+"""Environment variable that shows tracebacks; `--debug` sets it, and worker processes inherit it."""
+
 
 class ObjectNavError(Exception):
     """Base class of all errors that this project raises on purpose."""
@@ -29,3 +36,27 @@ class RenderError(ObjectNavError, RuntimeError):
 
 class WorkersError(ObjectNavError, RuntimeError):
     """Workers cannot start, or one item of work makes every worker fail."""
+
+
+class AgentError(ObjectNavError, RuntimeError):
+    """An agent raised an error, or returned something that is no action; the message names the agent and the step."""
+
+
+def debug() -> bool:
+    """Returns whether tracebacks are shown."""
+    return os.environ.get(DEBUG_VARIABLE, "") not in ("", "0")
+
+
+@contextlib.contextmanager
+def debugging(on: bool) -> Iterator[None]:
+    """Shows tracebacks inside of the `with` block, also in worker processes that it starts."""
+    before = os.environ.get(DEBUG_VARIABLE)
+    if on:
+        os.environ[DEBUG_VARIABLE] = "1"
+    try:
+        yield
+    finally:
+        if on:
+            os.environ.pop(DEBUG_VARIABLE)
+            if before is not None:
+                os.environ[DEBUG_VARIABLE] = before

@@ -146,14 +146,23 @@ def parse_json(
         raise error(f"{where} is {'empty' if empty else f'not JSON: {fault}'}.") from None
 
 
-def convert(value: Any, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError) -> T:
+def convert(
+    value: Any, kind: type[T] | Any, *, where: str, error: type[ObjectNavError] = ConfigError, strict: bool = True
+) -> T:
     """Returns a value of JSON's types as the declared type.
+
+    Args:
+        value: the value.
+        kind: any type that msgspec knows.
+        where: the file and line for the error message.
+        error: class of the error.
+        strict: False also takes numbers that are written as text, as in CSV.
 
     Raises:
         ObjectNavError: of class `error`; it is of another type.
     """
     try:
-        return msgspec.convert(value, kind)
+        return msgspec.convert(value, kind, strict=strict)
     except (msgspec.ValidationError, OverflowError) as fault:
         raise error(f"{where}{_fault(fault)}") from None
     except RecursionError:

@@ -8,7 +8,6 @@ For a run with `--record` it has a picture of each episode. No episode is run ag
 
 from __future__ import annotations
 
-import os
 import shlex
 import sys
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
 from sim.analysis.report.build import build_page
-from sim.errors import ConfigError
+from sim.files import require_writable, write_atomically
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +30,7 @@ class Args:
     """Folder of a run."""
     other: tyro.conf.Positional[Path | None] = None
     """Folder of another run of the same episodes, which is compared with the first."""
-    out: Path | None = None
+    out: cli.OutFile | None = None
     """The page (RUN/report.html, or OTHER/report_against_RUN.html)."""
 
 
@@ -39,21 +38,14 @@ def main(args: Args) -> int:
     """Reads the runs and writes the page; returns the exit status."""
     runs = [read_run(args.run), *([read_run(args.other)] if args.other is not None else [])]
     out = args.out or _default_out(args)
-    if out.is_dir():
-        raise ConfigError(f"--out '{out}' is a folder; give the name of the page, for example {out / 'report.html'}.")
+    require_writable(out, name="--out", folder=False)
     paths = [str(path) for path in (args.run, args.other) if path is not None]
     console = display.make_console()
     console.print(
         f"{max(len(run.lines) for run in runs)} episodes; each house takes about a second, each goal in it a tenth."
     )
     page = build_page(runs, out_folder=out.parent, command=shlex.join(["python", "-m", "sim.report", *paths]))
-    part = out.with_name(f"{out.name}.part-{os.getpid()}")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        part.write_text(page, encoding="utf-8")
-        part.replace(out)
-    except OSError as error:
-        raise ConfigError(f"Cannot write the report '{out}': {error.strerror}.") from None
+    write_atomically(out, page)
     message = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
     console.print(message, highlight=False, markup=False, soft_wrap=True)
     return 0

@@ -50,13 +50,13 @@ class Args:
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     robot: Path | None = None
     """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of noise and, with --house, of start and goal."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
     noise: str = "none"
     """Noise of sensors and drive: none, realsense or harsh."""
-    out: Path | None = None
+    out: cli.OutFolder | None = None
     """Folder of the record (runs/<time>); episodes are added to an existing record."""
     video: bool = False
     """Write an MP4 of the episode to <out>/videos."""

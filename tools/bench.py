@@ -56,9 +56,9 @@ class Args:
     g houses; h workers; i growth."""
     quick: bool = False
     """Measure as little as possible, to test that everything runs."""
-    out: Path | None = None
+    out: cli.OutFile | None = None
     """A JSON file for all figures."""
-    markdown: Path | None = None
+    markdown: cli.OutFile | None = None
     """A page into which the table is written, between its two marks."""
 
 
@@ -66,6 +66,8 @@ def main(args: Args) -> int:
     """Measures the parts; returns 1 if a goal is missed (never with --quick)."""
     os.environ["LP_NUM_THREADS"] = "1"  # for figures and baselines; llvmpipe reads it when it starts
     wanted = parse_parts(args.parts)
+    if args.markdown is not None:
+        report.around_marks(args.markdown)  # refused before the measurements
     console = display.make_console()
     cv2.setNumThreads(1)
     about, calibrations = report.machine(), {}

@@ -27,9 +27,9 @@ class Args:
 
     run: Path
     """Folder of a run made with --record."""
-    episodes: int = 50
+    episodes: cli.Count = 50
     """Number of episodes, the first ones of the results."""
-    most: int = 40
+    most: cli.Amount = 40
     """Largest number of listed actions."""
 
 

@@ -46,21 +46,21 @@ class Args:
 
     pool: Pool = "heldout"
     """Pool of the fresh houses."""
-    seeds: int = 20
+    seeds: cli.Count = 20
     """Number of fresh houses."""
-    first_seed: int = 900_000
+    first_seed: cli.Seed = 900_000
     """The first of consecutive seeds; no split has seeds from 900000 on."""
     kind: PlanKind | None = None
     """Kind of floor plan; drawn when not given."""
-    area_m2: float | None = None
+    area_m2: cli.Positive | None = None
     """Floor area; drawn when not given."""
     movable: bool = False
     """Whether light furniture can be pushed."""
     split: str | None = None
     """Name or folder of a split; its houses are checked instead of fresh ones."""
-    views: int = 12
+    views: cli.Amount = 12
     """Number of views in each house that are searched for void."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
 
 

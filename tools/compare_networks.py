@@ -18,10 +18,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
 
+import msgspec
 import numpy as np
 
 from sim import cli
+from sim.files import write_atomically
 from sim.interface import ConfigError
+from sim.reading import Count as ReadCount
+from sim.reading import Number, convert, read_bytes
 from stubborn.segmentation.networks import NETWORKS
 from tools import train_rednet
 
@@ -37,25 +41,25 @@ class Args:
     """Folders of training shards."""
     val_views: tuple[Path, ...]
     """Folders of shards to evaluate on."""
-    out: Path
+    out: cli.OutFolder
     """Folder of the runs and of the table `networks.md`."""
     networks: tuple[str, ...] = CHOICES
     """Networks to compare."""
-    seeds: tuple[int, ...] = (0, 1)
+    seeds: tuple[cli.Seed, ...] = (0, 1)
     """Seeds of initial weights, order and augmentation."""
-    hours: float = 1.0
+    hours: cli.NotNegative = 1.0
     """Training time of each run."""
-    turn_hours: float = 0.25
+    turn_hours: cli.Positive = 0.25
     """Time of a turn."""
-    batch: int = 16
+    batch: cli.Count = 16
     """Views per step."""
-    block_px: int = 1
+    block_px: cli.Count = 1
     """Factor by which the views are shrunk for the networks."""
-    val_count: int = 600
+    val_count: cli.Amount = 600
     """Number of views of an evaluation."""
-    threads: int | None = None
+    threads: cli.Count | None = None
     """Number of threads of PyTorch; None does not change it."""
-    rare_share: float = 0.15
+    rare_share: cli.Share = 0.15
     """See tools/train_rednet.py."""
 
 
@@ -71,8 +75,7 @@ def main(args: Args) -> int:
                     train_rednet.Trainer(training(args, name, seed, limit)).run()
     text = table(args)
     print(text)
-    args.out.mkdir(parents=True, exist_ok=True)
-    (args.out / "networks.md").write_text(text, encoding="utf-8")
+    write_atomically(args.out / "networks.md", text)
     return 0
 
 
@@ -106,28 +109,36 @@ def table(args: Args) -> str:
     return "\n".join(lines) + "\n"
 
 
-def last_row(folder: Path) -> dict[str, str] | None:
+class Evaluation(msgspec.Struct):
+    """A line of `val.csv`, as far as the table shows it."""
+
+    step: ReadCount
+    hours: Number
+    miou_goals: Number
+    accuracy: Number
+
+
+def last_row(folder: Path) -> Evaluation | None:
     """Returns the last evaluation of a run; None where there is none."""
     file = folder / "val.csv"
     if not file.is_file():
         return None
-    with file.open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    return rows[-1] if rows else None
+    rows = list(csv.DictReader(read_bytes(file, what="Evaluations").decode(errors="replace").splitlines()))
+    return convert(rows[-1], Evaluation, where=f"Evaluations '{file}', last line", strict=False) if rows else None
 
 
 def trained_hours(folder: Path) -> float:
     """Returns how long a run was trained until its last evaluation."""
     row = last_row(folder)
-    return float(row["hours"]) if row else 0.0
+    return row.hours if row else 0.0
 
 
-def _line(name: str, rows: Sequence[dict[str, str]]) -> str:
+def _line(name: str, rows: Sequence[Evaluation]) -> str:
     config = NETWORKS["lite0" if name == PRETRAINED else name]
     parameters = sum(p.numel() for p in train_rednet.build_network(config).parameters()) / 1e6
-    mious = [float(row["miou_goals"]) for row in rows]
+    mious = [row.miou_goals for row in rows]
     miou = f"{np.mean(mious):.3f} ({', '.join(f'{value:.3f}' for value in mious)})"
-    steps, hours, accuracy = (np.mean([float(row[key]) for row in rows]) for key in ("step", "hours", "accuracy"))
+    steps, hours, accuracy = (np.mean([getattr(row, key) for row in rows]) for key in ("step", "hours", "accuracy"))
     return f"| {name} | {parameters:.1f} | {len(rows)} | {steps:.0f} | {hours:.2f} | {miou} | {accuracy:.3f} |"
 
 

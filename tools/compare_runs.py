@@ -18,8 +18,9 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Run, differences_table, read_run, require_same_episodes
 from sim.analysis.report.figures import METRICS
-from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
+from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.evaluation.bootstrap import MIN_PAIRS
+from sim.files import write_together
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +31,7 @@ class Args:
     """Folder of a run."""
     second: tyro.conf.Positional[Path]
     """Folder of another run on the same episodes."""
-    out: Path | None = None
+    out: cli.OutFolder | None = None
     """Folder for comparison.md and comparison.csv; nothing is written if not given."""
 
 
@@ -42,9 +43,8 @@ def main(args: Args) -> int:
     for table in tables:
         console.print(to_rich(table))
     if args.out is not None:
-        args.out.mkdir(parents=True, exist_ok=True)
-        (args.out / "comparison.md").write_text(to_markdown(tables), encoding="utf-8")
-        write_csv(args.out / "comparison.csv", tables)
+        pages = {"comparison.md": to_markdown(tables), "comparison.csv": to_csv(tables)}
+        write_together({args.out / name: text for name, text in pages.items()})
     return 0
 
 

@@ -27,6 +27,7 @@ from sim import cli
 from sim.env.scene import Scene
 from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreachable
 from sim.evaluation.parallel import ordered_map
+from sim.files import write_atomically
 from sim.geometry.pose import Pose
 from sim.housegen.house_list import CACHE_VARIABLE
 from sim.houses.house import read_rooms
@@ -101,13 +102,13 @@ python tools/make_episodes.py --split assets/mjcf_houses/val --workers 2
 class Args:
     """Options of the command."""
 
-    out: Path = Path("assets/mjcf_houses/README.md")
+    out: cli.OutFile = Path("assets/mjcf_houses/README.md")
     """Markdown file; it is overwritten."""
     root: Path | None = None
     """Folder with the folders of the splits; the shipped ones when not given."""
-    measure: int = 0
+    measure: cli.Amount = 0
     """Frames to measure in each house that is a file, and profile; 0: none."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Processes that read houses; measurements use this process only."""
 
 
@@ -154,7 +155,7 @@ def main(args: Args) -> int:
         parts += [f"## {name}\n", *_split_paragraphs(splits[name], read_unreachable(root / name))]
         if splits[name].house_list is None:
             parts += [_house_table(facts[name]), _category_table(facts[name])]
-    args.out.write_text("\n".join(parts), encoding="utf-8")
+    write_atomically(args.out, "\n".join(parts))
     print(f"{args.out}: {', '.join(names)}")
     return 0
 

@@ -26,6 +26,7 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
 from sim.analysis.report.drawings import ground_truth_of, split_of
+from sim.files import write_picture
 from sim.geometry.grid import GridFrame
 from sim.interface import ConfigError
 from sim.task.failures import cause_of_failure, first_looping_step, first_trapped_step
@@ -50,7 +51,7 @@ class Args:
     """Folder of the run."""
     episodes: tuple[str, ...] = ()
     """Ids of the episodes; all failed ones if not given."""
-    out: Path | None = None
+    out: cli.OutFolder | None = None
     """Folder for the pictures (<run>/pictures)."""
 
 
@@ -67,7 +68,6 @@ def main(args: Args) -> int:
         why = "written with --record; an episode with an error has none"
         _print(console, f"No trajectory, not drawn: {' '.join(missing)} ({why})")
     split, out = split_of(run), args.out or args.run / "pictures"
-    out.mkdir(parents=True, exist_ok=True)
     truth: GroundTruth | None = None
     for episode_id in sorted(set(wanted) - set(missing), key=lambda i: (run.lines[i]["house"], i)):
         line = run.lines[episode_id]
@@ -76,7 +76,7 @@ def main(args: Args) -> int:
             truth = ground_truth_of(run, split.load_house(line["house"]))
         words = in_words(episode_id, line["goal"], trajectory)
         file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
-        cv2.imwrite(str(file), draw(truth, line["goal"], trajectory, words)[..., ::-1])
+        write_picture(file, draw(truth, line["goal"], trajectory, words))
         _print(console, f"{words} -> {file}")
     return int(bool(wanted) and len(missing) == len(wanted))
 

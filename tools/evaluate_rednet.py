@@ -54,11 +54,11 @@ class Args:
     """Weights of the network; None: the shipped ones."""
     calibrate: bool = False
     """Fit the calibration and write it to the file of the weights."""
-    card: Path | None = None
+    card: cli.OutFile | None = None
     """File of the model card to write."""
-    block_px: int | None = None
+    block_px: cli.Count | None = None
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
-    threads: int = 2
+    threads: cli.Count = 2
     """Number of threads of PyTorch."""
 
 

@@ -15,9 +15,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import tyro
 from numpy.typing import NDArray
 
+from sim import cli
+from sim.files import write_picture
 from sim.gl import mujoco
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue, Style
@@ -47,7 +48,7 @@ FAN_DEG = np.arange(0, 360, 10)
 class Args:
     """Options of the gallery."""
 
-    out: Path
+    out: cli.OutFolder
     """Folder for the PNG files; created if missing."""
     houses: tuple[Path, ...] = ()
     """House files; each gives a top view of each storey and a sheet of room views."""
@@ -59,17 +60,18 @@ class Args:
     """With --sheet: the pool of the styles."""
     furniture: Path | None = None
     """With --sheet: the models of a folder that tools/import_furniture.py made, instead of the shipped styles."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """With --sheet: seed of sizes and colours."""
 
 
-def main(args: Args) -> None:
-    """Writes the pictures and prints their paths."""
+def main(args: Args) -> int:
+    """Writes the pictures and prints their paths; returns the exit status."""
+    if not (assets_dir() / "textures").is_dir():
+        raise ConfigError(f"'{assets_dir() / 'textures'}' is missing; tools/make_textures.py makes it.")
     if not args.houses and not args.sheet:
         raise ConfigError("gallery needs --houses FILE ... or --sheet.")
     catalogue = CATALOGUE if args.furniture is None else _imported(args.furniture, args.pool)
     sheets = {category: catalogue.styles(category) for category in args.categories or catalogue.categories}
-    args.out.mkdir(parents=True, exist_ok=True)
     for path in args.houses:
         spec = mujoco.MjSpec.from_file(str(path.resolve()))
         for number, storey in enumerate(_storeys(spec)):
@@ -82,6 +84,7 @@ def main(args: Args) -> None:
                 copies, name = (2, args.pool) if args.furniture is None else (1, "imported")
                 sheet = draw_sheet(of_pool, np.random.default_rng(args.seed), copies, catalogue)
                 _save(args.out / f"sheet_{name}_{category}.png", sheet)
+    return 0
 
 
 def _imported(folder: Path, pool: Pool) -> Catalogue:
@@ -273,14 +276,9 @@ def _tiled(tiles: list[Picture], columns: int) -> Picture:
 
 
 def _save(path: Path, picture: Picture) -> None:
-    cv2.imwrite(str(path), picture[:, :, ::-1])
+    write_picture(path, picture)
     print(path)
 
 
 if __name__ == "__main__":
-    if not (assets_dir() / "textures").is_dir():
-        sys.exit("gallery: assets/mjcf_houses/textures is missing. Run tools/make_textures.py first.")
-    try:
-        main(tyro.cli(Args))
-    except ConfigError as error:
-        sys.exit(f"gallery: {error}")
+    sys.exit(cli.run(Args, main))

@@ -47,23 +47,23 @@ from sim.paths import assets_dir
 class Args:
     """Options of the command."""
 
-    out: Path
+    out: cli.OutFolder
     """Folder for the XML files (for train: for the list); created if missing."""
     split: str | None = None
     """Name of a shipped split (val, test, large, hazards, train), whose recipes define seeds, plan kinds and sizes."""
-    houses: int | None = None
+    houses: cli.Count | None = None
     """Number of houses; by default all of the split, or 1."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
-    first_seed: int = 0
+    first_seed: cli.Seed = 0
     """Without a split: the first of consecutive seeds."""
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; drawn when not given."""
-    area_m2: float | None = None
+    area_m2: cli.Positive | None = None
     """Without a split: floor area; drawn when not given."""
-    clutter: float | None = None
+    clutter: cli.Share | None = None
     """Without a split: 0 without small objects to 1 with many; drawn when not given."""
     movable: bool = False
     """Without a split: whether light furniture can be pushed."""
@@ -97,7 +97,6 @@ def main(args: Args) -> int:
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
     if args.transfer_test and args.furniture is None:
         raise ConfigError("--transfer-test needs --furniture, a folder that tools/import_furniture.py made.")
-    args.out.mkdir(parents=True, exist_ok=True)
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))
@@ -174,7 +173,7 @@ def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:
     for made in houses:
         _print_house(made)
         if made.text:
-            (args.out / f"{made.name}.xml").write_text(made.text, encoding="utf-8")
+            write_atomically(args.out / f"{made.name}.xml", made.text)
         yield made
 
 

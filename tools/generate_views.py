@@ -63,11 +63,11 @@ class Args:
     """wide: new houses only, with the furniture of train and many more styles."""
     furniture: Path | None = None
     """Folder of imported models (tools/import_furniture.py): new houses only, with those of the split train as well."""
-    views: int = 1000
+    views: cli.Count = 1000
     """Number of views in all shards."""
-    out: Path
+    out: cli.OutFolder
     """Folder of the shards; complete shards in it are kept."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
     shard: str = "0/1"
     """i/n: generate every n-th shard from the i-th on."""
@@ -77,11 +77,11 @@ class Args:
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     profile: str = "good"
     """Rendering quality: good or fast."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of houses and poses."""
-    views_per_shard: int = 250
+    views_per_shard: cli.Count = 250
     """Number of views in a shard, all of one house."""
-    shrink: int = 1
+    shrink: cli.Count = 1
     """Factor by which the views are reduced: 2 gives 320 x 240."""
     rgb: str = "jpg"
     """Format of the colour images: jpg or png."""

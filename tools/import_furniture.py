@@ -31,7 +31,7 @@ class Args:
 
     source: Path
     """Folder with .sh3f files, or with models and a table models.csv or models.toml."""
-    out: Path
+    out: cli.OutFolder
     """Folder for models.json and the meshes; created if missing."""
     verbose: bool = False
     """Print every model that is left out, with the reason; models.json lists them too."""

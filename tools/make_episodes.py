@@ -49,15 +49,15 @@ class Args:
 
     split: Path
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
-    episodes: int | None = None
+    episodes: cli.Count | None = None
     """Number of episodes of all houses; by default the recipe's number for each house."""
     recipe: str | None = None
     """Name of the recipe (val, test, large, hazards, train); by default the one with the folder's name."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of starts and headings."""
     version: str = SPLIT_VERSION
     """Version of the split."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
     success: SuccessRule = field(default_factory=SuccessRule)
     """When a STOP succeeds: distances, view points and unreachable goals depend on it."""

@@ -5,12 +5,14 @@ python tools/make_textures.py --out assets/mjcf_houses/textures
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
-import tyro
 
+from sim import cli
+from sim.files import write_atomically
 from sim.housegen.materials import texture_file
 from sim.housegen.textures import TEXTURES
 
@@ -19,20 +21,21 @@ from sim.housegen.textures import TEXTURES
 class Args:
     """Options of the command."""
 
-    out: Path = Path("assets/mjcf_houses/textures")
+    out: cli.OutFolder = Path("assets/mjcf_houses/textures")
     """Folder for the PNG files, one for each texture."""
 
 
-def main(args: Args) -> None:
-    """Writes every texture and prints their number and total size."""
-    args.out.mkdir(parents=True, exist_ok=True)
+def main(args: Args) -> int:
+    """Writes every texture and prints their number and total size; returns the exit status."""
     total = 0
     for texture in TEXTURES.values():
         path = args.out / texture_file(texture.name)
-        cv2.imwrite(str(path), texture.pixels()[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
+        png = cv2.imencode(".png", texture.pixels()[:, :, ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])[1]
+        write_atomically(path, png.tobytes())
         total += path.stat().st_size
     print(f"{len(TEXTURES)} textures in {args.out}, {total / 1000:.0f} kB")
+    return 0
 
 
 if __name__ == "__main__":
-    main(tyro.cli(Args))
+    sys.exit(cli.run(Args, main))

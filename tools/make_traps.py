@@ -18,6 +18,7 @@ from sim.episodes import habitat
 from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
+from sim.files import write_atomically
 from sim.housegen.mjcf import TEXTURE_DIR
 from sim.housegen.split_recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
@@ -34,7 +35,7 @@ from sim.world.world import World
 class Args:
     """Options of the command."""
 
-    out: Path = Path("assets/mjcf_houses/traps")
+    out: cli.OutFolder = Path("assets/mjcf_houses/traps")
     """Folder for the scenes; its name is the name of the split."""
     version: str = SPLIT_VERSION
     """Version of the split."""
@@ -42,7 +43,6 @@ class Args:
 
 def main(args: Args) -> int:
     """Writes all scenes and their episodes."""
-    args.out.mkdir(parents=True, exist_ok=True)
     episodes: list[Episode] = []
     goals: dict[str, dict[str, list[habitat.Json]]] = {}
     for name, make in TRAPS.items():
@@ -61,7 +61,7 @@ def write_scene(path: Path, trap: Trap) -> None:
     """Writes one scene, which refers to the shipped textures by a relative path, and its sidecar."""
     textures = os.path.relpath(assets_dir() / "textures", path.parent.resolve())
     xml = trap.site.spec.to_xml().replace(f'texturedir="{TEXTURE_DIR}"', f'texturedir="{textures}"', 1)
-    path.write_text(xml, encoding="utf-8")
+    write_atomically(path, xml)
     write_sidecar(path, trap.sidecar)
 
 

@@ -39,7 +39,7 @@ class Args:
 
     runs: tyro.conf.Positional[tuple[Path, ...]]
     """Folders of runs; or one folder that holds shards."""
-    out: Path | None = None
+    out: cli.OutFolder | None = None
     """Folder of the merged run; by default the one folder given."""
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sim import cli
 from sim.env.objectnav import ObjectNavEnv
 from sim.evaluation.rollout import episode_seed
-from sim.interface import ConfigError
+from sim.files import write_picture
 from sim.viewers.palette import with_legend
 from stubborn import draw
 from stubborn.agent import StubbornAgent
@@ -31,11 +31,11 @@ class Args:
     """Split of the episode."""
     episode_id: str | None = None
     """Id of the episode; the first of the split if not given."""
-    step: int = 40
+    step: cli.Amount = 40
     """Number of actions before the picture; fewer if the episode ends earlier."""
     profile: str = "good"
     """Rendering quality of the picture."""
-    out: Path = Path("docs/images/episode.png")
+    out: cli.OutFile = Path("docs/images/episode.png")
     """The PNG file."""
 
 
@@ -46,9 +46,7 @@ def main(args: Args) -> int:
         picture = np.hstack(panels(env, args))
     finally:
         env.close()
-    args.out.parent.mkdir(parents=True, exist_ok=True)
-    if not cv2.imwrite(str(args.out), picture[..., ::-1]):
-        raise ConfigError(f"Cannot write the picture to '{args.out}'.")
+    write_picture(args.out, picture)
     print(f"{args.out}: {picture.shape[1]} x {picture.shape[0]} pixels")
     return 0
 

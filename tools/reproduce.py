@@ -32,12 +32,13 @@ from rich.console import Console
 from sim import cli, run
 from sim.analysis import display
 from sim.analysis.comparison import Line, Run, code_of, read_run
-from sim.analysis.tables import ResultTable, to_markdown, to_rich, write_csv
+from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.composition.options import RunOptions, check_options
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
 from sim.evaluation.config_fields import differing_fields, field_text
+from sim.files import write_atomically, write_together
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tools.paper_tables import PAPER_TABLES, AgentSetup, PaperTable, table_named
@@ -54,9 +55,9 @@ class Args:
 
     table: tyro.conf.Positional[str]
     """failures, ablation, exploration, categories, overall, splits, or all (of the paper's, without splits)."""
-    episodes: int = 200
+    episodes: cli.Count = 200
     """The first N episodes of each split."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
     executor: str = "local"
     """Where episodes run: local processes, or ray (extra `ray`) for a cluster whose machines can all access --out."""
@@ -66,7 +67,7 @@ class Args:
     """A shipped split, or a folder laid out like one."""
     splits: tuple[str, ...] = ()
     """Several of them, in place of --split; each has tables of its own, and one page has all of them."""
-    out: Path = Path("runs/paper")
+    out: cli.OutFolder = Path("runs/paper")
     """Folder for the runs and tables."""
     semantics: str | None = None
     """Source of segmentation, in place of the default of the table."""
@@ -74,11 +75,11 @@ class Args:
     """Agents, in place of the default of the table; the others are compared with the first."""
     noise: str = "none"
     """Noise of sensors and drive."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of the runs."""
-    chunk: int | None = None
+    chunk: cli.Count | None = None
     """Number of episodes that an agent runs in its turn; 20, with several splits 60."""
-    minutes: float | None = None
+    minutes: cli.NotNegative | None = None
     """Start no chunk that would end later than this; 0 runs nothing and makes the tables from the existing runs."""
 
 
@@ -192,10 +193,8 @@ def write_table(
     parts = table.build(lines, list(runs))
     notes = notes_of(args, name, runs, common)
     folder, stem = args.out / "tables", stem_of(args, name)
-    folder.mkdir(parents=True, exist_ok=True)
     page = to_markdown(parts) + "\n" + "\n\n".join(notes) + "\n"
-    (folder / f"{stem}.md").write_text(page, encoding="utf-8")
-    write_csv(folder / f"{stem}.csv", parts)
+    write_together({folder / f"{stem}.md": page, folder / f"{stem}.csv": to_csv(parts)})
     _print(console, parts, notes)
     console.print(f"written to {folder / stem}.md and .csv\n", highlight=False)
     return page
@@ -206,7 +205,7 @@ def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequ
     for name, parts in pages.items():
         stem = "_".join((stem_of(replace(args, split=Args.split), name), "+".join(map(_split_name, of_splits))))
         if parts:
-            (args.out / "tables" / f"{stem}.md").write_text("\n".join(parts), encoding="utf-8")
+            write_atomically(args.out / "tables" / f"{stem}.md", "\n".join(parts))
             console.print(f"{len(parts)} splits on {args.out / 'tables' / stem}.md", highlight=False)
 
 

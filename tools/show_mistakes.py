@@ -25,6 +25,7 @@ from sim import cli
 from sim.analysis.comparison import read_run
 from sim.analysis.report.drawings import split_of
 from sim.composition.segmenters import weights_file
+from sim.files import write_picture
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, ConfigError
 from sim.sensors.camera import Camera
@@ -46,11 +47,11 @@ class Args:
 
     run: tyro.conf.Positional[Path]
     """Folder of the run."""
-    out: Path
+    out: cli.OutFile
     """The PNG file."""
     cause: str = "false_detection"
     """Cause of the failures to draw (sim/task/failures.py)."""
-    count: int = 10
+    count: cli.Count = 10
     """Largest number of failures; the first ones are drawn."""
 
 
@@ -83,8 +84,7 @@ def main(args: Args) -> int:
         about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
         print(about)
         rows.append(_captioned(row, about))
-    args.out.parent.mkdir(parents=True, exist_ok=True)
-    cv2.imwrite(str(args.out), cv2.cvtColor(tile(rows, columns=1), cv2.COLOR_RGB2BGR))
+    write_picture(args.out, tile(rows, columns=1))
     print(f"{len(rows)} episodes in {args.out}")
     return 0
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim import cli
+from sim.files import write_picture
 from sim.interface import ConfigError
 from sim.viewers.palette import with_legend
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, tile
@@ -27,11 +28,11 @@ class Args:
 
     views: Path
     """Folder of shards."""
-    out: Path
+    out: cli.OutFile
     """The PNG file."""
-    count: int = 12
+    count: cli.Count = 12
     """Number of views."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of the choice of views."""
 
 
@@ -47,8 +48,7 @@ def main(args: Args) -> int:
         in_shard = list(read_shard(shard))
         share = -(-(args.count - len(views)) // (len(picked) - number))
         views += [in_shard[i] for i in rng.permutation(len(in_shard))[:share]]
-    args.out.parent.mkdir(parents=True, exist_ok=True)
-    cv2.imwrite(str(args.out), cv2.cvtColor(tile([draw(view) for view in views], columns=2), cv2.COLOR_RGB2BGR))
+    write_picture(args.out, tile([draw(view) for view in views], columns=2))
     print(f"{len(views)} views in {args.out}")
     return 0
 

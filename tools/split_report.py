@@ -26,6 +26,7 @@ from sim.episodes.reachable_goals import storeys_of
 from sim.episodes.splits import Episode, load_split, read_unreachable, shipped_splits
 from sim.episodes.start_rules import Lookout
 from sim.evaluation.parallel import ordered_map
+from sim.files import write_atomically
 from sim.geometry.pose import Pose, wrap_angle
 from sim.interface import ConfigError
 from sim.paths import assets_dir
@@ -46,11 +47,11 @@ class Args:
 
     splits: tuple[str, ...] = ("val", "test", "large", "hazards")
     """Shipped splits, or folders laid out like one."""
-    episodes: int | None = None
+    episodes: cli.Count | None = None
     """The first N episodes of each split; by default all."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
-    out: Path | None = None
+    out: cli.OutFile | None = None
     """Markdown file; it is only printed if not given."""
 
 
@@ -77,7 +78,7 @@ def main(args: Args) -> int:
     page = HEADER + "".join(_row(name, difficulty_of(name, args)) for name in args.splits)
     print(page)
     if args.out is not None:
-        args.out.write_text(page, encoding="utf-8")
+        write_atomically(args.out, page)
     return 0
 
 

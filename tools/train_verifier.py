@@ -36,6 +36,7 @@ from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
+from sim.files import write_atomically
 from sim.interface import Action, ConfigError
 from sim.paths import code_hash
 from stubborn.agent import AgentConfig, StubbornAgent
@@ -60,23 +61,23 @@ class Args:
     """With --semantics rednet: weights in place of the shipped ones."""
     split: str = "train"
     """A shipped split, or a folder with the same layout."""
-    episodes: int = 400
+    episodes: cli.Count = 400
     """Number of episodes, the first of the split."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
-    minutes: float | None = None
+    minutes: cli.NotNegative | None = None
     """Time limit of the episodes; 0 runs none."""
     judge: bool = False
     """Fit nothing; judge the existing parameters (--out) on these candidates, by category."""
-    max_steps: int = 200
+    max_steps: cli.Count = 200
     """Steps of an episode; an agent never verifies what it first finds after step 200."""
-    least_of_either: int = 20
+    least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled classifier."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of the episodes."""
-    log: Path | None = None
+    log: cli.OutFolder | None = None
     """Folder of the log; None: runs/verifier-<semantics>-<split>."""
-    out: Path | None = None
+    out: cli.OutFile | None = None
     """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
 
 
@@ -123,8 +124,7 @@ def main(args: Args) -> int:
         return 0
     about = {"name": split.name, "version": split.version}
     content = {"semantics": args.semantics, "command": command(args), "split": about} | fit(lines, args.least_of_either)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(json.dumps(content, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
     report(content)
     print(f"written: {file}")
     return 0

@@ -9,6 +9,7 @@ from above with the robot's true path (blue) and the contacts that stopped it (r
 from __future__ import annotations
 
 import csv
+import io
 import json
 import sys
 from collections.abc import Iterator, Sequence, Set
@@ -16,7 +17,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from rich.table import Table
 
@@ -25,6 +25,8 @@ from sim.analysis import display
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
 from sim.episodes.splits import Episode
+from sim.files import write_picture as save_picture
+from sim.files import write_together
 from sim.interface import Agent, ConfigError
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
@@ -47,7 +49,7 @@ COLUMNS: tuple[str, ...] = (
 class Args:
     """Options of the command."""
 
-    out: Path
+    out: cli.OutFolder
     """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
     split: str = "traps"
     """The traps: a shipped split, or a folder with the layout of one."""
@@ -55,9 +57,9 @@ class Args:
     """Names of agents: oracle, or names of `stubborn.agents`."""
     traps: tuple[str, ...] = ()
     """Names of traps; all if not given."""
-    headings: int = 3
+    headings: cli.Count = 3
     """Number of start headings of each trap."""
-    max_steps: int = 500
+    max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
     pictures: bool = True
     """Draw the first heading of each trap, and every episode in which an agent did not escape."""
@@ -77,8 +79,7 @@ def main(args: Args) -> int:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
-    write_csv(args.out / "traps.csv", rows)
-    (args.out / "traps.md").write_text(as_markdown(rows))
+    write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": as_markdown(rows)})
     console.print(as_table(rows))
     return 0
 
@@ -103,9 +104,8 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
 def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
     """Writes the picture of a trial."""
     belief = draw.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
-    folder.mkdir(exist_ok=True)
     path = folder / f"{trial.episode_id}_{trial.agent}.png"
-    cv2.imwrite(str(path), draw_trial(env, trial, belief)[..., ::-1])
+    save_picture(path, draw_trial(env, trial, belief))
 
 
 def make_agent(name: str, env: ObjectNavEnv) -> Agent:
@@ -153,12 +153,13 @@ def row_of(trial: Trial) -> dict[str, Any]:
     }
 
 
-def write_csv(file: Path, rows: Sequence[dict[str, Any]]) -> None:
-    """Writes all rows to a CSV file."""
-    with file.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, COLUMNS)
-        writer.writeheader()
-        writer.writerows(rows)
+def as_csv(rows: Sequence[dict[str, Any]]) -> str:
+    """Returns all rows as CSV text."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, COLUMNS)
+    writer.writeheader()
+    writer.writerows(rows)
+    return stream.getvalue()
 
 
 def grid(rows: Sequence[dict[str, Any]]) -> tuple[list[str], list[list[str]]]:

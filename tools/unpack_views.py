@@ -27,7 +27,7 @@ class Args:
 
     views: Path
     """Folder of shards."""
-    out: Path
+    out: cli.OutFolder
     """Folder for the PNG files; it is created."""
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from rich.markup import escape
 from rich.table import Table
@@ -108,18 +108,19 @@ def to_markdown(tables: Sequence[ResultTable]) -> str:
     return "\n".join(parts)
 
 
-def write_csv(file: Path, tables: Sequence[ResultTable]) -> None:
-    """Writes one line for each cell that holds a number, of several tables; shares are not in percent."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(CSV_COLUMNS)
-        for table in tables:
-            for label, cells in table.rows:
-                for column, cell in zip(table.header[1:], cells, strict=True):
-                    if isinstance(cell, Cell):
-                        value = cell.estimate
-                        numbers = ("" if v is None else round(v, 6) for v in (value.mean, value.low, value.high))
-                        writer.writerow([table.name, label, column, *numbers, value.count, value.houses, cell.verdict])
+def to_csv(tables: Sequence[ResultTable]) -> str:
+    """Returns CSV text with a line for each cell of several tables that has a number; shares are not in percent."""
+    stream = io.StringIO()
+    writer = csv.writer(stream)
+    writer.writerow(CSV_COLUMNS)
+    for table in tables:
+        for label, cells in table.rows:
+            for column, cell in zip(table.header[1:], cells, strict=True):
+                if isinstance(cell, Cell):
+                    value = cell.estimate
+                    numbers = ("" if v is None else round(v, 6) for v in (value.mean, value.low, value.high))
+                    writer.writerow([table.name, label, column, *numbers, value.count, value.houses, cell.verdict])
+    return stream.getvalue()
 
 
 def _text(cell: Cell | str, separator: str = " ") -> str:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from sim import cli
 from sim.composition.agents import find_agent, find_explorer
 from sim.composition.segmenters import KINDS, check_semantics
 from sim.errors import ConfigError
@@ -45,11 +46,11 @@ class RunOptions:
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
-    episodes: int = 5
+    episodes: cli.Count = 5
     """The first N episodes of the split; with --house, N episodes are drawn."""
-    seed: int = 0
+    seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes, on this machine or over the cluster."""
     executor: str = "local"
     """Executor of the episodes: local processes, or ray (extra `ray`), a cluster of machines with the same code."""
@@ -65,7 +66,7 @@ class RunOptions:
     """FIELD=VALUE ...: fields of the configuration, for example task.max_steps=300 agent.planning.dilation_m=0.1."""
     config_file: Path | None = None
     """A TOML or JSON file of such fields; --config is applied after it."""
-    out: Path | None = None
+    out: cli.OutFolder | None = None
     """Folder of the results (runs/<time>); an existing run there is resumed."""
     record: bool = False
     """Write a compact trajectory file of each episode, for `sim.task.trajectory.read_trajectory`."""

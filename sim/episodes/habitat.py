@@ -11,6 +11,7 @@ A split named `val` has the files `val.json.gz` (version, order of the episodes,
 from __future__ import annotations
 
 import gzip
+import io
 import json
 import math
 from pathlib import Path
@@ -82,9 +83,9 @@ def read_json(path: Path) -> Json:
     return content
 
 
-def write_json(path: Path, content: Json) -> None:
-    """Writes one gzipped JSON object; the same content gives the same bytes."""
-    text = json.dumps(content, separators=(",", ":"), allow_nan=False)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb") as raw, gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as file:
+def zipped_json(content: Json) -> bytes:
+    """Returns one gzipped JSON object; the same content gives the same bytes."""
+    text, raw = json.dumps(content, separators=(",", ":"), allow_nan=False), io.BytesIO()
+    with gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as file:
         file.write(text.encode("utf-8"))
+    return raw.getvalue()

@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 
 from sim.episodes import habitat
 from sim.errors import EpisodeError, HouseError
+from sim.files import inside, write_together
 from sim.geometry.pose import Pose
 from sim.housegen.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
@@ -167,18 +168,21 @@ def write_split(
         version: version of the split.
         unreachable: for each house, names of the goal instances that cannot be reached; None: not computed.
     """
-    for stale in (folder / "content").glob("*.json.gz"):
-        stale.unlink()
-    if unreachable is not None:
-        _write_unreachable(folder / UNREACHABLE_FILE, unreachable)
     index = {"version": version, "order": [episode.episode_id for episode in episodes], "episodes": []}
-    habitat.write_json(_index_of(folder), habitat.category_tables() | index)
+    files: dict[Path, bytes | str] = {}
     for house, goals in goals_by_house.items():
         content = habitat.category_tables() | {
             "goals_by_category": {habitat.goals_key(house, goal): listed for goal, listed in goals.items()},
             "episodes": [_to_habitat(folder.name, episode) for episode in episodes if episode.house == house],
         }
-        habitat.write_json(folder / "content" / f"{house}.json.gz", content)
+        files[inside(folder / "content", f"{house}.json.gz", what="name of a house")] = habitat.zipped_json(content)
+    stale = [file for file in (folder / "content").glob("*.json.gz") if file not in files]
+    if unreachable is not None:
+        files[folder / UNREACHABLE_FILE] = _unreachable_text(unreachable)
+    files[_index_of(folder)] = habitat.zipped_json(habitat.category_tables() | index)
+    write_together(files)
+    for file in stale:
+        file.unlink()
 
 
 def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
@@ -197,12 +201,12 @@ def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
         raise ConfigError(f"'{file}' is no JSON object of lists: {error!r}.") from None
 
 
-def _write_unreachable(file: Path, unreachable: Mapping[str, Sequence[str]]) -> None:
-    """Writes a line for each house that has unreachable instances."""
+def _unreachable_text(unreachable: Mapping[str, Sequence[str]]) -> str:
+    """Returns JSON with a line for each house that has unreachable instances."""
     lines = ",".join(
         f"\n{json.dumps(house)}: {json.dumps(list(names))}" for house, names in unreachable.items() if names
     )
-    file.write_text(f"{{{lines}\n}}\n", encoding="utf-8")
+    return f"{{{lines}\n}}\n"
 
 
 def _index_of(folder: Path) -> Path:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.errors import HouseError
+from sim.files import write_atomically
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
 
@@ -65,7 +66,7 @@ def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
     if sidecar.noise:
         content["noise"] = dict(sidecar.noise)
     text = json.dumps(content, indent=2, allow_nan=False)
-    sidecar_path(house_file).write_text(text + "\n", encoding="utf-8")
+    write_atomically(sidecar_path(house_file), text + "\n")
 
 
 def _parse(content: Mapping[str, Any]) -> Sidecar:

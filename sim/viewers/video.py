@@ -74,16 +74,31 @@ class VideoWriter:
                 "--video: this build of OpenCV cannot write VP9; the wheels of opencv-python-headless can."
             )
         self._frames: queue.Queue[NDArray[np.uint8] | None] = queue.Queue(maxsize=_WAITING_FRAMES)
+        self._written = 0
         self._thread = threading.Thread(target=self._encode, daemon=True, name="video")
         self._thread.start()
 
     def write(self, frame: NDArray[np.uint8]) -> None:
         """Adds a frame, uint8 RGB (height, width, 3); it must not be changed afterwards."""
         self._frames.put(frame)
+        self._written += 1
 
     def finish(self) -> None:
-        """Waits until all frames are encoded, and gives the file its name."""
+        """Waits until all frames are encoded, and gives the file its name.
+
+        Raises:
+            ConfigError: the file does not hold all frames, because the disk is full; it is removed.
+        """
         self._stop()
+        whole = cv2.VideoCapture(str(self._part))  # FFmpeg does not report a write that failed
+        frames = int(whole.get(cv2.CAP_PROP_FRAME_COUNT)) if whole.isOpened() else 0
+        whole.release()
+        if frames != self._written:
+            self._part.unlink(missing_ok=True)
+            raise ConfigError(
+                f"Cannot write the video '{self.file}': only {frames} of {self._written} frames are on the disk, which "
+                "is probably full. The same command films this episode again."
+            )
         self._part.replace(self.file)
 
     def discard(self) -> None:

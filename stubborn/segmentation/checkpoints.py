@@ -9,23 +9,49 @@ from __future__ import annotations
 import json
 import os
 import pickle
-from collections.abc import Mapping
-from dataclasses import asdict
+import struct
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import msgspec
 import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save_file
 from torch import Tensor
 
 from sim.interface import ConfigError
+from sim.reading import Number, convert, reason_of, require_small_zip
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
 
 _WRAPPERS = ("model_state", "state_dict", "model")
 _PARALLEL_PREFIX = "module."
 _CONFIG_KEY = "{family}_config"
+_BROKEN_PICKLE = (
+    pickle.UnpicklingError, RuntimeError, OSError, EOFError, LookupError, ValueError, TypeError, AttributeError,
+    AssertionError, ArithmeticError, MemoryError, struct.error,
+)  # fmt: skip
+"""What `torch.load` raises for files that are no checkpoints."""
+MAX_CHECKPOINT_BYTES = 2 << 30
+MAX_SIZE = 4096
+"""Largest number of channels, blocks or classes that a header may give."""
+MAX_WEIGHT = 1e12
+
+
+class _Calibration(msgspec.Struct):
+    scale: list[Number]
+    offset: list[Number]
+
+
+class _Metadata(msgspec.Struct):
+    """The part of a file's header that the segmenter reads."""
+
+    block_px: Annotated[int, msgspec.Meta(ge=1, le=64)] = 1
+    temperature: Annotated[float, msgspec.Meta(gt=0.0, le=1e6)] = 1.0
+    calibration: _Calibration | None = None
 
 
 def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None = None, *, half: bool = True) -> None:
@@ -44,8 +70,12 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
     header = {_CONFIG_KEY.format(family=family(model)): json.dumps(asdict(model.config))}
     header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
     part = file.with_name(file.name + ".part")
-    save_file(tensors, part, metadata=header)
-    os.replace(part, file)
+    try:
+        save_file(tensors, part, metadata=header)
+        os.replace(part, file)
+    except (SafetensorError, OSError) as error:
+        part.unlink(missing_ok=True)
+        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
 
 
 def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
@@ -56,16 +86,20 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     Raises:
         ConfigError: the file does not exist, is broken, or holds another network (the first different name is given).
     """
-    if not file.exists():
+    if not file.is_file():
         raise ConfigError(f"No weights at '{file}'.")
     if file.suffix == ".safetensors":
         tensors, metadata = _read_safetensors(file)
     else:
-        tensors, metadata = _read_checkpoint(file), {}
-    model = build_network(_config(file, metadata))
+        tensors, metadata = read_checkpoint(file), {}
+    convert(metadata, _Metadata, where=f"Weights '{file}', header")
+    config = _config(file, metadata)
     tensors = unwrap(tensors, file)
-    _check(file, tensors, model.state_dict())
-    model.load_state_dict({name: tensors[name] for name in model.state_dict()})
+    with torch.device("meta"):  # takes no memory, so that a size in the header cannot ask for more than the file has
+        wanted = build_network(config).state_dict()
+    _check(file, tensors, wanted)
+    model = build_network(config)
+    model.load_state_dict({name: tensors[name] for name in wanted})
     return model.eval(), metadata
 
 
@@ -100,16 +134,23 @@ def _decoded(header: Mapping[str, str]) -> dict[str, Any]:
     decoded: dict[str, Any] = {}
     for key, text in header.items():
         try:
-            decoded[key] = json.loads(text)
-        except ValueError:
+            decoded[key] = msgspec.json.decode(text)
+        except (ValueError, RecursionError):
             decoded[key] = text
     return decoded
 
 
-def _read_checkpoint(file: Path) -> Mapping[str, Any]:
+def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mapping[str, Any]:
+    """Returns the content of a PyTorch file, without running pickled code.
+
+    Raises:
+        ConfigError: the file is broken, expands to more than `MAX_CHECKPOINT_BYTES`, or holds no table.
+    """
+    if zipfile.is_zipfile(file):
+        require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
     try:
-        content = torch.load(file, map_location="cpu", weights_only=True)
-    except (pickle.UnpicklingError, RuntimeError, EOFError, OSError, ValueError, KeyError) as error:
+        content = torch.load(file, map_location=device, weights_only=True)
+    except _BROKEN_PICKLE as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise ConfigError(f"Weights '{file}' cannot be read as a PyTorch checkpoint of tensors: {reason}") from None
     if not isinstance(content, Mapping):
@@ -127,11 +168,15 @@ def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
         stored = metadata.pop(_CONFIG_KEY.format(family=name), None)
         if stored is None:
             continue
-        try:
-            fields: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
-            return config_class(**fields)
-        except (TypeError, AttributeError):
-            raise ConfigError(f"Weights '{file}' describe no network of ours: {stored!r}.") from None
+        where = f"Weights '{file}' describe no network of ours"
+        unknown = sorted(set(stored) - {each.name for each in fields(config_class)}) if isinstance(stored, dict) else ()
+        if unknown:
+            raise ConfigError(f"{where}: field '{unknown[0]}' is unknown.")
+        config = convert(stored, config_class, where=where)
+        largest = max(_whole_numbers(asdict(config)))
+        if largest > MAX_SIZE:
+            raise ConfigError(f"{where}: a size of {largest}, at most {MAX_SIZE} is allowed.")
+        return config
     return PUBLISHED
 
 
@@ -145,6 +190,13 @@ def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]
                 f"Weights '{file}' are of another network: '{name}' is {tuple(given[name].shape)}, "
                 f"not {tuple(tensor.shape)}."
             )
-    for name in given:
+    for name, tensor in given.items():
         if name not in wanted:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
+        if tensor.is_floating_point() and not bool((tensor.abs() <= MAX_WEIGHT).all()):  # NaN is not
+            raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")
+
+
+def _whole_numbers(values: Mapping[str, Any]) -> Iterator[int]:
+    for value in values.values():
+        yield from (each for each in (value if isinstance(value, tuple) else (value,)) if isinstance(each, int))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import time
 from dataclasses import dataclass
 
 import pytest
 
 from sim import cli
-from sim.errors import HouseError
+from sim.errors import HouseError, PhysicsError, debug
 from sim.interface import ConfigError
 
 
@@ -47,3 +50,93 @@ def test_a_usage_error_is_one_line(error: Exception, capsys: pytest.CaptureFixtu
 
     assert cli.run(Args, main, []) == 2
     assert capsys.readouterr().err == "error: no way\n"
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """Arguments with ranges."""
+
+    out: cli.OutFolder | None = None
+    """Folder."""
+    page: cli.OutFile | None = None
+    """File."""
+    seed: cli.Seed = 0
+    """Seed."""
+    counts: tuple[cli.Count, ...] = ()
+    """Counts."""
+    share: cli.Share | None = None
+    """Share."""
+    rate: cli.Positive = 1.0
+    """Rate."""
+    plain: float = 0.0
+    """Any number."""
+
+
+@pytest.mark.parametrize(
+    ("argv", "told"),
+    [
+        (["--seed", "-1"], "--seed must be at least 0, got -1."),
+        (["--counts", "1", "0"], "--counts must be at least 1, got 0."),
+        (["--share", "1.5"], "--share must be at most 1, got 1.5."),
+        (["--share", "nan"], "--share must be a finite number, got nan."),
+        (["--rate", "0"], "--rate must be more than 0, got 0.0."),
+        (["--rate", "1e308"], "--rate must be at most 1e+09, got 1e+308."),
+        (["--plain", "inf"], "--plain must be a finite number, got inf."),
+        (["--out", "/dev/null/x"], "--out '/dev/null/x' cannot be written"),
+        (["--page", "/dev"], "--page '/dev' is a folder; give the path of a file."),
+        (["--out", "n" * 300], "too long"),
+        (["--out", "a\x1b[31m"], "'a\\x1b[31m' holds a control character"),
+        (["--out", "a\udcff"], "'a\\udcff' holds a control character or a byte that is not UTF-8"),
+    ],
+)
+def test_an_option_out_of_its_range_is_named_before_the_command_begins(
+    argv: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.run(Ranges, lambda args: pytest.fail("it began"), argv) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("error: ")
+    assert message.count("\n") == 1
+    assert told in message
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (OSError(28, "No space left on device"), "A file cannot be read or written: No space left on device."),
+        (OSError(28, "No space left on device", "a.mp4"), "'a.mp4' cannot be read or written: No space"),
+        (IsADirectoryError(21, "Is a directory", "a", None, "b"), "'a' and 'b' cannot be read or written"),
+        (MemoryError(), "not enough memory"),
+        (PhysicsError("it\x1b[31m flew"), "it\\x1b[31m flew"),
+    ],
+)
+def test_a_full_disk_and_the_like_are_one_line_and_with_debug_a_traceback_too(
+    error: Exception, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def main(args: Args) -> int:
+        raise error
+
+    assert cli.run(Args, main, []) == 2
+    message = capsys.readouterr().err
+    assert told in message
+    assert message.count("\n") == 1
+    assert cli.run(Args, main, ["--debug"]) == 2
+    assert "Traceback" in capsys.readouterr().err
+    assert not debug()
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_a_signal_ends_a_command_in_order(number: int, status: int, capsys: pytest.CaptureFixture[str]) -> None:
+    ended = []
+
+    def main(args: Args) -> int:
+        try:
+            os.kill(os.getpid(), number)
+            time.sleep(5)
+        finally:
+            ended.append(True)
+        return 0
+
+    assert cli.run(Args, main, [], stopped="Resume it.") == status
+    assert ended == [True]
+    assert capsys.readouterr().err == "\nResume it.\n"
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL

@@ -16,6 +16,7 @@ from rich.table import Table
 from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.paths import code_hash
+from sim.reading import reason_of
 from sim.sensors.opengl import describe_gl
 from tools.benchmarks.calibration import Calibration
 from tools.benchmarks.figures import Figure
@@ -99,20 +100,26 @@ def to_markdown(figures: Sequence[Figure], about: Mapping[str, Any], calibration
 
 
 def write_between_marks(page: Path, text: str) -> None:
-    """Writes a text between the two marks of a page.
+    """Writes a text between the two marks of a page; raises ConfigError like `around_marks`."""
+    before, after = around_marks(page)
+    write_atomically(page, f"{before}\n\n{text}\n{after}")
+
+
+def around_marks(page: Path) -> tuple[str, str]:
+    """Returns the text of a page up to its first mark and from its second mark on.
 
     Raises:
         ConfigError: there is no such page, or it has no marks.
     """
     try:
         old = page.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(f"--markdown '{page}' cannot be read: {error.strerror}.") from None
+    except (OSError, UnicodeError) as error:
+        raise ConfigError(f"--markdown '{page}' cannot be read: {reason_of(error)}.") from None
     before, begin, rest = old.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise ConfigError(f"--markdown '{page}' has no place for the table: two lines, {BEGIN} and {END}.")
-    write_atomically(page, f"{before}{begin}\n\n{text}\n{end}{after}".encode())
+    return before + begin, end + after
 
 
 def _quantity(value: float, unit: str) -> str:

@@ -17,7 +17,7 @@ from sim.analysis.comparison import (
     read_run,
     require_same_episodes,
 )
-from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_markdown, to_rich, write_csv
+from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
@@ -179,8 +179,7 @@ def test_a_cell_is_shown_in_percent_and_written_as_a_share(tmp_path: Path) -> No
     )
     assert "| who | a\\|b | gain |\n| --- | ---: | ---: |\n" in to_markdown([table])
     assert "| stubborn | 50.0 [25.0, 75.0] | -12.5 [-25.0, +0.0] unresolved |" in to_markdown([table])
-    write_csv(tmp_path / "t.csv", [table])
-    assert (tmp_path / "t.csv").read_text().splitlines() == [
+    assert to_csv([table]).splitlines() == [
         "table,row,column,value,low95,high95,episodes,houses,verdict",
         "t,stubborn,a|b,0.5,0.25,0.75,40,8,",
         "t,stubborn,gain,-0.125,-0.25,0.0,40,8,unresolved",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import resource
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -278,3 +279,57 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
     sofa = np.argwhere((before == (56, 158, 80)).all(axis=2)).mean(axis=0)
     assert sofa[1] > 200  # in the east, which is right
     assert sofa[0] == pytest.approx(150, abs=8)
+
+
+def test_a_video_that_the_disk_cannot_hold_is_an_error_and_no_file(tmp_path: Path) -> None:
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    frames = np.random.default_rng(0).integers(0, 256, (3, 96, 128, 3), np.uint8)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2_000, limit[1]))  # larger files cannot be written
+    try:
+        writer = VideoWriter(tmp_path / "a.mp4", size_px=(128, 96))
+        for frame in frames:
+            writer.write(frame)
+        with pytest.raises(ConfigError, match=r"a\.mp4.*of 3 frames"):
+            writer.finish()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_where_a_stop_counts(
+    env: ObjectNavEnv,
+) -> None:
+    env.reset(options={"episode": EPISODE})
+    truth, start = env.scene.task.truth, EPISODE.start
+    target = truth.target("sofa")
+    path_m = shortest_path_m(truth.space(), target, (start.x_m, start.y_m))
+    length_m = float(np.hypot(*np.diff(path_m, axis=0).T).sum())
+    assert length_m == pytest.approx(env.scene.task.metrics()["shortest_path"], abs=0.1)
+    assert target.region.succeeds(path_m[-1][0] + 0.05, path_m[-1][1])
+
+
+@pytest.mark.parametrize(
+    ("line", "nearest_m", "detects", "expected"),
+    [
+        ({"success": 1.0, "end_reason": "stop"}, 0.72, True, "The STOP counts: the nearest chair is 0.72 m away"),
+        ({"end_reason": "stop", "failure": "false_detection"}, 4.2, True, "False detection: the agent took another"),
+        (
+            {"end_reason": "stop", "failure": "false_detection"},
+            4.2,
+            False,
+            "The STOP came too early: the nearest chair",
+        ),
+        ({"end_reason": "stop", "failure": "misc"}, 1.3, True, "The STOP came too early: the nearest chair is 1.3 m"),
+        ({"end_reason": "stop", "failure": "misc"}, 0.8, True, "but a wall or a door hides it"),
+        ({"end_reason": "stop", "failure": "false_detection"}, None, True, "there is no chair on this storey"),
+        ({"end_reason": "max_steps", "failure": "explore"}, 3.0, True, "used up. The goal was never in sight."),
+        ({"end_reason": "fallen", "failure": "stairs"}, 3.0, True, "drove over an edge"),
+    ],
+)
+def test_the_end_is_explained_by_what_happened(
+    line: dict, nearest_m: float | None, detects: bool, expected: str
+) -> None:
+    whole = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0} | line
+    outcome = explain_end(whole, "chair", SuccessRule(), nearest_m, detects=detects)
+    assert expected in outcome.sentence
+    assert outcome.found == bool(whole["success"])

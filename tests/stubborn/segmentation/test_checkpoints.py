@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import re
 from pathlib import Path
 
 import pytest
+import safetensors.torch
 import torch
 
 from sim.interface import ConfigError
@@ -96,3 +99,41 @@ def test_a_saved_network_loads_with_the_same_size_and_weights(tmp_path: Path) ->
     assert metadata == {"temperature": 1.25, "command": "none"}
     with torch.inference_mode():
         assert torch.equal(model(rgb, depth), loaded(rgb, depth))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e30])
+def test_weights_without_meaning_are_refused_by_name(value: float, tmp_path: Path) -> None:
+    model = RedNet(TINY)
+    with torch.no_grad():
+        model.get_parameter("conv1.weight")[0, 0, 0, 0] = value
+    save_network(tmp_path / "net.safetensors", model, half=False)
+    with pytest.raises(ConfigError, match=r"'conv1\.weight' holds NaN, infinity or a number beyond 1e\+12"):
+        load_network(tmp_path / "net.safetensors")
+
+
+@pytest.mark.parametrize(
+    ("header", "told"),
+    [
+        ({"rednet_config": {"width": 4096}}, "of another network: 'conv1.weight' is"),
+        ({"rednet_config": {"width": 10**9}}, "a size of 1000000000, at most 4096"),
+        ({"rednet_config": {"width": "wide"}}, "field 'width': expected int, got str"),
+        ({"rednet_config": {"depth": 4}}, "field 'depth' is unknown"),
+        ({"rednet_config": 7}, "expected object, got int"),
+        ({"rednet_config": {"encoder_blocks": [0, 1, 1, 1]}}, "at least one channel"),
+        ({"block_px": 0}, "header, field 'block_px': expected int >= 1"),
+        ({"block_px": "x"}, "field 'block_px'"),
+        ({"temperature": -1.0}, "field 'temperature'"),
+        ({"calibration": {"scale": []}}, "field 'calibration': object missing required field offset"),
+        ({"calibration": 3}, "field 'calibration'"),
+    ],
+)
+def test_a_header_that_is_wrong_or_asks_for_too_much_is_refused(
+    header: dict[str, object], told: str, tmp_path: Path
+) -> None:
+    safetensors.torch.save_file(
+        {"conv1.weight": torch.zeros(1)},
+        tmp_path / "net.safetensors",
+        metadata={key: json.dumps(value) for key, value in header.items()},
+    )
+    with pytest.raises(ConfigError, match=re.escape(told)):
+        load_network(tmp_path / "net.safetensors")
