@@ -6,6 +6,7 @@ compartment or glass. Supports, tops, fronts and handles are drawn from `parts`.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -50,7 +51,7 @@ def _cuts(w: Workbench, low: float, high: float, count: int) -> list[Range]:
     edges = [low]
     for share in shares:
         edges.append(edges[-1] + share * (high - low) / sum(shares))
-    return list(zip(edges[:-1], edges[1:], strict=True))
+    return list(itertools.pairwise(edges))
 
 
 @dataclass(frozen=True)

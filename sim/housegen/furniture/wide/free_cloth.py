@@ -192,15 +192,15 @@ def free_heap(w: Workbench) -> None:
         high, power, taper = w.length(0.25, 0.55), w.choice((2.0, 3.0, 10.0)), w.length(0.75, 1.0)
         rings = [
             Ring(0.0, taper * r, taper * r, power=power),
-            *parts.hollow_rings(high, r, r, 0.5 * high, 0.012, power),
+            *parts.hollow_rings(high, r, r, 0.3 * high, 0.012, power),
         ]
         w.mesh(loft(rings, 16), (0.0, 0.0, 0.0), w.look(w.choice(("wicker", "plastic", "linen", "metal"))))
-        z = 0.55 * high
+        z = 0.72 * high
     for i in range(w.whole(2, 5)):
         a, size = 2.4 * i + w.length(0.0, 1.0), w.length(1.2, 1.9) * r * (0.85 if basket else 1.3)
         out = 0.15 * r if basket else w.length(0.0, 0.6) * r
-        rise = w.length(0.1, 0.22) + (0.55 * high - z if basket and i == 0 else 0.0)
-        shape = parts.crumpled_cloth(w, size, w.length(0.7, 1.0) * size, max(rise, 0.1))
+        rise = w.length(0.1, 0.22)
+        shape = parts.crumpled_cloth(w, size, w.length(0.7, 1.0) * size, rise)
         w.mesh(shape, (out * math.cos(a), out * math.sin(a), z), garments.garment_look(w), turn=a, solid=not basket)
         z += 0.03
 

@@ -112,10 +112,11 @@ def _weight_bench(w: Workbench) -> None:
         w.bar((x0 + 0.15, 0.0, high - 0.1), (at[0] - 0.02, 0.0, at[2]), 0.05, 0.05, iron)
     if w.chance(0.75):
         z, y, x = w.length(0.85, 1.15), w.length(0.4, 0.55), x0 + 0.1
+        radius, discs = w.length(0.12, 0.22), w.whole(1, 3)
         w.box(parts.centred(x, 0.05), (-y, y), (0.0, 0.05), iron)
         for side in BOTH_SIDES:
             w.box(parts.centred(x, 0.05), parts.centred(side * y, 0.05), (0.0, z), iron)
-            end = weight_discs(w, x, side * (y + 0.14), z + 0.012, side, w.length(0.12, 0.22), w.whole(1, 3))
+            end = weight_discs(w, x, side * (y + 0.14), z + 0.012, side, radius, discs)
             w.rod((x, side * (y + 0.1), z + 0.012), (x, end + side * 0.08, z + 0.012), 0.024, w.look("chrome"))
         w.rod((x, -y - 0.2, z + 0.012), (x, y + 0.2, z + 0.012), 0.014, w.look("chrome"))
 

@@ -38,6 +38,7 @@ def _grow(w: Workbench, z: float, tall: float, pot: float) -> None:
     bark = w.look("wood") if habit == "trunk" or w.chance(0.4) else green
     count = w.whole(1, 3) if habit == "trunk" else w.whole(3, 7)
     thick = w.length(0.008, 0.022) if habit == "trunk" else w.length(0.003, 0.008)
+    thick = min(thick, 0.03 * tall)
     tufts: list[Point] = []
     for i in range(count):
         angle, lean = 2.4 * i + w.length(0.0, 1.0), w.length(0.02, 0.25) * tall

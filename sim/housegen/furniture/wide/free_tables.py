@@ -82,7 +82,7 @@ def free_bedside_table(w: Workbench) -> None:
 
 
 def free_desk(w: Workbench) -> None:
-    """Builds a desk: a top on any base, often with a block of drawers or a raised shelf."""
+    """Builds a desk: a top on any base, often with a block of drawers or a panel at its back."""
     deep, wide, high = w.depth(0.54, 0.78), w.width(0.95, 1.60), w.length(0.71, 0.76)
     _table(w, deep, wide, high, column=0.0, extras=0.3)
     if w.chance(0.4):
@@ -92,12 +92,9 @@ def free_desk(w: Workbench) -> None:
         w.box((-0.4 * deep, 0.38 * deep), y, (z[0], high - 0.008), look)
         edges = parts.graded_rows(z[0] + 0.01, z[1], w.whole(1, 4), w.choice((1.0, 1.3)))
         parts.styled_drawers(w, 0.38 * deep, y, edges, look, w.look("steel"), "flat", w.choice(("bar", "knob", "slot")))
-    if w.chance(0.3):
-        z, back = high + w.length(0.12, 0.45), -0.5 * deep
-        look = parts.wood_look(w)
-        for y in (-0.4 * wide, 0.4 * wide):
-            w.box((-0.3 * deep - 0.1, -0.3 * deep + 0.06), (y - 0.01, y + 0.01), (high - 0.002, z), look)
-        w.box((max(back, -0.3 * deep - 0.12), -0.3 * deep + 0.07), (-0.42 * wide, 0.42 * wide), (z, z + 0.02), look)
+    elif w.chance(0.4):
+        low = w.length(0.3, 0.7) * high
+        w.box((-0.32 * deep, -0.32 * deep + 0.018), (-0.34 * wide, 0.34 * wide), (low, high - 0.01), parts.wood_look(w))
 
 
 STYLES: tuple[Style, ...] = (
