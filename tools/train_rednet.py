@@ -25,7 +25,7 @@ import msgspec
 import numpy as np
 import torch
 from torch import Tensor
-from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
+from torch.optim.swa_utils import AveragedModel
 from torch.utils.data import DataLoader
 
 from sim import cli
@@ -47,7 +47,7 @@ from stubborn.segmentation.dataset import (
 from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
-from stubborn.segmentation.training import learning_rate, pyramid_loss
+from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
@@ -75,7 +75,8 @@ class Args:
     encoder_rate: cli.Positive = 1.0
     """With --imagenet: learning rate of that encoder relative to --rate."""
     average: cli.Share = 0.999
-    """Decay per step of the exponential average of the weights, which is evaluated and saved; 0: no average."""
+    """Decay per step of the exponential average of the weights, which is evaluated and saved; less in the first steps.
+    0: no average."""
     precision: str = "auto"
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
     rare_share: cli.Share = 0.0
@@ -152,7 +153,7 @@ class Trainer:
         model, self.started_from = _network(args)
         self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
-        self.average = AveragedModel(self.model, multi_avg_fn=get_ema_multi_avg_fn(args.average), use_buffers=True)
+        self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(args.average), use_buffers=True)
         self.precision = _precision(args.precision, self.device)
         self.optimiser = torch.optim.AdamW(_groups(self.model, args), lr=args.rate, weight_decay=args.weight_decay)
         shards = _all_shards(args.views)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.interface import MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
 
@@ -24,3 +25,7 @@ class GroundTruthSegmenter:
         target = semantic == MPCAT40_ID[goal]
         other = (semantic != 0) & ~target
         return Scores(target.astype(np.float32), other.astype(np.float32))
+
+    def categories(self, observation: Observation) -> NDArray[np.uint8]:
+        """Returns the category of each pixel, mpcat40 ids (h, w)."""
+        return observation["semantic"]

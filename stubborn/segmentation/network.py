@@ -137,6 +137,10 @@ class NetworkSegmenter:
             self._last = _Frame(observation["rgb"], probabilities)
         return self._last.posteriors
 
+    def categories(self, observation: Observation) -> UInt8[np.ndarray, "rows cols"]:
+        """Returns the most probable mpcat40 id of each pixel but void, at the resolution of `scores`."""
+        return (self.posteriors(observation).argmax(axis=0) + 1).astype(np.uint8)
+
     def logits(
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:

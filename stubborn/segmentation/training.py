@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import torch
 from jaxtyping import Float, Float32, Int64
@@ -33,6 +33,25 @@ def pyramid_loss(
         loss = nn.functional.cross_entropy(logits.float(), small, weight=weights, ignore_index=IGNORED)
         total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
     return total
+
+
+def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Tensor], Tensor | int], None]:
+    """Returns a function with which `torch.optim.swa_utils.AveragedModel` updates its average of the weights.
+
+    After n updates the decay is at most (1 + n) / (10 + n), so that the average forgets the initial weights soon.
+    Integers, such as the counts of batches, are copied.
+    """
+
+    def update(averaged: Sequence[Tensor], current: Sequence[Tensor], count: Tensor | int) -> None:
+        n = int(count)
+        step = 1.0 - min(decay, (1 + n) / (10 + n))
+        for old, new in zip(averaged, current, strict=True):
+            if torch.is_floating_point(old):
+                old.lerp_(new.to(old.dtype), step)
+            else:
+                old.copy_(new)
+
+    return update
 
 
 def learning_rate(step: int, total: int, *, peak: float, warmup: int) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 import torch
@@ -33,7 +34,17 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
     for name in ("one", "two"):
         write_views(tmp_path / name, 4)
     card = tmp_path / "card.md"
-    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, calibrate=True, card=card, threads=1)
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "train.csv").write_text("step,hours,loss\n20,0.1,9.5\n40,0.2,4.5\n")
+    (tmp_path / "run" / "val.csv").write_text("step,hours,miou_goals,accuracy\n40,0.2,0.3,0.7\n")
+    args = Args(
+        views=(tmp_path / "one", tmp_path / "two"),
+        weights=weights,
+        calibrate=True,
+        card=card,
+        curves=(tmp_path / "run",),
+        threads=1,
+    )
     before = load_network(weights)[0].state_dict()
     assert evaluate_rednet.main(args) == 0
     model, metadata = load_network(weights)
@@ -44,8 +55,12 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
     assert measured.views == 8
     assert measured.after.error < 0.5 * measured.before.error
     assert 0.0 <= measured.iou.goals <= 1.0
+    assert measured.frame_ms > 0.5
     text = card.read_text()
     assert "| number of views | 8 |" in text
+    for picture in ("card_confusion.png", "card_curves.png"):
+        assert f"({picture})" in text
+        assert cv2.imread(str(tmp_path / picture)).std() > 5.0
 
 
 def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_path: Path, weights: Path) -> None:
@@ -65,7 +80,16 @@ def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path
     ]
     with pytest.raises(ConfigError, match="needs blocks of 1 pixels, but the views are stored in blocks of 2"):
         evaluate_rednet.loader(RedNet(TINY), views, 1, 2)
-    with pytest.raises(ConfigError, match="one house"):
-        evaluate_rednet.split_by_house([(views[0], 1)])
     with pytest.raises(ConfigError, match="--threads must be at least 1"):
         evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=0))
+
+
+def test_views_of_one_house_and_folders_without_a_training_are_refused(tmp_path: Path, weights: Path) -> None:
+    write_views(tmp_path / "one", 1)
+    with pytest.raises(ConfigError, match="one house"):
+        evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=1))
+    write_views(tmp_path / "two", 2)
+    args = Args(views=(tmp_path / "two",), weights=weights, threads=1, card=tmp_path / "card.md", curves=(tmp_path,))
+    with pytest.raises(ConfigError, match=r"holds no training: train\.csv is missing"):
+        evaluate_rednet.main(args)
+    assert not (tmp_path / "card.md").exists()

@@ -16,7 +16,7 @@ import torch
 from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.rednet import COMPACT
-from tools import evaluate_rednet
+from tools.network_card import training_stages
 from tools.train_rednet import Args, main
 
 
@@ -94,7 +94,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         main(options(tmp_path, out=tmp_path / "finest", **slow | {"init": tmp_path / "finer/rednet.safetensors"})) == 0
     )
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
-    folders = [stage["options"]["out"] for stage in evaluate_rednet.training_stages(last)]
+    folders = [stage["options"]["out"] for stage in training_stages(last)]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
 
 

@@ -7,12 +7,13 @@ import itertools
 import numpy as np
 import pytest
 import torch
+from torch.optim.swa_utils import AveragedModel
 
 from sim.interface import CameraModel
 from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.samples import IGNORED, Sampler
-from stubborn.segmentation.training import learning_rate, pyramid_loss
+from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss
 from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -68,3 +69,20 @@ def test_a_tiny_network_can_be_fitted_to_one_view() -> None:
     model.eval()
     iou = Iou.of(confusion(model(rgb, depth).argmax(1).numpy(), target.numpy()))
     assert iou.accuracy > 0.85
+
+
+def test_the_average_forgets_the_initial_weights_and_then_changes_slowly() -> None:
+    network = torch.nn.Linear(1, 1, bias=False)
+    network.register_buffer("batches", torch.tensor(0))
+    torch.nn.init.constant_(network.weight, 100.0)
+    average = AveragedModel(network, multi_avg_fn=exponential_average(0.999), use_buffers=True)
+    torch.nn.init.constant_(network.weight, 1.0)
+    for _ in range(100):
+        network.batches += 1
+        average.update_parameters(network)
+    assert average.module.weight.item() == pytest.approx(1.0, abs=0.01)
+    assert average.module.batches.item() == 100
+    average.n_averaged += 20000
+    torch.nn.init.constant_(network.weight, 2.0)
+    average.update_parameters(network)
+    assert average.module.weight.item() == pytest.approx(1.001, abs=0.01)
