@@ -19,8 +19,8 @@ from sim.housegen.furniture.item import Child, Geom, Item, MeshShape, Surface
 from sim.housegen.furniture.shapes import named_mesh
 from sim.housegen.furniture.transforms import bounds, euler_from_matrix, matrix_from_euler
 
-STRETCH = (0.86, 1.14)
-"""Smallest and largest factor of the depth, width and height of an item."""
+STRETCH = ((0.86, 0.86, 0.92), (1.14, 1.14, 1.08))
+"""Smallest and largest factors of the depth, width and height of an item."""
 LEVELS = (0.75, 1.3)
 """Smallest and largest factor of one of the three ranges of height, before the whole is scaled to its height."""
 TALL_M = 1.6
@@ -31,6 +31,8 @@ ONE_HANDED = frozenset(("shower", "sofa", "bathtub"))
 """Categories with a side that belongs to a corner of the room: they are not mirrored."""
 _ROUND_M = 0.06
 """Radius from which an upright cylinder counts as a round part, which needs equal factors of depth and width."""
+_ROOM_M = 0.1
+"""Height of the highest part of an item above one of its tops from which that space is kept: for a screen."""
 _SIDES = np.diag([1.0, -1.0, 1.0])
 
 
@@ -83,21 +85,19 @@ def reshaped(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> 
 
 
 def _draw(item: Item, rng: np.random.Generator, hints: Mapping[str, Any]) -> Warp:
-    x, y, z = rng.uniform(*STRETCH, size=3)
-    if any(geom.shape == "cylinder" and geom.size_m[0] > _ROUND_M and _upright(geom) for geom in item.geoms):
-        x = y
-    if hints.get("depth_m") is not None:
-        x = 1.0
-    if hints.get("width_m") is not None:
-        y = 1.0
-    if hints.get("height_m") is not None:
-        z = 1.0
-    if item.size_m[2] > TALL_M or item.mount == "wall":
-        z = min(z, 1.0)
+    hinted = [hints.get(name) is not None for name in ("depth_m", "width_m", "height_m")]
+    x, y, z = np.where(hinted, 1.0, rng.uniform(*STRETCH, size=3))
     top = item.size_m[2]
+    if any(geom.shape == "cylinder" and geom.size_m[0] > _ROUND_M and _upright(geom) for geom in item.geoms):
+        x = y = x if hinted[0] else y
+    if top > TALL_M or item.mount == "wall":
+        z = min(z, 1.0)
+    holds_screen = any(surface.kind == "top" and surface.centre_m[2] < top - _ROOM_M for surface in item.surfaces)
+    if holds_screen:
+        x, y, z = max(x, 1.0), max(y, 1.0), 1.0
     cuts = np.sort(rng.uniform(0.15, 0.85, size=2))
     knots = top * np.array([0.0, cuts[0], max(cuts[1], cuts[0] + 0.05), 1.0])
-    parts = np.diff(knots) * rng.uniform(*LEVELS, size=3)
+    parts = np.diff(knots) * (1.0 if holds_screen else rng.uniform(*LEVELS, size=3))
     heights = np.concatenate([[0.0], np.cumsum(parts) * z * top / parts.sum()])
     mirrored = bool(rng.random() < 0.5) and item.category not in ONE_HANDED
     return Warp(float(x), float(y), knots, heights, mirrored)
