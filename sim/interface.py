@@ -14,7 +14,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -197,6 +197,18 @@ class Segmenter(Protocol):
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of one frame for the goal category."""
+        ...
+
+
+@runtime_checkable
+class NamesCategories(Protocol):
+    """A segmenter that also tells the category of each pixel; viewers show it."""
+
+    def categories(self, observation: Observation) -> NDArray[np.uint8]:
+        """Returns the most probable mpcat40 id of each pixel, at any whole fraction of the image's resolution.
+
+        Called after `scores` of the same frame.
+        """
         ...
 
 

@@ -17,7 +17,7 @@ from typing import Any, Literal
 
 from sim import cli
 from sim.analysis import display
-from sim.composition.human import HUMAN, Cockpit, Human, Quit
+from sim.composition.human import HUMAN, Cockpit, Human, Quit, judged
 from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.composition.runner import identity_of, make_env, plan_episodes
@@ -185,7 +185,8 @@ def play(options: RunOptions, episode: Episode, cockpit: Cockpit, content: dict[
     viewers = [VideoRecorder(options.out, AgentMapPainter(human.mapper, show_plan=False))] if options.video else []
     try:
         seed = episode_seed(options.seed, episode.episode_id)
-        line = identity_of(options, HUMAN, episode) | play_episode(env, human, episode, seed=seed, viewers=viewers)
+        metrics = judged(play_episode(env, human, episode, seed=seed, viewers=viewers))
+        line = identity_of(options, HUMAN, episode) | metrics
         about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
         record_episode(env, options.out, line, about | {"versions": content["versions"]})
         return line

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import wrap
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.interface import MPCAT40, MPCAT40_ID, Action, AgentSpec, Observation
-from sim.viewers.overlay import ACTION_WORDS, colour_depth, in_words
+from sim.viewers.overlay import colour_depth
 from sim.viewers.palette import colour_segmentation
 from sim.viewers.terminal import Colours, beside, fitted, half_blocks
+from sim.viewers.words import ACTION_WORDS, in_words
 from stubborn.agent import StubbornAgent
 from stubborn.draw import AgentMapPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -33,7 +34,7 @@ LAYOUTS = ("both", "camera", "map")
 _STRUCTURE = frozenset(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
 
 
-class Quit(Exception):
+class Quit(KeyboardInterrupt):
     """The person has quit."""
 
 
@@ -132,6 +133,14 @@ class Human:
         if self.camera == "depth":
             return colour_depth(observation["depth"], self._env.camera_model)
         return observation["rgb"]
+
+
+def judged(line: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the result line of an episode that a person ended: a STOP elsewhere is `stopped_short`.
+
+    `false_detection` says that a segmentation took another object for the goal. A person has no segmentation.
+    """
+    return {**line, "failure": "stopped_short"} if line["failure"] == "false_detection" else dict(line)
 
 
 def _names_in_sight(semantic: NDArray[np.uint8], most: int = 8) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from sim.composition.run_config import RunConfig, configuration_of, sensors_of, 
 from sim.composition.segmenters import NoSegmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
-from sim.errors import ConfigError, EpisodeError
+from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.interface import AgentSpec, Segmenter
 from sim.sensors.sensor import Sensor
@@ -36,7 +37,11 @@ class EpisodeRunner:
         self._agent = build_agent(
             options.agent, spec, self._env, segmenter=segmenter, verifier=verifier, config=config.agent
         )
-        self._viewers = selection.make(options, spec.painter(self._agent) if spec.painter else None)
+        self._viewers = selection.make(
+            options,
+            spec.painter(self._agent) if spec.painter else None,
+            segmenter if spec.uses_segmentation else None,
+        )
         self._about = {
             "profile": options.profile,
             "noise": options.noise,
@@ -48,13 +53,28 @@ class EpisodeRunner:
         """Runs one episode and returns its result line."""
         seed = episode_seed(self._options.seed, episode.episode_id)
         try:
-            metrics = play_episode(self._env, self._agent, episode, seed=seed, viewers=self._viewers)
-        except EpisodeError as error:
-            return error_line(self._options, episode, str(error))
+            metrics = play_episode(
+                self._env, self._agent, episode, seed=seed, viewers=self._viewers, name=self._options.agent
+            )
+        except (ConfigError, RenderError, OSError):  # concerns every episode: an option, OpenGL, the disk
+            raise
+        except Exception as error:  # one bad house, start or agent does not end a run of many
+            return self._broken(episode, error)
         line = identity_of(self._options, self._spec, episode) | metrics
         if self._options.record and self._options.out is not None:
             record_episode(self._env, self._options.out, line, self._about)
         return line
+
+    def _broken(self, episode: Episode, error: Exception) -> dict[str, Any]:
+        """Returns the line of an episode that raised an error; unfinished recordings are discarded."""
+        if debug():
+            traceback.print_exc()
+        for viewer in self._viewers:
+            viewer.close()
+        told = str(error)
+        if not isinstance(error, ObjectNavError):
+            told = f"{type(error).__name__}: {told} (unexpected; --debug shows where)"
+        return error_line(self._options, episode, " ".join(told.split()))
 
     def close(self) -> None:
         """Frees the renderers; viewers discard an unfinished recording."""

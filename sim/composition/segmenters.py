@@ -13,6 +13,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.env.objectnav import ObjectNavEnv
@@ -58,6 +61,11 @@ class TrueSegmentation:
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns scores 1 and 0, float32 (h, w), of the frame that the environment rendered last."""
         return self._scores_of.scores({"semantic": self._env.truth_images["semantic"]}, goal)
+
+    def categories(self, observation: Observation) -> NDArray[np.uint8]:
+        """Returns the true category of each pixel, uint8 (h, w)."""
+        del observation
+        return self._env.truth_images["semantic"]
 
 
 class NoSegmentation:

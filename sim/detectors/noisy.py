@@ -104,7 +104,7 @@ class Classification(NamedTuple):
 
 
 class NoisySegmenter:
-    """The simulated detector of this module. It keeps no state from frame to frame."""
+    """The simulated detector of this module. The scores of a frame depend on no other frame."""
 
     spec = SegmenterSpec(sensors=(), truth=("geom",))
 
@@ -118,6 +118,12 @@ class NoisySegmenter:
         self.config = config
         self._episode = episode
         self._world: World | None = None
+        self._categories = np.zeros((1, 1), np.uint8)
+
+    def categories(self, observation: Observation) -> NDArray[np.uint8]:
+        """Returns the category that each pixel was given in the frame that was scored last; 0: none."""
+        del observation
+        return self._categories
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of the frame that the environment rendered last, at 1 / `stride_px` of its size.
@@ -200,6 +206,7 @@ class NoisySegmenter:
             borderMode=cv2.BORDER_REPLICATE,
         )
         shown = np.asarray(warped, np.intp)
+        self._categories = np.append(classified.first, 0).astype(np.uint8)[shown]
         odds = (target / (1.0 - target)).astype(np.float32)[shown] * np.exp(np.float32(c.blob_logit) * np.asarray(blob))
         remaining = 1.0 / (1.0 + odds)
         scores = np.stack([odds * remaining, (other / (1.0 - target)).astype(np.float32)[shown] * remaining], axis=-1)

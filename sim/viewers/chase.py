@@ -55,7 +55,7 @@ class ChaseView:
     """
 
     def __init__(self, scene: Scene, *, width_px: int = 400, height_px: int = 250) -> None:
-        model, labels = scene.world.model, scene.world.labels
+        model = scene.world.model
         self._world = scene.world
         self._size = CameraModel(width_px=width_px, height_px=height_px, hfov_rad=HFOV_RAD)
         self._rect = mujoco.MjrRect(0, 0, width_px, height_px)
@@ -88,7 +88,7 @@ class ChaseView:
         near_enough = np.linalg.norm(offset, axis=1) < self._reach_m
         bound = self._world.model.geom_rbound[self._geoms]
         ahead = (offset @ axes[0] + bound > near_m) | (bound <= 0.0)
-        lamps = self._lamps.choose(data, robot_m, axes[0] * (1.0, 1.0, 0.0))
+        lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)
         self._scene.fill(data, self._geoms[near_enough & ahead], eye_m, axes, self._slopes, near_m)
         self._lamps.restore()
@@ -120,11 +120,11 @@ class ChaseView:
         robot = self._world.robot
         forward = np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), 0.0])
         top_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + robot.height_m])
-        band_m = top_m - (0.0, 0.0, 2.2 * _BAND_M)
+        band_m = top_m - np.array([0.0, 0.0, 2.2 * _BAND_M])
         lens_m, reach = band_m + robot.radius_m * forward, 0.8 * robot.radius_m * forward
         self._add(mujoco.mjtGeom.mjGEOM_CYLINDER, (robot.radius_m + 0.003, _BAND_M, 0.0), band_m, _DARK)
         self._add(mujoco.mjtGeom.mjGEOM_SPHERE, (_LENS_M, 0.0, 0.0), lens_m, _LENS)
-        lid_m = top_m + (0.0, 0.0, 0.03)
+        lid_m = top_m + np.array([0.0, 0.0, 0.03])
         arrow = self._add(mujoco.mjtGeom.mjGEOM_ARROW, (0.01, 0.01, 0.01), lid_m, _ARROW)
         mujoco.mjv_connector(arrow, mujoco.mjtGeom.mjGEOM_ARROW, 0.022, lid_m - reach, lid_m + reach)
 

@@ -1,12 +1,16 @@
-"""Composes a video frame of 1280 x 720 pixels: camera, depth, segmentation, the agent's map and its state.
+"""Composes a video frame of 1280 x 720 pixels.
 
-    +--------------------------------------------------------------+
-    | Looking for a chair     step 48 / 500   turn left   [blocked] |
-    +----------------+----------------+----------------------------+
-    | camera         | segmentation   | map                        |
-    | depth          | in sight       | legend of the map          |
-    |                |                | state of the agent         |
-    +----------------+----------------+----------------------------+
+    +---------------------------------------------------------------------+
+    | Looking for a chair          step 48 / 500   turn left   [collision] |
+    +-----------------------------------+---------------------+-----------+
+    | camera, 640 x 480                 | the robot in        | depth     |
+    |                                   | third person        | in sight  |
+    |                                   +----------------+----+-----------+
+    |                                   | the agent's    | the true       |
+    +-----------+-----------+-----------+ map            | plan           |
+    | predicted | score of  | true      +----------------+----------------+
+    | segments  | the goal  | segments  | legends, state of the agent     |
+    +-----------+-----------+-----------+---------------------------------+
 
 A text that is too wide for its place is written smaller.
 """
@@ -21,100 +25,234 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40, MPCAT40_ID, Action, CameraModel
+from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Scores
 from sim.viewers.palette import PALETTE, colour_segmentation
+from sim.viewers.text import BOLD, NORMAL, text_width, wrapped, write
 from sim.viewers.viewer import Colour, Moment
+from sim.viewers.words import ACTION_WORDS, Outcome, in_words, with_article
 
 Picture = NDArray[np.uint8]
 WIDTH_PX, HEIGHT_PX = 1280, 720
+MAP_PX = 296
+"""Edge of both maps in the frame."""
+CHASE_PX = (400, 250)
+"""Width and height of the view in third person."""
 PAPER: Colour = (246, 246, 244)
 INK: Colour = (28, 28, 30)
-PALE: Colour = (110, 110, 114)
-HEADER: Colour = (36, 40, 48)
+PALE: Colour = (104, 106, 112)
+HEADER: Colour = (30, 34, 42)
+WHITE: Colour = (255, 255, 255)
 GOAL: Colour = (228, 28, 130)
-ALARM: Colour = (204, 42, 32)
-ACTION_WORDS: Mapping[Action, str] = {
-    Action.STOP: "stop",
-    Action.MOVE_FORWARD: "forward",
-    Action.TURN_LEFT: "turn left",
-    Action.TURN_RIGHT: "turn right",
-}
+ALARM: Colour = (222, 40, 30)
+FOUND: Colour = (120, 226, 145)
+MISSED: Colour = (255, 138, 122)
 MIN_SHARE = 0.0005
 """Categories that cover less of the frame are not named, except the goal."""
 
-_FONT = cv2.FONT_HERSHEY_SIMPLEX
-_HEADER_PX, _TITLE_PX, _GAP_PX = 52, 22, 8
-_IMAGE = (400, 300)
-_MAP_PX = 448
-_LEFT, _MIDDLE = _GAP_PX, 2 * _GAP_PX + _IMAGE[0]
-_RIGHT = 3 * _GAP_PX + 2 * _IMAGE[0]
-_TOP = _HEADER_PX + _GAP_PX + _TITLE_PX
-_BELOW = _TOP + _IMAGE[1] + _TITLE_PX
-_ROW_PX = 21
+_HEADER_PX = 40
+_CAMERA = (8, 60, 640, 480)  # left, top, width, height
+_SMALL = (204, 153)
+_SMALL_TOP, _SMALL_LEFT = 562, (8, 226, 444)
+_CHASE = (656, 60, *CHASE_PX)
+_DEPTH = (1068, 60, 204, 153)
+_NAMES = (1068, 220, 204, 90)
+_MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
+_LEGEND_TOP, _ROW_PX, _COLUMNS = _MAPS_TOP + MAP_PX + 5, 14, 3
+_STATE_TOP = 691
+_FLASH_PX = 7
 
 
 @dataclass(frozen=True, kw_only=True)
 class MapPanel:
-    """The map beside the images."""
+    """The agent's map in a frame."""
 
     image: Picture
-    """(448, 448, 3); see `MAP_PX`."""
-    legend: tuple[tuple[str, Colour], ...]
+    """(MAP_PX, MAP_PX, 3)."""
     title: str
-    words: str
+    words: str = ""
     """What the agent is doing."""
 
 
-MAP_PX = _MAP_PX
-"""Edge of the map in the frame."""
+@dataclass(frozen=True, kw_only=True)
+class Perceived:
+    """What the agent's segmentation says about one frame."""
+
+    scores: Scores
+    categories: NDArray[np.uint8] | None
+    """mpcat40 ids (h, w) at any size; None: it does not name them."""
 
 
-def compose(moment: Moment, goal: str, camera: CameraModel, map_panel: MapPanel) -> Picture:
-    """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3)."""
-    frame = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
-    semantic = moment.seen("semantic")
-    _put(frame, moment.seen("rgb"), (_LEFT, _TOP), "camera")
-    _put(frame, _segmentation(semantic, goal), (_MIDDLE, _TOP), "segmentation (true)")
-    depth = np.asarray(_shrunk(moment.seen("depth")), np.float32)
-    _put(frame, colour_depth(depth, camera), (_LEFT, _BELOW), "depth")
-    _depth_scale(frame, camera)
-    _write(frame, "in sight", (_MIDDLE, _BELOW - 6), _IMAGE[0], 0.5, PALE)
-    _categories(frame, semantic, goal)
-    _write(frame, map_panel.title, (_RIGHT, _TOP - 6), _MAP_PX, 0.5, PALE)
-    frame[_TOP : _TOP + _MAP_PX, _RIGHT : _RIGHT + _MAP_PX] = map_panel.image
-    _map_legend(frame, map_panel)
-    frame[:_HEADER_PX] = HEADER
-    article = "an" if goal[0] in "aeiou" else "a"
-    _write(frame, f"Looking for {article} {in_words(goal)}", (_LEFT + 8, 35), 560, 0.9, (255, 255, 255), 2)
-    return frame
+class FrameComposer:
+    """Composes the frames of one episode; what does not change is drawn once.
+
+    Args:
+        goal: category that the episode asks for.
+        camera: the range of depth.
+        plan_legend: names and colours of the true plan.
+        map_legend: names and colours of the agent's map; empty without one.
+        max_steps: number of actions that the episode allows.
+    """
+
+    def __init__(
+        self,
+        goal: str,
+        camera: CameraModel,
+        *,
+        plan_legend: tuple[tuple[str, Colour], ...],
+        map_legend: tuple[tuple[str, Colour], ...] = (),
+        max_steps: int = 500,
+    ) -> None:
+        self.goal, self._camera, self._max_steps = goal, camera, max_steps
+        self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
+        frame = self._ground
+        frame[:_HEADER_PX] = HEADER
+        write(frame, f"Looking for {with_article(goal)}", (14, 28), 560, 24, WHITE, BOLD)
+        for box, title in (
+            (_CAMERA, "camera of the robot"),
+            (_CHASE, "third person"),
+            ((_SMALL_LEFT[2], _SMALL_TOP, *_SMALL), "segmentation (true)"),
+            ((_PLAN_LEFT, _MAPS_TOP, MAP_PX, MAP_PX), "plan (true)"),
+        ):
+            self._caption(frame, title, box)
+        self._caption(frame, "depth", (*_DEPTH[:2], 60, _DEPTH[3]))
+        _depth_scale(frame, camera)
+        _legend(frame, plan_legend, _PLAN_LEFT)
+        _legend(frame, map_legend, _MAP_LEFT)
+
+    def compose(
+        self,
+        moment: Moment,
+        *,
+        plan: Picture,
+        map_panel: MapPanel | None = None,
+        chase: Picture | None = None,
+        perceived: Perceived | None = None,
+    ) -> Picture:
+        """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3)."""
+        frame, semantic = self._ground.copy(), moment.images["semantic"]
+        _put(frame, moment.seen("rgb"), _CAMERA)
+        self._segmentations(frame, moment, perceived)
+        _put(frame, colour_depth(_resized(moment.seen("depth"), _DEPTH), self._camera), _DEPTH)
+        self._names(frame, semantic)
+        if chase is not None:
+            _put(frame, chase, _CHASE)
+        frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, _PLAN_LEFT : _PLAN_LEFT + MAP_PX] = plan
+        box = (_MAP_LEFT, _MAPS_TOP, MAP_PX, MAP_PX)
+        if map_panel is None:
+            self._empty(frame, "this agent shows no map", box)
+        else:
+            self._caption(frame, map_panel.title, box)
+            frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, _MAP_LEFT : _MAP_LEFT + MAP_PX] = map_panel.image
+            for row, words in enumerate(wrapped(map_panel.words, MAP_PX, 13)[:2]):
+                write(frame, words, (_MAP_LEFT, _STATE_TOP + 12 + 15 * row), MAP_PX, 13, INK)
+        write(frame, f"step {moment.step} / {self._max_steps}", (612, 27), 130, 18, WHITE)
+        write(frame, ACTION_WORDS[moment.action], (756, 27), 120, 18, WHITE, BOLD)
+        return frame
+
+    def add_outcome(self, frame: Picture, info: Mapping[str, Any]) -> None:
+        """Writes the outcome of the action into a frame of `compose`: collision and the counts so far."""
+        write(frame, str(info["episode_id"]), (890, 26), 230, 14, (170, 174, 182))
+        distance_m, count = info["distance_to_goal"], info["collisions"]
+        to_go = "no path to the goal" if distance_m is None else f"{distance_m:.1f} m to go"
+        collisions = f"{count} collision" + ("" if count == 1 else "s")
+        write(frame, f"driven {info['path_length']:.1f} m, {to_go}", (_PLAN_LEFT, _STATE_TOP + 3), MAP_PX, 14, INK)
+        write(frame, collisions, (_PLAN_LEFT, _STATE_TOP + 20), MAP_PX, 14, ALARM if info["collided"] else INK)
+        if info["collided"]:
+            self._flash(frame)
+
+    def add_end(self, frame: Picture, outcome: Outcome) -> None:
+        """Writes the outcome of the episode over the camera's picture, and its headline into the header."""
+        colour = FOUND if outcome.found else MISSED
+        frame[:_HEADER_PX, 600:] = HEADER
+        write(frame, outcome.headline, (612, 28), WIDTH_PX - 630, 22, colour, BOLD)
+        left, top, width, height = _CAMERA
+        lines = wrapped(outcome.sentence, width - 48, 18)[:5]
+        tall = 58 + 25 * len(lines)
+        card = frame[top + height - tall : top + height, left : left + width]
+        card[:] = (card.astype(np.uint16) * 1 // 5 + np.array(HEADER, np.uint16) * 4 // 5).astype(np.uint8)
+        frame[top + height - tall : top + height - tall + 4, left : left + width] = colour
+        base = top + height - tall + 38
+        write(frame, outcome.headline, (left + 24, base), width - 48, 24, colour, BOLD)
+        for row, words in enumerate(lines, start=1):
+            write(frame, words, (left + 24, base + 4 + 25 * row), width - 48, 18, WHITE)
+
+    def _segmentations(self, frame: Picture, moment: Moment, perceived: Perceived | None) -> None:
+        """Draws the predicted segmentation, the score of the goal and the true segmentation."""
+        boxes = [(left, _SMALL_TOP, *_SMALL) for left in _SMALL_LEFT]
+        _put(frame, segmentation_picture(_resized(moment.images["semantic"], boxes[2]), self.goal), boxes[2])
+        if perceived is None:
+            self._empty(frame, "no segmentation", boxes[0])
+            self._empty(frame, "no score", boxes[1])
+            return
+        if perceived.categories is None:
+            self._empty(frame, "scores of the goal only", boxes[0])
+        else:
+            self._caption(frame, "segmentation (predicted)", boxes[0])
+            _put(frame, segmentation_picture(_resized(perceived.categories, boxes[0]), self.goal), boxes[0])
+        target = perceived.scores.target
+        self._caption(frame, f"score of the goal, at most {float(target.max()):.2f}", boxes[1])
+        _put(frame, score_picture(_fitted(moment.seen("rgb"), boxes[1]), target), boxes[1])
+
+    def _names(self, frame: Picture, semantic: NDArray[np.uint8]) -> None:
+        """Writes names and colours of the visible categories, in two columns in a fixed order."""
+        left, top, width, height = _NAMES
+        rows, goal_id = height // _ROW_PX, MPCAT40_ID[self.goal]
+        for place, category in enumerate(names_in_sight(semantic, self.goal)[: 2 * rows]):
+            x, y = left + (place // rows) * (width // 2), top + (place % rows) * _ROW_PX
+            red, green, blue = PALETTE[category].tolist()
+            is_goal = category == goal_id
+            _swatch(frame, x, y, (red, green, blue), GOAL if is_goal else PALE)
+            name = in_words(MPCAT40[category])
+            colour, weight = (GOAL, BOLD) if is_goal else (INK, NORMAL)
+            write(frame, name, (x + 15, y + 10), width // 2 - 18, 12, colour, weight)
+
+    def _flash(self, frame: Picture) -> None:
+        """Marks a collision: a red frame around the camera's picture, and a badge in the header."""
+        left, top, width, height = _CAMERA
+        corner = left + width - 1, top + height - 1
+        half = _FLASH_PX // 2
+        cv2.rectangle(frame, (left + half, top + half), (corner[0] - half, corner[1] - half), ALARM, _FLASH_PX)
+        left, top, width, height = _CHASE
+        cv2.rectangle(frame, (left + 2, top + 2), (left + width - 3, top + height - 3), ALARM, 4)
+        wide = text_width("collision", 18, BOLD)
+        cv2.rectangle(frame, (WIDTH_PX - 36 - wide, 6), (WIDTH_PX - 12, _HEADER_PX - 6), ALARM, cv2.FILLED)
+        write(frame, "collision", (WIDTH_PX - 24 - wide, 26), wide + 12, 18, WHITE, BOLD)
+
+    def _empty(self, frame: Picture, words: str, box: tuple[int, int, int, int]) -> None:
+        left, top, width, height = box
+        frame[top : top + height, left : left + width] = (228, 228, 226)
+        write(frame, words, (left + 12, top + height // 2), width - 24, 14, PALE)
+
+    def _caption(self, frame: Picture, words: str, box: tuple[int, int, int, int]) -> None:
+        left, top, width, _ = box
+        write(frame, words, (left, top - 6), width, 13, PALE)
 
 
-def add_outcome(frame: Picture, moment: Moment, info: Mapping[str, Any]) -> None:
-    """Writes the outcome of the action into a frame of `compose`: step, action, collision and the counts so far."""
-    white = (255, 255, 255)
-    _write(frame, f"step {moment.step}", (600, 34), 120, 0.7, white)
-    _write(frame, ACTION_WORDS[moment.action], (730, 34), 140, 0.7, white)
-    _write(frame, str(info["episode_id"]), (900, 34), 220, 0.5, (170, 174, 182))
-    if info["collided"]:
-        _badge(frame, "collision", ALARM)
-    _facts(frame, info)
+def names_in_sight(semantic: NDArray[np.uint8], goal: str) -> list[int]:
+    """Returns the mpcat40 ids of the visible categories: the goal first if it is visible, then by number."""
+    counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
+    goal_id = MPCAT40_ID[goal]
+    shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i != goal_id]
+    return ([goal_id] if counts[goal_id] else []) + shown
 
 
-def add_end(frame: Picture, line: Mapping[str, Any]) -> None:
-    """Writes the outcome of the episode over the header of a frame."""
-    frame[:_HEADER_PX, 600:] = HEADER
-    success = bool(line["success"])
-    fell = line.get("end_reason") == "fallen"
-    why = "the robot fell" if fell else str(line.get("error") or line.get("failure") or line.get("end_reason") or "")
-    why = why.replace("_", " ")
-    words = f"found after {line['num_steps']} steps" if success else f"not found after {line['num_steps']} steps"
-    words += f", SPL {line['spl']:.2f}" if success else f": {why}"
-    _write(frame, words, (600, 34), WIDTH_PX - 620, 0.7, (150, 230, 165) if success else (255, 150, 140), 2)
+def segmentation_picture(semantic: NDArray[np.uint8], goal: str) -> Picture:
+    """Returns categories (h, w) in colours, with the goal outlined, uint8 RGB (h, w, 3)."""
+    picture = np.ascontiguousarray(colour_segmentation(semantic))
+    mask = (semantic == MPCAT40_ID[goal]).astype(np.uint8)
+    contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    cv2.drawContours(picture, contours, -1, GOAL, 2)
+    return picture
 
 
-def in_words(category: str) -> str:
-    """Returns the name of a category with spaces: "chest of drawers"."""
-    return category.replace("_", " ")
+def score_picture(rgb: Picture, target: NDArray[np.float32]) -> Picture:
+    """Returns the score of the goal over the grey camera picture: none is grey, 1 is bright yellow; (h, w, 3)."""
+    size = (rgb.shape[1], rgb.shape[0])
+    level = (cv2.resize(target, size, interpolation=cv2.INTER_LINEAR) * 255.0).clip(0.0, 255.0).astype(np.uint8)
+    grey = cv2.cvtColor(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY) // 2, cv2.COLOR_GRAY2RGB)
+    hot = cv2.cvtColor(cv2.applyColorMap(level, cv2.COLORMAP_INFERNO), cv2.COLOR_BGR2RGB)
+    weight = np.sqrt(level.astype(np.float32) / 255.0)[..., None]
+    return (grey * (1.0 - weight) + hot * weight).astype(np.uint8)
 
 
 def colour_depth(depth: NDArray[np.float32], camera: CameraModel) -> Picture:
@@ -125,104 +263,54 @@ def colour_depth(depth: NDArray[np.float32], camera: CameraModel) -> Picture:
     return np.where(depth[..., None] > 0.0, coloured, np.uint8(0))
 
 
-def _put(frame: Picture, image: Picture, corner: tuple[int, int], title: str) -> None:
-    """Draws an image of the camera with its title above."""
-    left, top = corner
-    scale = min(_IMAGE[0] / image.shape[1], _IMAGE[1] / image.shape[0])
-    width, height = round(image.shape[1] * scale), round(image.shape[0] * scale)
-    small = cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)
-    frame[top : top + height, left : left + width] = small
-    _write(frame, title, (left, top - 6), _IMAGE[0], 0.5, PALE)
+def _size_in(image: NDArray, box: tuple[int, int, int, int]) -> tuple[int, int]:
+    """Returns width and height of an image at the largest size that fits into a box, with its proportions."""
+    scale = min(box[2] / image.shape[1], box[3] / image.shape[0])
+    return max(1, round(image.shape[1] * scale)), max(1, round(image.shape[0] * scale))
 
 
-def _shrunk(image: NDArray) -> NDArray:
-    """Returns an image of numbers, resized to its panel without interpolation."""
-    scale = min(_IMAGE[0] / image.shape[1], _IMAGE[1] / image.shape[0])
-    size = (round(image.shape[1] * scale), round(image.shape[0] * scale))
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_NEAREST))
+def _fitted(image: Picture, box: tuple[int, int, int, int]) -> Picture:
+    """Returns a picture resized to a box, with its proportions."""
+    size = _size_in(image, box)
+    if size == (image.shape[1], image.shape[0]):
+        return image
+    method = cv2.INTER_AREA if size[0] < image.shape[1] else cv2.INTER_LINEAR
+    return np.asarray(cv2.resize(image, size, interpolation=method), np.uint8)
 
 
-def _segmentation(semantic: NDArray[np.uint8], goal: str) -> Picture:
-    """Returns the segmentation in colours, with the goal outlined."""
-    small = np.asarray(_shrunk(semantic), np.uint8)
-    picture = np.ascontiguousarray(colour_segmentation(small))
-    mask = (small == MPCAT40_ID[goal]).astype(np.uint8)
-    contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    cv2.drawContours(picture, contours, -1, GOAL, 2)
-    return picture
+def _resized(image: NDArray, box: tuple[int, int, int, int]) -> NDArray:
+    """Returns an image of numbers, resized to a box without interpolation."""
+    return np.asarray(cv2.resize(image, _size_in(image, box), interpolation=cv2.INTER_NEAREST))
+
+
+def _put(frame: Picture, image: Picture, box: tuple[int, int, int, int]) -> None:
+    """Draws a picture into the upper left corner of a box."""
+    left, top = box[:2]
+    fitted = _fitted(image, box)
+    frame[top : top + fitted.shape[0], left : left + fitted.shape[1]] = fitted
 
 
 def _depth_scale(frame: Picture, camera: CameraModel) -> None:
-    """Draws the scale of the depth colours above the right end of the panel."""
-    base, right = _BELOW - 6, _LEFT + _IMAGE[0] - 42
-    left = right - 140
-    metres = np.linspace(camera.min_depth_m, camera.max_depth_m, right - left, dtype=np.float32)
-    frame[base - 11 : base + 1, left:right] = colour_depth(metres[None], camera)
-    _write(frame, f"{camera.min_depth_m:g} m", (left - 48, base), 44, 0.45, PALE)
-    _write(frame, f"{camera.max_depth_m:g} m", (right + 6, base), 36, 0.45, PALE)
+    """Draws the scale of the depth colours above the depth image."""
+    left, top, width, _ = _DEPTH
+    base, first, last = top - 6, left + 88, left + width - 28
+    metres = np.linspace(camera.min_depth_m, camera.max_depth_m, last - first, dtype=np.float32)
+    frame[base - 9 : base + 1, first:last] = colour_depth(metres[None], camera)
+    near, far = f"{camera.min_depth_m:g} m", f"{camera.max_depth_m:g} m"
+    write(frame, near, (first - 4 - text_width(near, 12), base), 40, 12, PALE)
+    write(frame, far, (last + 4, base), 24, 12, PALE)
 
 
-def _categories(frame: Picture, semantic: NDArray[np.uint8], goal: str) -> None:
-    """Writes names and colours of the visible categories, in two columns in a fixed order."""
-    counts = np.bincount(semantic.ravel(), minlength=len(MPCAT40))
-    goal_id = MPCAT40_ID[goal]
-    shown = [i for i in np.flatnonzero(counts >= MIN_SHARE * semantic.size).tolist() if i != goal_id]
-    shown = ([goal_id] if counts[goal_id] else []) + shown
-    rows = _IMAGE[1] // _ROW_PX
-    for place, category in enumerate(shown[: 2 * rows]):
-        left = _MIDDLE + (place // rows) * (_IMAGE[0] // 2)
-        top = _BELOW + (place % rows) * _ROW_PX
-        red, green, blue = PALETTE[category].tolist()
-        _swatch(frame, left, top, (red, green, blue), GOAL if category == goal_id else PALE)
-        name = in_words(MPCAT40[category]) + (" (the goal)" if category == goal_id else "")
-        _write(frame, name, (left + 26, top + 15), _IMAGE[0] // 2 - 32, 0.5, INK)
-
-
-def _map_legend(frame: Picture, panel: MapPanel) -> None:
-    """Draws the legend of the map in three columns, and what the agent is doing."""
-    column = _MAP_PX // 3
-    rows = -(-len(panel.legend) // 3)
-    for place, (name, colour) in enumerate(panel.legend):
-        left, top = _RIGHT + (place // rows) * column, _TOP + _MAP_PX + 10 + (place % rows) * _ROW_PX
-        _swatch(frame, left, top, colour, PALE)
-        _write(frame, name, (left + 24, top + 15), column - 28, 0.48, INK)
-    if panel.words:
-        _write(frame, f"The agent {panel.words}", (_RIGHT, HEIGHT_PX - 58), _MAP_PX, 0.55, INK)
-
-
-def _facts(frame: Picture, info: Mapping[str, Any]) -> None:
-    """Writes path length, collisions and distance to the goal after the action."""
-    distance_m = info["distance_to_goal"]
-    to_go = "no way to the goal" if distance_m is None else f"goal {distance_m:.1f} m away (true)"
-    count = info["collisions"]
-    collisions = f"{count} collision" + ("" if count == 1 else "s")
-    _write(frame, f"driven {info['path_length']:.1f} m, {collisions}", (_RIGHT, HEIGHT_PX - 35), _MAP_PX, 0.55, INK)
-    _write(frame, to_go, (_RIGHT, HEIGHT_PX - 12), _MAP_PX, 0.55, INK)
-
-
-def _badge(frame: Picture, words: str, colour: Colour) -> None:
-    """Draws text on a coloured rectangle at the right end of the header."""
-    (width, _), _ = cv2.getTextSize(words, _FONT, 0.7, 2)
-    cv2.rectangle(frame, (WIDTH_PX - 36 - width, 9), (WIDTH_PX - 12, _HEADER_PX - 9), colour, cv2.FILLED)
-    _write(frame, words, (WIDTH_PX - 24 - width, 34), width + 12, 0.7, (255, 255, 255), 2)
+def _legend(frame: Picture, legend: tuple[tuple[str, Colour], ...], left: int) -> None:
+    """Writes the legend of a map below it, in columns."""
+    rows = -(-len(legend) // _COLUMNS)
+    column_px = MAP_PX // _COLUMNS
+    for place, (name, colour) in enumerate(legend):
+        x, y = left + (place // rows) * column_px, _LEGEND_TOP + (place % rows) * _ROW_PX
+        _swatch(frame, x, y, colour, PALE)
+        write(frame, name, (x + 15, y + 9), column_px - 17, 12, INK)
 
 
 def _swatch(frame: Picture, left: int, top: int, colour: Colour, rim: Colour) -> None:
-    cv2.rectangle(frame, (left, top), (left + 17, top + 15), colour, cv2.FILLED)
-    cv2.rectangle(frame, (left, top), (left + 17, top + 15), rim, 1 if rim == PALE else 2)
-
-
-def _write(
-    frame: Picture,
-    words: str,
-    left_base: tuple[int, int],
-    width_px: int,
-    scale: float,
-    colour: Colour,
-    thickness: int = 1,
-) -> None:
-    """Writes text from its lower left corner, smaller where it would be wider than `width_px`."""
-    (text_px, _), _ = cv2.getTextSize(words, _FONT, scale, thickness)
-    if text_px > width_px:
-        scale *= width_px / text_px
-    cv2.putText(frame, words, left_base, _FONT, scale, colour, thickness, cv2.LINE_AA)
+    cv2.rectangle(frame, (left, top), (left + 11, top + 9), colour, cv2.FILLED)
+    cv2.rectangle(frame, (left, top), (left + 11, top + 9), rim, 1)

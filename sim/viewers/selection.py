@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from sim.errors import ConfigError
+from sim.interface import Segmenter
 from sim.viewers.video import VideoRecorder
 from sim.viewers.viewer import MapPainter, Viewer
 
@@ -49,8 +50,13 @@ def check(options: ViewerOptions) -> None:
         rerun_log.require_rerun(window=options.rerun)
 
 
-def make(options: ViewerOptions, painter: MapPainter | None) -> list[Viewer]:
-    """Returns the selected viewers; `painter` draws the agent's map, None where it has none.
+def make(options: ViewerOptions, painter: MapPainter | None, segmenter: Segmenter | None = None) -> list[Viewer]:
+    """Returns the selected viewers.
+
+    Args:
+        options: of the run.
+        painter: draws the agent's map; None where it has none.
+        segmenter: the agent's segmentation; None where it has none.
 
     Raises:
         ConfigError: see `check`.
@@ -58,7 +64,7 @@ def make(options: ViewerOptions, painter: MapPainter | None) -> list[Viewer]:
     check(options)
     viewers: list[Viewer] = []
     if options.video and options.out is not None:
-        viewers.append(VideoRecorder(options.out, painter))
+        viewers.append(VideoRecorder(options.out, painter, segmenter))
     if options.view:
         from sim.viewers.live import LiveView
 

@@ -1,4 +1,4 @@
-"""Draws the true floor plan with the robot's path: the map for agents that have none."""
+"""Draws the true floor plan with the goal, the shortest path to it and the path that the robot has driven."""
 
 from __future__ import annotations
 
@@ -9,13 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
+from sim.houses.hazards import steepest_path
+from sim.task.ground_truth import Target
 from sim.viewers.viewer import Colour
+from sim.world.freespace import FreeSpace
 
-BLOCKED: Colour = (150, 150, 150)
+BLOCKED: Colour = (214, 214, 214)
+OBSTACLE: Colour = (120, 124, 132)
 FREE: Colour = (252, 252, 250)
 SUCCEEDS: Colour = (205, 236, 196)
 INSTANCE: Colour = (56, 158, 80)
 PATH: Colour = (32, 84, 190)
+SHORTEST: Colour = (240, 140, 20)
 STOPPED: Colour = (204, 65, 37)
 ROBOT: Colour = (20, 20, 20)
 _MARGIN_CELLS = 8
@@ -25,12 +30,13 @@ class TopView:
     """A `MapPainter` of the storey that the robot stands on, from above, with x to the right and y up."""
 
     legend = (
-        ("free for the robot", FREE),
-        ("blocked", BLOCKED),
         ("goal", INSTANCE),
-        ("a stop counts here", SUCCEEDS),
-        ("way so far", PATH),
-        ("stopped by contact", STOPPED),
+        ("a STOP counts", SUCCEEDS),
+        ("shortest path", SHORTEST),
+        ("driven path", PATH),
+        ("collision", STOPPED),
+        ("obstacle", OBSTACLE),
+        ("too narrow", BLOCKED),
     )
 
     def __init__(self, env: ObjectNavEnv) -> None:
@@ -47,7 +53,7 @@ class TopView:
         scene = self._env.scene
         world, task = scene.world, scene.task
         pose = world.pose
-        key = (scene, task.goal, pose.floor_z_m, size_px)
+        key = (scene, task.goal, task.start, pose.floor_z_m, size_px)
         if key != self._key:
             self._key, self._ground = key, self._paint_ground(task.goal, pose.floor_z_m, size_px)
         image = self._ground.copy()
@@ -57,12 +63,13 @@ class TopView:
         for u, v in self._pixels(trajectory.contacts[:, 1:]).tolist():
             cv2.circle(image, (u, v), 3, STOPPED, -1, cv2.LINE_AA)
         here_m = np.array([pose.x_m, pose.y_m])
-        ahead_m = here_m + 0.36 * np.array([math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)])
-        here, ahead = self._pixels(np.array([here_m, ahead_m])).tolist()
-        radius_px = max(4, round(world.robot.radius_m * self._scale))
-        cv2.circle(image, here, radius_px, (255, 255, 255), -1, cv2.LINE_AA)
-        cv2.circle(image, here, radius_px, ROBOT, 2, cv2.LINE_AA)
-        cv2.arrowedLine(image, here, ahead, ROBOT, 2, cv2.LINE_AA, tipLength=0.35)
+        radius_px = max(6, round(world.robot.radius_m * self._scale))
+        turned = pose.yaw_rad + np.array([0.0, 2.5, math.pi, -2.5])
+        long_m = np.array([1.9, 1.25, 0.6, 1.25]) * radius_px / self._scale
+        corners_m = here_m + long_m[:, None] * np.stack([np.cos(turned), np.sin(turned)], axis=1)
+        pointer = self._pixels(corners_m)
+        cv2.fillPoly(image, [pointer], ROBOT, cv2.LINE_AA)
+        cv2.polylines(image, [pointer], True, (255, 255, 255), 1, cv2.LINE_AA)
         return image
 
     def _paint_ground(self, goal: str, floor_z_m: float, size_px: int) -> NDArray[np.uint8]:
@@ -83,12 +90,40 @@ class TopView:
         top, left = (size_px - height) // 2, (size_px - width) // 2
         enlarged = cv2.resize(part[::-1], (width, height), interpolation=cv2.INTER_NEAREST)
         image[top : top + height, left : left + width] = enlarged
+        for obstacle in space.obstacles:
+            cv2.fillConvexPoly(image, self._pixels(obstacle.vertices_m), OBSTACLE, cv2.LINE_AA)
         for footprint in target.region.footprints:
             for piece in footprint.parts:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
+        start = self._env.scene.task.start
+        if start.floor_z_m == floor_z_m:
+            way = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
+            cv2.polylines(image, [way.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
+            cv2.circle(image, way[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
         return image
 
     def _pixels(self, points_m: NDArray[np.floating]) -> NDArray[np.int32]:
         """Returns (n, 2) column and row of points (n, 2) in the world."""
         off = (np.asarray(points_m, np.float64) - self._corner_m) * self._scale * (1.0, -1.0)
         return (off + self._offset_px).round().astype(np.int32)
+
+
+def shortest_path_m(space: FreeSpace, target: Target, start_m: tuple[float, float]) -> NDArray[np.float64]:
+    """Returns points (n, 2) of the shortest path from a position to where a STOP succeeds; one point without a path."""
+    row, col = space.frame.to_cells(np.array(start_m)).tolist()
+    inside = 0 <= row < space.frame.shape[0] and 0 <= col < space.frame.shape[1]
+    if not inside or not np.isfinite(target.distance_m[row, col]):
+        return np.array([start_m])
+    cells = steepest_path(target.distance_m, (row, col))
+    x_m, y_m = space.frame.centres(cells[:, 0], cells[:, 1])
+    return np.vstack([start_m, _smooth(np.stack([x_m, y_m], axis=1))])
+
+
+def _smooth(points_m: NDArray[np.float64], reach: int = 6) -> NDArray[np.float64]:
+    """Returns the means over neighbouring points, which removes the steps of the cells; both ends stay."""
+    if len(points_m) <= 2 * reach:
+        return points_m
+    padded = np.vstack([np.repeat(points_m[:1], reach, axis=0), points_m, np.repeat(points_m[-1:], reach, axis=0)])
+    total = np.cumsum(np.vstack([np.zeros((1, 2)), padded]), axis=0)
+    width = 2 * reach + 1
+    return (total[width:] - total[:-width]) / width

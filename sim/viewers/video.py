@@ -30,17 +30,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
+from sim.env.scene import Scene
 from sim.errors import ConfigError
 from sim.files import part_file
+from sim.interface import NamesCategories, Segmenter
 from sim.viewers import overlay
+from sim.viewers.chase import ChaseView
 from sim.viewers.topview import TopView
 from sim.viewers.viewer import MapPainter, Moment
+from sim.viewers.words import explain_end
 
 FOLDER = "videos"
 FRAMES_PER_S = 5.0
 """An action takes 0.2 s, so that 500 of them are 100 s."""
-END_FRAMES = 5
-"""Number of frames that show the outcome."""
+END_FRAMES = 12
+"""Number of frames that hold the last moment, with an explanation of the outcome: 2.4 s."""
 _WAITING_FRAMES = 8
 """Largest number of frames that wait for the encoder: 22 MB."""
 
@@ -120,57 +124,104 @@ class VideoWriter:
 class VideoRecorder:
     """A viewer that records a video of each episode (`sim.viewers.viewer.Viewer`)."""
 
-    def __init__(self, run: Path, painter: MapPainter | None = None) -> None:
+    def __init__(self, run: Path, painter: MapPainter | None = None, segmenter: Segmenter | None = None) -> None:
         """Records episodes of a run.
 
         Args:
             run: folder of the run; files go to `videos/` in it.
-            painter: draws the agent's map; None shows the true floor plan.
+            painter: draws the agent's map; None: it has none.
+            segmenter: the agent's segmentation; None: it has none.
         """
-        self._run, self._painter = run, painter
+        self._run, self._painter, self._segmenter = run, painter, segmenter
         self._writer: VideoWriter | None = None
+        self._chase: ChaseView | None = None
+        self._scene: Scene | None = None
         self._frame: NDArray[np.uint8] | None = None
 
     def begin(self, env: ObjectNavEnv) -> None:
         """Starts the episode's file."""
-        self.close()
-        self._env, self._frame = env, None
-        self._map: MapPainter = self._painter or TopView(env)
+        self._discard()
+        if env.scene is not self._scene:
+            self._free_chase()
+            width, height = overlay.CHASE_PX
+            self._scene, self._chase = env.scene, ChaseView(env.scene, width_px=width, height_px=height)
+        self._env, self._frame, self._plan = env, None, TopView(env)
+        self._composer = overlay.FrameComposer(
+            env.episode.goal,
+            env.camera_model,
+            plan_legend=self._plan.legend,
+            map_legend=self._painter.legend if self._painter else (),
+            max_steps=env.task_config.max_steps,
+        )
         file = video_file(self._run, env.episode.episode_id)
         self._writer = VideoWriter(file, size_px=(overlay.WIDTH_PX, overlay.HEIGHT_PX))
 
     def decided(self, moment: Moment) -> None:
-        """Draws the frame now, while the agent's map is that of its decision."""
-        title = "the agent's map" if self._painter is not None else "floor plan (true)"
-        panel = overlay.MapPanel(
-            image=self._map.paint(overlay.MAP_PX), legend=self._map.legend, title=title, words=self._map.words()
+        """Draws the frame now, while the agent's map and the world are those of its decision."""
+        assert self._chase is not None
+        self._frame = self._composer.compose(
+            moment,
+            plan=self._plan.paint(overlay.MAP_PX),
+            map_panel=self._agent_map(),
+            chase=self._chase.render(),
+            perceived=perceive(self._segmenter, moment, self._env.episode.goal),
         )
-        self._moment = moment
-        self._frame = overlay.compose(moment, self._env.episode.goal, self._env.camera_model, panel)
 
     def moved(self, info: Mapping[str, Any]) -> None:
         """Adds the outcome of the action and writes the frame."""
         assert self._frame is not None
         assert self._writer is not None
-        overlay.add_outcome(self._frame, self._moment, info)
+        self._composer.add_outcome(self._frame, info)
         self._writer.write(self._frame)
 
     def end(self, line: Mapping[str, Any]) -> None:
-        """Shows the outcome for some frames and closes the file."""
+        """Holds the last frame with an explanation of the outcome, and closes the file."""
         writer, self._writer = self._writer, None
         assert writer is not None
         if self._frame is None:
             writer.discard()
             return
         last = self._frame.copy()
-        overlay.add_end(last, line)
+        nearest_m = self._env.scene.task.trajectory().nearest_instance_m
+        rule, detects = self._env.success_rule, self._segmenter is not None
+        self._composer.add_end(last, explain_end(line, self._env.episode.goal, rule, nearest_m, detects=detects))
         for _ in range(END_FRAMES):
             writer.write(last)
         self._frame = None
         writer.finish()
 
     def close(self) -> None:
-        """Discards the video of an unfinished episode."""
+        """Discards the video of an unfinished episode, and frees the renderer."""
+        self._discard()
+        self._free_chase()
+
+    def _agent_map(self) -> overlay.MapPanel | None:
+        """Returns the agent's map; None where it has none."""
+        painter = self._painter
+        if painter is None:
+            return None
+        image = painter.paint(overlay.MAP_PX)
+        return overlay.MapPanel(image=image, title="the agent's map", words=painter.words())
+
+    def _discard(self) -> None:
         if self._writer is not None:
             self._writer.discard()
             self._writer = None
+
+    def _free_chase(self) -> None:
+        if self._chase is not None:
+            self._chase.close()
+        self._chase = self._scene = None
+
+
+def perceive(segmenter: Segmenter | None, moment: Moment, goal: str) -> overlay.Perceived | None:
+    """Returns what a segmenter says about the frame of a moment, None without one.
+
+    It must be called before the environment moves on. The scores of a frame do not change when they are asked for
+    again, so that the agent's results stay the same.
+    """
+    if segmenter is None:
+        return None
+    scores = segmenter.scores(moment.observation, goal)
+    named = segmenter.categories(moment.observation) if isinstance(segmenter, NamesCategories) else None
+    return overlay.Perceived(scores=scores, categories=named)

@@ -95,6 +95,11 @@ class FreeSpace:
             floor_z_m=floor_z_m,
         )
 
+    @property
+    def obstacles(self) -> tuple[ConvexPolygon, ...]:
+        """Plan projections of the geoms that are obstacles for the robot."""
+        return tuple(self._obstacles)
+
     def is_free(self, x_m: float, y_m: float) -> bool:
         """Returns whether the disc fits at exactly this position."""
         here = np.array([[x_m, y_m]], dtype=np.float64)

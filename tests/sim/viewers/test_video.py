@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import resource
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -18,16 +18,21 @@ from sim.episodes.splits import Episode
 from sim.evaluation.results import VIEWER_OPTIONS
 from sim.evaluation.rollout import play_episode
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, Action, CameraModel, ConfigError
+from sim.houses.labels import geoms_of
+from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
+from sim.robot.body import PREFIX
 from sim.run import entry
-from sim.viewers import overlay
-from sim.viewers.topview import TopView
-from sim.viewers.video import END_FRAMES, FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
+from sim.viewers import overlay, video
+from sim.viewers.chase import ChaseView
+from sim.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, SHORTEST, SUCCEEDS, TopView, shortest_path_m
+from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
+from sim.viewers.words import Outcome, explain_end
 from stubborn.draw import AgentMapPainter
 from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
 
+WHOLE_END_FRAMES = video.END_FRAMES
 TIMES = ("wall_time_s", "steps_per_s")
 EPISODE = Episode("sofa room/0", "sofa_room", "sofa", Pose(-1.0, 0.0, 0.0))
 AHEAD = [Action.MOVE_FORWARD] * 3
@@ -60,6 +65,12 @@ def env(house: Path) -> Iterator[ObjectNavEnv]:
     env.close()
 
 
+@pytest.fixture(autouse=True)
+def short_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A short end in this process: encoding takes most of the time."""
+    monkeypatch.setattr(video, "END_FRAMES", 2)
+
+
 def frames_of(file: Path) -> list[NDArray[np.uint8]]:
     capture = cv2.VideoCapture(str(file))
     frames = []
@@ -80,7 +91,7 @@ def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tm
     assert lines_of(tmp_path / "plain") == lines_of(tmp_path / "filmed")
     (line,) = lines_of(tmp_path / "filmed")
     assert line["num_steps"] > 5
-    assert len(frames_of(video_file(tmp_path / "filmed", line["episode_id"]))) == line["num_steps"] + END_FRAMES
+    assert len(frames_of(video_file(tmp_path / "filmed", line["episode_id"]))) == line["num_steps"] + video.END_FRAMES
 
 
 def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp_path: Path) -> None:
@@ -91,7 +102,7 @@ def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp
     first, *left = lines_of(tmp_path)
     filmed = {video_file(tmp_path, line["episode_id"]) for line in left}
     assert set((tmp_path / "videos").iterdir()) == filmed
-    assert all(len(frames_of(file)) == 1 + END_FRAMES for file in filmed)
+    assert all(len(frames_of(file)) == 1 + WHOLE_END_FRAMES for file in filmed)
     assert first["episode_id"] not in {line["episode_id"] for line in left}
     assert set(VIEWER_OPTIONS) <= set(json.loads((tmp_path / "config.json").read_text()))
 
@@ -108,7 +119,7 @@ def test_a_video_is_vp9_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode(
     assert b"vp09" in content
     frames = frames_of(file)
     assert {frame.shape for frame in frames} == {(720, 1280, 3)}
-    stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-END_FRAMES - 1, -1))
+    stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-video.END_FRAMES - 1, -1))
     assert np.abs(stop - outcome).mean() > 3.0  # the outcome stands where the step stood
 
 
@@ -140,7 +151,7 @@ def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNa
         """)
     finally:
         window.close()
-    assert seen == [1280, 720, pytest.approx((4 + END_FRAMES) / FRAMES_PER_S, abs=0.05)]
+    assert seen == [1280, 720, pytest.approx((4 + video.END_FRAMES) / FRAMES_PER_S, abs=0.05)]
 
 
 def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path: Path) -> None:
@@ -150,7 +161,7 @@ def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path
 
     line = play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=break_it, viewers=[VideoRecorder(tmp_path)])
     assert line["end_reason"] == "error"
-    assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + END_FRAMES
+    assert len(frames_of(video_file(tmp_path, EPISODE.episode_id))) == 2 + video.END_FRAMES
 
 
 def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path: Path) -> None:
@@ -186,11 +197,11 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
     boxes: list[tuple[str, Box]] = []
     real = cv2.putText
 
-    def put(image, text, org, font, scale, colour, thickness, line):
-        (width, height), below = cv2.getTextSize(text, font, scale, thickness)
+    def put(image, words, org, colour, font, size, weight):
+        left, top, width, height = cv2.getTextSize((4096, 4096), words, org, font, size, weight)
         if image.shape[1] == overlay.WIDTH_PX:
-            boxes.append((text, (org[0], org[1] - height, org[0] + width, org[1] + below // 2)))
-        return real(image, text, org, font, scale, colour, thickness, line)
+            boxes.append((words, (left, top + 1, left + width, top + height - 1)))
+        return real(image, words, org, colour, font, size, weight)
 
     monkeypatch.setattr(cv2, "putText", put)
     return boxes
@@ -207,33 +218,35 @@ def crowded_moment() -> Moment:
     return Moment(step=500, observation={}, images=images, action=Action.TURN_RIGHT)
 
 
-@pytest.mark.parametrize("painter", [AgentMapPainter, TopView])
-def test_no_text_leaves_the_frame_or_lies_on_another(
-    painter: type[AgentMapPainter] | type[TopView], written: list[tuple[str, Box]]
-) -> None:
-    panel = overlay.MapPanel(
-        image=np.zeros((overlay.MAP_PX, overlay.MAP_PX, 3), np.uint8),
-        legend=painter.legend,
-        title="the agent's map",
-        words="gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video",
+def perceived_in(moment: Moment) -> overlay.Perceived:
+    target = np.full((48, 64), 0.25, np.float32)
+    return overlay.Perceived(scores=Scores(target, 1 - target), categories=moment.images["semantic"])
+
+
+PLAN = np.zeros((overlay.MAP_PX, overlay.MAP_PX, 3), np.uint8)
+INFO = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_length": 123.4}
+
+
+@pytest.mark.parametrize("goal", ["bed", "chest_of_drawers", "gym_equipment"])
+def test_no_text_leaves_the_frame_or_lies_on_another(goal: str, written: list[tuple[str, Box]]) -> None:
+    state = "gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video"
+    panel = overlay.MapPanel(image=PLAN, title="the agent's map", words=state)
+    composer = overlay.FrameComposer(
+        goal, CameraModel(), plan_legend=TopView.legend, map_legend=AgentMapPainter.legend, max_steps=1000
     )
-    line = {"num_steps": 500, "success": 0.0, "spl": 0.0, "failure": "missed_detection"}
-    info = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_length": 123.4}
-    for goal in ("bed", "chest_of_drawers", "gym_equipment"):
-        written.clear()
-        frame = overlay.compose(crowded_moment(), goal, CameraModel(), panel)
-        overlay.add_outcome(frame, crowded_moment(), {**info, "episode_id": "an_episode_with_a_long_name_0123456789"})
-        names = [text for text, _ in written]
-        assert f"{goal.replace('_', ' ')} (the goal)" in names
-        for i, (text, (left, top, right, bottom)) in enumerate(written):
-            assert min(left, top) >= 0, text
-            assert right <= overlay.WIDTH_PX, text
-            assert bottom <= overlay.HEIGHT_PX, text
-            for other, (left2, top2, right2, bottom2) in written[:i]:
-                assert right <= left2 or right2 <= left or bottom <= top2 or bottom2 <= top, (text, other)
+    moment = crowded_moment()
+    frame = composer.compose(moment, plan=PLAN, map_panel=panel, perceived=perceived_in(moment))
+    composer.add_outcome(frame, {**INFO, "episode_id": "an_episode_with_a_long_name_0123456789"})
+    assert goal.replace("_", " ") in [text for text, _ in written]
+    for i, (text, (left, top, right, bottom)) in enumerate(written):
+        assert min(left, top) >= 0, text
+        assert right <= overlay.WIDTH_PX, text
+        assert bottom <= overlay.HEIGHT_PX, text
+        for other, (left2, top2, right2, bottom2) in written[:i]:
+            assert right <= left2 or right2 <= left or bottom <= top2 or bottom2 <= top, (text, other)
     written.clear()
-    overlay.add_end(frame, line | {"error": "House 'val_03' at 12.34 s: a position is not finite. " * 3})
-    assert all(right <= overlay.WIDTH_PX for _, (_, _, right, _) in written)
+    composer.add_end(frame, Outcome(False, "Not found after 1000 steps", "A position is not finite. " * 20))
+    assert all(right <= overlay.WIDTH_PX and bottom <= 540 for _, (_, _, right, bottom) in written)
 
 
 @pytest.mark.parametrize("shape", [(360, 640), (480, 480), (64, 48)])
@@ -244,12 +257,46 @@ def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int])
         "depth": np.zeros(shape, np.float32),
     }
     moment = Moment(step=1, observation={}, images=images, action=Action.STOP)
-    map_image = np.full((overlay.MAP_PX, overlay.MAP_PX, 3), 50, np.uint8)
-    panel = overlay.MapPanel(image=map_image, legend=(), title="", words="")
-    camera = CameraModel(width_px=shape[1], height_px=shape[0])
-    frame = overlay.compose(moment, "bed", camera, panel)
+    composer = overlay.FrameComposer("bed", CameraModel(width_px=shape[1], height_px=shape[0]), plan_legend=())
+    frame = composer.compose(moment, plan=PLAN)
     rows, cols = np.nonzero((frame == 9).all(axis=2))
     assert np.ptp(cols) / np.ptp(rows) == pytest.approx(shape[1] / shape[0], rel=0.02)
+    assert np.ptp(cols) + 1 == 640 or np.ptp(rows) + 1 == 480
+
+
+def test_a_collision_puts_a_red_frame_around_the_camera_picture() -> None:
+    moment = crowded_moment()
+    composer = overlay.FrameComposer("bed", CameraModel(), plan_legend=())
+    calm, hit = (composer.compose(moment, plan=PLAN) for _ in range(2))
+    composer.add_outcome(calm, {**INFO, "collided": False, "episode_id": "e"})
+    composer.add_outcome(hit, {**INFO, "episode_id": "e"})
+    assert tuple(hit[300, 9]) == overlay.ALARM
+    assert tuple(calm[300, 9]) == (0, 0, 0)
+
+
+def test_the_score_of_the_goal_is_bright_where_it_is_high_and_grey_where_it_is_zero() -> None:
+    target = np.zeros((48, 64), np.float32)
+    target[:, 32:] = 1.0
+    picture = overlay.score_picture(np.full((96, 128, 3), 100, np.uint8), target).astype(int)
+    assert tuple(picture[50, 10]) == (50, 50, 50)
+    assert picture[50, 120].sum() > 500
+
+
+def test_the_robot_stands_in_the_middle_of_the_chase_view_and_a_wall_behind_it_does_not_hide_it(
+    env: ObjectNavEnv,
+) -> None:
+    def share_of_robot(x_m: float) -> float:
+        env.reset(options={"episode": replace(EPISODE, start=Pose(x_m, 0.0, 0.0))})
+        model = env.scene.world.model
+        model.geom_rgba[geoms_of(model, PREFIX)] = (1.0, 0.0, 0.0, 1.0)
+        view = ChaseView(env.scene, width_px=200, height_px=120)
+        picture = view.render()[30:90, 92:108].astype(int)
+        view.close()
+        return float((picture[..., 0] > 3 * picture[..., 1]).mean())
+
+    in_the_open, before_a_wall = share_of_robot(0.0), share_of_robot(-2.7)
+    assert in_the_open > 0.4
+    assert before_a_wall > 0.4  # without the cut, the wall at x = -3 m would cover it
 
 
 def test_what_the_agent_saw_is_shown_and_the_truth_where_it_saw_nothing() -> None:
@@ -272,7 +319,7 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
     view = TopView(env)
     before = view.paint(300)
     colours = {tuple(colour) for colour in before.reshape(-1, 3).tolist()}
-    assert {(252, 252, 250), (150, 150, 150), (56, 158, 80), (205, 236, 196)} <= colours
+    assert {FREE, BLOCKED, OBSTACLE, INSTANCE, SUCCEEDS, SHORTEST} <= colours
     for _ in range(4):
         env.step(Action.MOVE_FORWARD)
     assert (32, 84, 190) in {tuple(colour) for colour in view.paint(300).reshape(-1, 3).tolist()}
