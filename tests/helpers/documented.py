@@ -311,6 +311,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --calibrate --card {{tmp}}/card.md "
         "--weights {tmp}/rednet.safetensors",
     ),
+    f"{PYTHON} tools/worst_objects.py --views views_val --out worst.png": (
+        _VIEWS,
+        f"{PYTHON} tools/worst_objects.py --views {{tmp}}/views --out {{tmp}}/worst.png",
+    ),
     f"{_RUN} --episodes 50 --record --out runs/looked": (
         f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
     ),
