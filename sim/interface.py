@@ -224,6 +224,15 @@ class Agent(Protocol):
         ...
 
 
+@runtime_checkable
+class Overridable(Protocol):
+    """An agent that can be told that another action than its own is carried out, such as that of a person."""
+
+    def overridden(self, action: Action) -> None:
+        """Called after `act`, before the next observation, with the action that is carried out instead."""
+        ...
+
+
 AgentFactory = Callable[..., Agent]
 """Builds an agent from keyword arguments:
 

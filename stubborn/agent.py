@@ -115,6 +115,7 @@ class StubbornAgent:
             layers=self.policies.approach,
             distances=StopDistances.of(config.target, success, segmenter.spec),
             candidate_score=config.mapping.candidate_score,
+            least_cells=1 if segmenter.spec.exact_outlines else config.target.least_cells,
         )
         self.untrap = Untrap(self.policies.untrap_after)
         self.reset(GOAL_CATEGORIES[0], 0)
@@ -145,6 +146,10 @@ class StubbornAgent:
         self.last_action = self._kept_from_drops(self._decide(pose, sighting), pose)
         self.step += 1
         return self.last_action
+
+    def overridden(self, action: Action) -> None:
+        """Learns that another action than its own is carried out; see `sim.interface.Overridable`."""
+        self.last_action = action
 
     def _learn_from_last_action(self, before: Pose, pose: Pose) -> None:
         """Marks the ground that was driven over, and a collision where the last forward failed."""

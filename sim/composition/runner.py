@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import traceback
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,40 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.interface import AgentSpec, Segmenter
+from sim.interface import Agent, AgentSpec, Segmenter
 from sim.sensors.sensor import Sensor
 from sim.viewers import selection
-from sim.viewers.viewer import VIEWER_IMAGES
+from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The environment of a run with the agent that acts in it."""
+
+    env: ObjectNavEnv
+    agent: Agent
+    segmenter: Segmenter | None
+    """The agent's segmentation; None: it has none."""
+    painter: MapPainter | None
+    """Draws the agent's map; None: it has none."""
+
+
+def build_parts(options: RunOptions, *, watched: bool) -> Parts:
+    """Returns environment and agent of a run.
+
+    Args:
+        options: checked options.
+        watched: whether viewers need all images.
+    """
+    spec, config = find_agent(options.agent), configuration_of(options)
+    truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * watched
+    env = make_env(options, config, sensors=sensors_of(spec, config), truth=truth)
+    segmenter = make_segmenter(options.semantics, env, config.detector) if spec.uses_segmentation else None
+    verifier = verifier_of(options, config.verification)
+    agent = build_agent(
+        options.agent, spec, env, segmenter=segmenter or NoSegmentation(), verifier=verifier, config=config.agent
+    )
+    return Parts(env, agent, segmenter, spec.painter(agent) if spec.painter else None)
 
 
 class EpisodeRunner:
@@ -26,22 +57,10 @@ class EpisodeRunner:
 
     def __init__(self, options: RunOptions) -> None:
         self._options = options
-        self._spec = spec = find_agent(options.agent)
-        config = configuration_of(options)
-        truth = truth_images(spec, options.semantics) + VIEWER_IMAGES * selection.any_selected(options)
-        self._env = make_env(options, config, sensors=sensors_of(spec, config), truth=truth)
-        segmenter: Segmenter = NoSegmentation()
-        if spec.uses_segmentation:
-            segmenter = make_segmenter(options.semantics, self._env, config.detector)
-        verifier = verifier_of(options, config.verification)
-        self._agent = build_agent(
-            options.agent, spec, self._env, segmenter=segmenter, verifier=verifier, config=config.agent
-        )
-        self._viewers = selection.make(
-            options,
-            spec.painter(self._agent) if spec.painter else None,
-            segmenter if spec.uses_segmentation else None,
-        )
+        self._spec = find_agent(options.agent)
+        parts = build_parts(options, watched=selection.any_selected(options))
+        self._env, self._agent = parts.env, parts.agent
+        self._viewers = selection.make(options, parts.painter, parts.segmenter)
         self._about = {
             "profile": options.profile,
             "noise": options.noise,
