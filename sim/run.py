@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import time
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from sim.composition.agents import SPECS, find_agent
 from sim.composition.options import RunOptions, check_options
 from sim.composition.run_config import configuration_of, record_of
 from sim.composition.runner import error_line, plan_episodes
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard
 from sim.evaluation.results import RunDirectory
@@ -75,6 +76,11 @@ def run_missing(
     record = record_of(options, configuration_of(options), split)
     run = RunDirectory(options.out, record)
     try:
+        if run.healed:
+            console.print(run.healed)
+        _require_own_lines(options, run, episodes)
+        if options.retry_errors:
+            console.print(f"{run.drop_errors()} episodes that ended with an error are run again.")
         done = {line["episode_id"] for line in run.lines}
         todo = [episode for episode in episodes if episode.episode_id not in done]
         segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
@@ -89,7 +95,21 @@ def run_missing(
             run.append(line)
         return run.lines, run.write_summary({"split": split})
     finally:
+        run.discard_if_empty()
         run.close()
+
+
+def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
+    """Raises ConfigError where the folder holds a line of another split, or one that contradicts its episode."""
+    known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
+    others = [line for line in run.lines if line["episode_id"] not in known]
+    if others and options.house is None:  # of the same split, but not asked for now
+        known |= {each.episode_id: (each.house, each.goal) for each in load_split(options.split).episodes}
+    elif options.house is not None:
+        stem = re.escape(options.house.stem)
+        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}", line["episode_id"]))
+        known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
+    run.require_of(known)
 
 
 def report_house(options: RunOptions, console: Console) -> None:
@@ -128,11 +148,7 @@ def _lost_line(options: RunOptions, episode: Episode) -> dict[str, Any]:
 
 def entry(argv: Sequence[str] | None = None) -> int:
     """Runs the command line; returns its exit status."""
-    try:
-        return cli.run(RunOptions, main, argv)
-    except KeyboardInterrupt:
-        print("\nStopped. The same command with the same --out resumes the run.", file=sys.stderr)
-        return 130
+    return cli.run(RunOptions, main, argv, stopped="Stopped. The same command with the same --out resumes the run.")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ actions for which the two differ are listed.
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from sim import cli
+from sim.evaluation.results import read_result_lines
 from sim.interface import Action, ConfigError
-from sim.task.trajectory import ENDED, FOLDER, Trajectory, read_trajectory
+from sim.task.trajectory import ENDED, Trajectory, read_trajectory, trajectory_file
 from stubborn.mapping.collision_marks import CollisionConfig
 
 
@@ -51,12 +51,12 @@ def main(args: Args) -> int:
     results = args.run / "results.jsonl"
     if not results.is_file():
         raise ConfigError(f"--run '{args.run}' has no results.jsonl.")
-    names = sorted(json.loads(line)["episode_id"] for line in results.read_text(encoding="utf-8").splitlines())
+    names = sorted(line["episode_id"] for line in read_result_lines(results).values)
     names = names[: args.episodes]
     below_m = CollisionConfig().failed_below_m
     counts = Counts()
     for name in names:
-        add_episode(counts, name, read_trajectory(args.run / FOLDER / f"{name}.npz"), below_m)
+        add_episode(counts, name, read_trajectory(trajectory_file(args.run, name)), below_m)
     if counts.forwards == 0:
         raise ConfigError(f"--run '{args.run}': no episode has a forward action.")
     print("\n".join(counts.differences[: args.most]))

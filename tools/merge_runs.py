@@ -53,19 +53,20 @@ def main(args: Args) -> int:
     console = display.make_console()
     merged = RunDirectory(out, merged_config(runs))
     try:
+        merged.drop_errors()  # a shard may have run them again
         existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
             if episode_id not in existing:
                 merged.append(line)
             elif without_times(existing[episode_id]) != without_times(line):
                 raise _conflict(episode_id, out, line)
-        summary = merged.write_summary({"split": merged.config["split_identity"]})
+        summary = merged.write_summary({"split": runs[0].recorded("split_identity")})
         display.print_results(console, merged.lines, summary)
     finally:
         merged.close()
     for folder in folders:
         copy_files(folder, out)
-    missing = int(merged.config["episodes"]) - len(merged.lines)
+    missing = merged.config["episodes"] - len(merged.lines)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
     console.print(message, highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
@@ -104,7 +105,10 @@ def merged_lines(runs: Sequence[Run]) -> dict[str, Line]:
     lines: dict[str, Line] = {}
     for run in runs:
         for episode_id, line in run.lines.items():
-            if without_times(lines.setdefault(episode_id, line)) != without_times(line):
+            first = lines.setdefault(episode_id, line)
+            if "error" in (first["end_reason"], line["end_reason"]):
+                lines[episode_id] = line if first["end_reason"] == "error" else first
+            elif without_times(first) != without_times(line):
                 raise _conflict(episode_id, run.path, lines[episode_id])
     return dict(sorted(lines.items()))
 
@@ -117,8 +121,10 @@ def without_times(line: Line) -> dict[str, Any]:
 def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
     """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes."""
     versions = [run.config.get("versions", {}) for run in runs]
-    codes = [code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes", [of.get("code")])]
-    episodes = max(int(run.config["episodes"]) for run in runs)
+    codes = [
+        code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes") or [of.get("code")]
+    ]
+    episodes = max(run.recorded("episodes") for run in runs)
     return {**runs[0].config, "shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
 
 

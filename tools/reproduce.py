@@ -363,11 +363,8 @@ def _check(args: Args) -> None:
 
 def entry(argv: Sequence[str] | None = None) -> int:
     """The command line."""
-    try:
-        return cli.run(Args, main, argv)
-    except KeyboardInterrupt:
-        print("\nStopped. The same command resumes; with --minutes 0 it only writes the table.")
-        return 130
+    stopped = "Stopped. The same command resumes; with --minutes 0 it only writes the table."
+    return cli.run(Args, main, argv, stopped=stopped)
 
 
 if __name__ == "__main__":

@@ -27,18 +27,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from sim import cli
 from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
 from sim.evaluation.executors import make_executor
-from sim.evaluation.results import RunDirectory
+from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
 from sim.files import write_atomically
 from sim.interface import Action, ConfigError
 from sim.paths import code_hash
+from sim.reading import Count as ReadCount
+from sim.reading import Name, Number
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.target.classifiers import Features
 from stubborn.target.distances import TargetConfig
@@ -79,6 +83,16 @@ class Args:
     """Folder of the log; None: runs/verifier-<semantics>-<split>."""
     out: cli.OutFile | None = None
     """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
+
+
+class CandidateLine(msgspec.Struct):
+    """A line of the log."""
+
+    episode_id: Name
+    goal: Name
+    house: Name
+    steps: ReadCount
+    candidates: list[tuple[Number, Number, Number, Number, Number, Number, Number]]
 
 
 class RecordingVerifier:
@@ -134,14 +148,14 @@ def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or Path("runs") / f"verifier-{args.semantics}-{split.name}"
     if args.minutes == 0:
-        text = (log / "results.jsonl").read_text(encoding="utf-8") if (log / "results.jsonl").is_file() else ""
-        lines = [json.loads(line) for line in text.splitlines()]
+        lines = read_result_lines(log / "results.jsonl", CandidateLine).values
     else:
-        run = RunDirectory(log, log_config(args, split))
+        run = RunDirectory(log, log_config(args, split), CandidateLine)
         try:
             run_episodes(args, split, run)
             lines = run.lines
         finally:
+            run.discard_if_empty()
             run.close()
     wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
     return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])

@@ -11,12 +11,14 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import sys
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from rich.table import Table
 
@@ -28,6 +30,8 @@ from sim.episodes.splits import Episode
 from sim.files import write_picture as save_picture
 from sim.files import write_together
 from sim.interface import Agent, ConfigError
+from sim.reading import Count as ReadCount
+from sim.reading import Name, Number, read_lines
 from stubborn import agents, draw
 from stubborn.agent import StubbornAgent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -70,18 +74,38 @@ def main(args: Args) -> int:
     console = display.make_console()
     args.out.mkdir(parents=True, exist_ok=True)
     results = args.out / "results.jsonl"
-    rows = [json.loads(line) for line in results.read_text().splitlines()] if results.is_file() else []
+    found = read_lines(results, Row, what="Results")
+    if found.torn:
+        console.print(found.torn, markup=False)
+        os.truncate(results, found.whole_bytes)
+    rows = found.values
     for name in args.agents:
         done = {row["episode_id"] for row in rows if row["agent"] == name}
         for trial in run_trials(args, name, done):
             rows.append(row_of(trial))
-            with results.open("a") as file:
+            with results.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
             console.print(f"{name} {trial.episode_id}: {outcome} after {len(trial.motions)} steps")
     write_together({args.out / "traps.csv": as_csv(rows), args.out / "traps.md": as_markdown(rows)})
     console.print(as_table(rows))
     return 0
+
+
+class Row(msgspec.Struct):
+    """A line of results.jsonl."""
+
+    trap: Name
+    episode_id: Name
+    agent: Name
+    escaped: bool
+    steps: ReadCount
+    steps_in_trap: ReadCount
+    collisions: ReadCount
+    trapped: bool
+    spl: Number
+    forward_mean_m: Number | None
+    deepest_mm: Number
 
 
 def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:

@@ -15,7 +15,7 @@ from typing import Any
 from sim.analysis.tables import ResultTable
 from sim.errors import ConfigError
 from sim.evaluation.config_fields import Difference, differing_fields, field_text
-from sim.evaluation.results import WITHOUT_EFFECT, read_whole_lines
+from sim.evaluation.results import WITHOUT_EFFECT, read_record, read_result_lines
 from sim.task.trajectory import read_trajectory, trajectory_file
 
 __all__ = [
@@ -37,6 +37,13 @@ class Run:
     lines: Mapping[str, Line]
     """By `episode_id`."""
 
+    def recorded(self, name: str) -> Any:
+        """Returns a field of config.json; raises ConfigError where a run of an older version does not have it."""
+        value = self.config.get(name)
+        if value is None:
+            raise ConfigError(f"'{self.path / 'config.json'}' has no field '{name}', which this command needs.")
+        return value
+
 
 def read_run(path: Path) -> Run:
     """Returns the run in a folder.
@@ -49,10 +56,10 @@ def read_run(path: Path) -> Run:
         if not file.is_file():
             raise ConfigError(f"'{path}' is no run: it has no {file.name}.")
     try:
-        lines = read_whole_lines(results)
-        return Run(path, json.loads(config.read_text(encoding="utf-8")), {line["episode_id"]: line for line in lines})
-    except (ValueError, KeyError, TypeError) as error:
-        raise ConfigError(f"'{path}' is no run: {error!r}.") from None
+        record, lines = read_record(config), read_result_lines(results).values
+    except ConfigError as error:
+        raise ConfigError(f"'{path}' is no run: {error}") from None
+    return Run(path, record, {line["episode_id"]: line for line in lines})
 
 
 def code_of(run: Run, episode_id: str) -> str:

@@ -13,7 +13,7 @@ from typing import Any, cast
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.env.oracle import Oracle
-from sim.errors import ConfigError
+from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
 from stubborn.exploration.explorer import ExplorerConfig
@@ -113,7 +113,12 @@ def build_agent(
             f"Agent '{name}': its factory is called with the arguments {', '.join(parts)}, but: {error}. "
             "A parameter **options accepts those that it does not use."
         ) from None
-    return spec.make(**parts)
+    try:
+        return spec.make(**parts)
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
+            raise
+        raise ConfigError(f"Agent '{name}' cannot be built: {type(error).__name__}: {error}") from error
 
 
 def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
@@ -123,6 +128,9 @@ def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
+    except (Exception, SystemExit) as error:  # the user's code
+        told = f"{type(error).__name__}: {error}"
+        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
     try:
         return vars(module)[attribute]
     except KeyError:

@@ -78,6 +78,8 @@ class RunOptions:
     """Stream poses, images, points and map to the Rerun viewer (extra `rerun`)."""
     rerun_save: bool = False
     """Write a Rerun file of each episode to <out>/rerun (extra `rerun`)."""
+    retry_errors: bool = False
+    """Run the episodes again that ended with an error in an earlier start of this run."""
     list_agents: bool = False
     """Print the agents with a description of each, and exit."""
 

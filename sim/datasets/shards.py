@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from sim.datasets.views import View
 from sim.files import write_atomically
 from sim.interface import MPCAT40, ConfigError
+from sim.reading import read_json
 
 JPEG_QUALITY = 92
 PNG_LEVEL = 1
@@ -111,12 +112,13 @@ def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
     """
     tar = folder / f"{name}.tar"
     try:
-        note = ShardNote(**json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))
+        note = read_json(folder / f"{name}.json", ShardNote, what="Note")
         if tar.stat().st_size != note.size_bytes or (verify and _sha256(tar) != note.sha256):
             return None
-    except (OSError, ValueError, TypeError):
+    except (OSError, ConfigError):
         return None
-    return note
+    complete = set(note.pixels) == set(note.views_with) == set(MPCAT40) and note.shard == name
+    return note if complete else None
 
 
 def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, config: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
 from sim.episodes.splits import Episode, Split, load_split, one_house
-from sim.errors import EpisodeError
+from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.robot.config import RobotConfig
@@ -227,7 +227,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def _noise_in(self, house: str) -> SensorNoise:
         """Returns the noise that the house's sidecar fixes, else the environment's."""
         fixed = self.split.sidecar(house).noise
-        return self._make_noise(noise_from_dict(fixed)) if fixed else self._default_noise
+        try:
+            return self._make_noise(noise_from_dict(fixed)) if fixed else self._default_noise
+        except (ConfigError, TypeError) as error:
+            raise HouseError(f"House '{house}': the noise in its sidecar is not allowed: {error}") from None
 
     def _require_in_space(self, observation: dict[str, NDArray]) -> None:
         """Raises ConfigError if the first reading of a sensor of the user's is not in its space."""

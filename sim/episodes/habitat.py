@@ -14,11 +14,15 @@ import gzip
 import io
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
+
+import msgspec
 
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, wrap_angle
+from sim.reading import Metres, Name, Number, read_gzip_json
 
 Json = dict[str, Any]
 
@@ -28,7 +32,7 @@ def to_position(x_m: float, y_m: float, z_m: float) -> list[float]:
     return [x_m, z_m, 0.0 - y_m]
 
 
-def from_position(position: list[float]) -> tuple[float, float, float]:
+def from_position(position: Sequence[float]) -> tuple[float, float, float]:
     """Returns a position of Habitat's frame in ours."""
     x, up, back = position
     return x, 0.0 - back, up
@@ -40,7 +44,7 @@ def to_rotation(yaw_rad: float) -> list[float]:
     return [0.0, math.sin(half), 0.0, math.cos(half)]
 
 
-def from_rotation(rotation: list[float]) -> float:
+def from_rotation(rotation: Sequence[float]) -> float:
     """Returns the heading, in (-pi, pi], of an upright agent with Habitat's quaternion, xyzw."""
     _, y, _, w = rotation
     return wrap_angle(2.0 * math.atan2(y, w) + 0.5 * math.pi)
@@ -51,7 +55,7 @@ def to_agent_state(pose: Pose) -> Json:
     return {"position": to_position(pose.x_m, pose.y_m, pose.floor_z_m), "rotation": to_rotation(pose.yaw_rad)}
 
 
-def from_agent_state(position: list[float], rotation: list[float]) -> Pose:
+def from_agent_state(position: Sequence[float], rotation: Sequence[float]) -> Pose:
     """Returns the pose of an `agent_state` of Habitat in our frame."""
     x, y, z = from_position(position)
     return Pose(x, y, from_rotation(rotation), z)
@@ -70,17 +74,52 @@ def category_tables() -> Json:
     }
 
 
-def read_json(path: Path) -> Json:
-    """Reads one gzipped JSON object.
+class EpisodeInfo(msgspec.Struct):
+    """The measured part of an episode."""
+
+    geodesic_distance: Annotated[float, msgspec.Meta(ge=0.0, le=1e6)] | None = None
+
+
+class EpisodeEntry(msgspec.Struct):
+    """An episode of a file, as far as we read it."""
+
+    episode_id: Name | int
+    scene_id: Name
+    start_position: tuple[Metres, Metres, Metres]
+    start_rotation: tuple[Number, Number, Number, Number]
+    object_category: Name
+    info: EpisodeInfo = msgspec.field(default_factory=EpisodeInfo)
+
+
+class EpisodeFile(msgspec.Struct):
+    """The file of a house."""
+
+    episodes: list[EpisodeEntry]
+
+
+class IndexFile(msgspec.Struct):
+    """The file of a split."""
+
+    version: Name = "unknown"
+    order: list[Name | int] | None = None
+
+
+def read_episodes(path: Path) -> list[EpisodeEntry]:
+    """Returns the episodes of a house.
 
     Raises:
-        ValueError, OSError: the file is not one.
+        ConfigError: the file is not in Habitat's ObjectNav layout.
     """
-    with gzip.open(path, "rt", encoding="utf-8") as file:
-        content = json.load(file)
-    if not isinstance(content, dict):
-        raise ValueError("it holds no JSON object")
-    return content
+    return read_gzip_json(path, EpisodeFile, what="Episode file").episodes
+
+
+def read_index(path: Path) -> IndexFile:
+    """Returns the version of a split and the order of its episodes.
+
+    Raises:
+        ConfigError: the file is not in Habitat's ObjectNav layout.
+    """
+    return read_gzip_json(path, IndexFile, what="Episode file")
 
 
 def zipped_json(content: Json) -> bytes:

@@ -13,10 +13,10 @@ import difflib
 import hashlib
 import json
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from sim.episodes import habitat
 from sim.errors import EpisodeError, HouseError
@@ -28,9 +28,11 @@ from sim.houses.load import load_house
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.paths import assets_dir
+from sim.reading import Name, first_unprintable, printable, read_json
 
-T = TypeVar("T")
 UNREACHABLE_FILE = "unreachable.json"
+FARTHEST_M = 10_000.0
+"""Largest coordinate of a start."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,13 @@ class Episode:
     start: Pose
     shortest_path_m: float | None = None
     """Recorded geodesic distance from the start to the nearest place where a STOP succeeds; None: unknown."""
+
+    def __post_init__(self) -> None:
+        if self.goal not in GOAL_CATEGORIES:
+            raise EpisodeError(f"Unknown goal '{self.goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+        start = self.start
+        if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
+            raise EpisodeError(f"Episode '{self.episode_id}' starts at {start}; finite numbers of metres are allowed.")
 
 
 @dataclass(frozen=True)
@@ -194,11 +203,7 @@ def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
     file = folder / UNREACHABLE_FILE
     if not file.is_file():
         return {}
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        return {house: tuple(names) for house, names in content.items()}
-    except (AttributeError, TypeError, ValueError) as error:
-        raise ConfigError(f"'{file}' is no JSON object of lists: {error!r}.") from None
+    return read_json(file, dict[Name, tuple[Name, ...]], what="List of unreachable instances")
 
 
 def _unreachable_text(unreachable: Mapping[str, Sequence[str]]) -> str:
@@ -216,18 +221,29 @@ def _index_of(folder: Path) -> Path:
 def _read_split(folder: Path) -> Split:
     """Returns the split in a folder that has an index."""
     index_file = _index_of(folder)
-    index = _parsed(index_file, lambda content: content)
+    index = habitat.read_index(index_file)
     episodes: dict[str, Episode] = {}
     for file in sorted((folder / "content").glob("*.json.gz")):
-        episodes |= _parsed(file, _episodes_of)
-    ordered = _parsed(index_file, lambda content: tuple(episodes[i] for i in content.get("order", sorted(episodes))))
+        for episode in _episodes_of(file):
+            if episode.episode_id in episodes:
+                raise ConfigError(f"Episode file '{file}': there are two episodes '{episode.episode_id}'.")
+            episodes[episode.episode_id] = episode
+    order = sorted(episodes) if index.order is None else [str(each) for each in index.order]
+    for number, episode_id in enumerate(order):
+        if episode_id not in episodes:
+            raise ConfigError(f"Episode file '{index_file}', field 'order[{number}]': no episode '{episode_id}'.")
+    if len(set(order)) < len(order):
+        raise ConfigError(f"Episode file '{index_file}', field 'order': an episode is listed twice.")
+    ordered = tuple(episodes[each] for each in order)
     house_list = read_house_list(folder) if has_house_list(folder) else None
     houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
+    if (bad := first_unprintable(houses)) is not None:
+        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is no plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"
         raise ConfigError(f"Split '{folder}' has episodes in '{missing[0]}' but {where}.")
-    version = str(index.get("version", "unknown"))
+    version = index.version
     if house_list and house_list.version != version:
         raise ConfigError(
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
@@ -237,17 +253,15 @@ def _read_split(folder: Path) -> Split:
     return Split(folder.name, version, sha256, houses, ordered, house_list=house_list)
 
 
-def _parsed(file: Path, parse: Callable[[habitat.Json], T]) -> T:
-    """Returns the parsed content of a file; raises ConfigError, which names the file, where that fails."""
-    try:
-        return parse(habitat.read_json(file))
-    except (AttributeError, KeyError, TypeError, ValueError, OSError, EOFError) as error:
-        raise ConfigError(f"Episode file '{file}' is not in Habitat's ObjectNav layout: {error!r}.") from None
-
-
-def _episodes_of(content: habitat.Json) -> dict[str, Episode]:
-    episodes = [_from_habitat(entry) for entry in content["episodes"]]
-    return {episode.episode_id: episode for episode in episodes}
+def _episodes_of(file: Path) -> list[Episode]:
+    """Returns the episodes of a file; raises ConfigError, which names file and episode, where one is not allowed."""
+    episodes = []
+    for number, entry in enumerate(habitat.read_episodes(file)):
+        try:
+            episodes.append(_from_habitat(entry))
+        except EpisodeError as error:
+            raise ConfigError(f"Episode file '{file}', field 'episodes[{number}]': {error}") from None
+    return episodes
 
 
 def _sha256(sums: Mapping[str, str], episodes: Sequence[Episode]) -> str:
@@ -280,14 +294,11 @@ def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:
     }
 
 
-def _from_habitat(entry: Mapping[str, Any]) -> Episode:
-    goal = entry["object_category"]
-    if goal not in GOAL_CATEGORIES:
-        raise ValueError(f"episode {entry['episode_id']} asks for '{goal}', which is no goal category")
+def _from_habitat(entry: habitat.EpisodeEntry) -> Episode:
     return Episode(
-        episode_id=str(entry["episode_id"]),
-        house=Path(entry["scene_id"]).stem,
-        goal=goal,
-        start=habitat.from_agent_state(entry["start_position"], entry["start_rotation"]),
-        shortest_path_m=entry.get("info", {}).get("geodesic_distance"),
+        episode_id=str(entry.episode_id),
+        house=Path(entry.scene_id).stem,
+        goal=entry.object_category,
+        start=habitat.from_agent_state(entry.start_position, entry.start_rotation),
+        shortest_path_m=entry.info.geodesic_distance,
     )

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import multiprocessing as mp
+import os
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
@@ -127,9 +129,18 @@ class ProcessPool:
             worker.connection.close()
 
 
+def _end_with_parent() -> None:
+    """Ends this worker as soon as the process that started it is gone, also in the middle of an episode."""
+    parent = mp.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+
 def _worker_main(spec: RunnerSpec, connection: Connection) -> None:
     """Reports that the worker is ready and runs items until None arrives or the parent process is gone."""
     runner = ItemRunner(spec)
+    threading.Thread(target=_end_with_parent, daemon=True, name="parent").start()
     try:
         connection.send(None)
         while (item := connection.recv()) is not None:

@@ -6,6 +6,7 @@ which is removed when the run is resumed.
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
@@ -13,11 +14,15 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Annotated, Any, Literal
+
+import msgspec
 
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text
+from sim.files import write_atomically
+from sim.reading import Count, Lines, Name, Number, convert, read_json, read_lines
 
 SUMMARY_METRICS = (
     "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
@@ -39,14 +44,81 @@ NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "settings"}
 """
 
 
+IDENTITY = ("agent", "semantics", "seed")
+"""Keys that a line and the config of its run have in common, with equal values."""
+Measured = Number | bool | None
+
+
+class ResultLine(msgspec.Struct):
+    """A line of `results.jsonl`, as far as anything reads it; what older versions do not write has a default."""
+
+    episode_id: Name
+    house: Name
+    goal: Name
+    end_reason: Literal["stop", "max_steps", "fallen", "error"]
+    success: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] | bool
+    agent: str = ""
+    semantics: str = ""
+    seed: Count = 0
+    failure: str | None = None
+    error: str | None = None
+    spl: Measured = None
+    soft_spl: Measured = None
+    distance_to_goal: Measured = None
+    num_steps: Count | None = None
+    path_length: Measured = None
+    shortest_path: Measured = None
+    collisions: Measured = None
+    gt_explored: Measured = None
+    first_seen_step: Measured = None
+    steps_to_first_sight: Measured = None
+    area_seen_m2: Measured = None
+    area_per_metre: float | None = None  # code of before November 2026 divided by paths of nothing
+    trapped: Measured = None
+    wall_time_s: Measured = None
+    steps_per_s: Measured = None
+
+
+class SplitIdentity(msgspec.Struct):
+    """What identifies the source of a run's episodes."""
+
+    name: Name
+    version: str
+    sha256: str
+
+
+class RunRecord(msgspec.Struct):
+    """The content of `config.json`, as far as anything reads it; a run of an older version may lack any part."""
+
+    agent: str | None = None
+    semantics: str | None = None
+    split: str | None = None
+    house: str | None = None
+    labels: str | None = None
+    robot: str | None = None
+    weights: str | None = None
+    goal: str | None = None
+    noise: str | None = None
+    seed: Count | None = None
+    episodes: Count | None = None
+    split_identity: SplitIdentity | None = None
+    versions: dict[str, str] = {}
+    codes: list[str] | None = None
+    config: dict[str, Any] = {}
+    files_sha256: dict[str, str] = {}
+
+
 @dataclass
 class RunDirectory:
     """The folder of one run, locked against a second writer while it is open."""
 
     path: Path
     config: Mapping[str, Any]
+    line_type: type = ResultLine
+    """Type of the lines."""
 
     def __post_init__(self) -> None:
+        existed = self.path.exists()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             self._lock: IO[str] = (self.path / ".lock").open("w")
@@ -56,9 +128,70 @@ class RunDirectory:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise ConfigError(f"Another process is writing to --out '{self.path}'.") from None
-        self._write_or_compare_config()
-        self.lines: list[dict[str, Any]] = read_whole_lines(self.path / "results.jsonl", repair=True)
-        self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
+        self._created = [self.path / ".lock", *([] if existed else [self.path])]
+        self.healed = ""
+        """A sentence on an incomplete last line that was dropped; "" where there was none."""
+        try:
+            self._write_or_compare_config()
+            self.lines: list[dict[str, Any]] = self._read_and_heal()
+            self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
+        except BaseException:
+            self._lock.close()
+            raise
+
+    def discard_if_empty(self) -> None:
+        """Removes what this process created if no line was written, so that the next start may have other options."""
+        if self.lines or self.path / "config.json" not in self._created:
+            return
+        for file in ("config.json", "results.jsonl", ".lock"):
+            (self.path / file).unlink(missing_ok=True)
+        for folder in (self.path / "videos", self.path):
+            with contextlib.suppress(OSError):  # it does not exist, or holds other files
+                folder.rmdir()
+
+    def drop_errors(self) -> int:
+        """Removes the lines of episodes that ended with an error, so that they are run again; returns their number."""
+        kept = [line for line in self.lines if line["end_reason"] != "error"]
+        dropped = len(self.lines) - len(kept)
+        if dropped:
+            self._results.close()
+            text = "".join(json.dumps(line, allow_nan=False) + "\n" for line in kept)
+            write_atomically(self.path / "results.jsonl", text)
+            self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
+            self.lines = kept
+        return dropped
+
+    def require_of(self, episodes: Mapping[str, tuple[str, str]]) -> None:
+        """Raises ConfigError where a line is of none of the episodes, or of one with another house or goal.
+
+        Args:
+            episodes: house and goal by id.
+        """
+        for number, line in enumerate(self.lines, start=1):
+            where = f"Results '{self.path / 'results.jsonl'}', line {number}"
+            house, goal = episodes.get(line["episode_id"], (None, None))
+            if house is None:
+                raise ConfigError(f"{where}: '{line['episode_id']}' is no episode of this run; choose another folder.")
+            for key, wanted in (("house", house), ("goal", goal)):
+                if line[key] != wanted:
+                    raise ConfigError(f"{where}: {key} is '{line[key]}', but '{wanted}' in the episode of this run.")
+
+    def _read_and_heal(self) -> list[dict[str, Any]]:
+        """Returns the lines of earlier processes; an incomplete last line is cut off the file."""
+        file = self.path / "results.jsonl"
+        found = read_result_lines(file, self.line_type)
+        for number, line in enumerate(found.values, start=1):
+            for key in IDENTITY:
+                if key in line and key in self.config and line[key] != self.config[key]:
+                    raise ConfigError(
+                        f"Results '{file}', line {number}: {key} is {field_text(line[key])}, but this run has "
+                        f"{field_text(self.config[key])}; choose another folder."
+                    )
+        if found.torn:
+            self.healed = found.torn
+            with file.open("r+b") as stream:
+                stream.truncate(found.whole_bytes)
+        return found.values
 
     def append(self, line: Mapping[str, Any]) -> None:
         """Writes one result line and syncs it to disk."""
@@ -74,7 +207,7 @@ class RunDirectory:
             the other hashes, of the code that ran the existing lines, the oldest first.
         """
         file = self.path / "config.json"
-        existing = json.loads(file.read_text(encoding="utf-8"))
+        existing = read_record(file)
         first_code = existing.get("versions", {}).get("code", "unknown")
         codes = existing.get("codes", [first_code]) if self.lines else []
         if code not in codes:
@@ -100,14 +233,10 @@ class RunDirectory:
         if not file.exists():
             if (self.path / "results.jsonl").exists():
                 raise ConfigError(f"--out '{self.path}' has results but no config.json; choose another folder.")
+            self._created.append(file)
             _write_json(file, config)
             return
-        try:
-            existing = json.loads(file.read_text(encoding="utf-8"))
-        except ValueError:
-            raise ConfigError(
-                f"--out '{self.path}' holds a config.json that is not JSON; choose another folder."
-            ) from None
+        existing = read_record(file)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset:
@@ -156,26 +285,34 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _write_json(file: Path, content: Mapping[str, Any]) -> None:
-    part = file.with_suffix(".json.part")
-    part.write_text(json.dumps(content, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    part.replace(file)
+    write_atomically(file, json.dumps(content, indent=2, allow_nan=False) + "\n")
 
 
-def read_whole_lines(file: Path, *, repair: bool = False) -> list[dict[str, Any]]:
-    """Returns the complete lines of a results.jsonl; an incomplete last line is left out.
-
-    Args:
-        file: may not exist; it then has no lines.
-        repair: also cut an incomplete last line off the file.
+def read_record(file: Path) -> dict[str, Any]:
+    """Returns the content of a `config.json`.
 
     Raises:
-        ValueError: a line before the last is not JSON.
+        ConfigError: it cannot be read, or a field has another type.
     """
-    if not file.exists():
-        return []
-    content = file.read_bytes()
-    whole = content[: content.rfind(b"\n") + 1]
-    if repair and len(whole) < len(content):
-        with file.open("r+b") as stream:
-            stream.truncate(len(whole))
-    return [json.loads(line) for line in whole.splitlines()]
+    content = read_json(file, dict[str, Any], what="Config")
+    convert(content, RunRecord, where=f"Config '{file}'")
+    return content
+
+
+def read_result_lines(file: Path, line_type: type = ResultLine) -> Lines:
+    """Returns the lines of a `results.jsonl`; no line where there is no such file.
+
+    Raises:
+        ConfigError: a line before the last is broken, or an episode has two lines.
+    """
+    found = read_lines(file, line_type, what="Results")
+    first: dict[str, int] = {}
+    for number, line in enumerate(found.values, start=1):
+        before = first.setdefault(line["episode_id"], number)
+        if before != number:
+            same = "the same" if line == found.values[before - 1] else "another"
+            raise ConfigError(
+                f"Results '{file}', line {number}: episode '{line['episode_id']}' has {same} result in line {before}; "
+                "remove one of the lines."
+            )
+    return found

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import reprlib
 import time
+import traceback
 import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -14,8 +16,8 @@ import numpy as np
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
-from sim.errors import PhysicsError
-from sim.interface import Action, Agent
+from sim.errors import AgentError, PhysicsError, debug
+from sim.interface import Action, Agent, Observation
 from sim.task.trajectory import trajectory_file, write_trajectory
 from sim.viewers.viewer import Moment, Viewer
 
@@ -38,8 +40,9 @@ def play_episode(
     seed: int,
     on_step: OnStep | None = None,
     viewers: Sequence[Viewer] = (),
+    name: str | None = None,
 ) -> dict[str, Any]:
-    """Runs the agent until it stops, the steps are used up or the physics fail.
+    """Runs the agent until it stops, the steps are used up, or the physics or the agent fail.
 
     Args:
         env: the environment.
@@ -48,18 +51,28 @@ def play_episode(
         seed: of environment and agent.
         on_step: called after each step.
         viewers: informed of each step; they change nothing.
+        name: the agent's name in messages; that of its class when None.
 
     Returns:
         The episode's line of `results.jsonl` without the fields of the run (`agent`, `semantics`, `seed`).
+
+    Raises:
+        AgentError: the agent's `reset` failed; a failure of `act` ends the episode as `error`.
+        EpisodeError, HouseError: the episode cannot begin.
     """
+    name = type(agent).__name__ if name is None else name
     observation, info = env.reset(seed=seed, options={"episode": episode})
-    agent.reset(episode.goal, seed)
+    ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed))
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
     steps, error, done = 0, None, False
     while not done:
-        action = Action(agent.act(observation))
+        try:
+            action = next_action(agent, observation, f"Agent '{name}', step {steps + 1}")
+        except AgentError as failure:
+            error = str(failure)
+            break
         moment = Moment(step=steps + 1, observation=observation, images=env.truth_images, action=action)
         for viewer in viewers:
             viewer.decided(moment)
@@ -82,6 +95,35 @@ def play_episode(
     for viewer in viewers:
         viewer.end(line)
     return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(steps / wall_time_s, 2) if steps else 0.0}
+
+
+def ask(where: str, call: Callable[[], Any]) -> Any:
+    """Returns what a call of the agent returns.
+
+    Raises:
+        AgentError: it raised an error, or called `exit`; the message begins with `where`.
+    """
+    try:
+        return call()
+    except (Exception, SystemExit) as error:
+        if debug():
+            traceback.print_exc()
+        told = " ".join(str(error).split()) or "no message"
+        raise AgentError(f"{where}: {type(error).__name__}: {told}") from error
+
+
+def next_action(agent: Agent, observation: Observation, where: str) -> Action:
+    """Returns the agent's next action.
+
+    Raises:
+        AgentError: `act` failed, or returned something else; the message begins with `where`.
+    """
+    given = ask(where, lambda: agent.act(observation))
+    try:
+        return Action(given)
+    except (ValueError, TypeError):
+        actions = ", ".join(f"{action.value} {action.name}" for action in Action)
+        raise AgentError(f"{where}: act() returned {reprlib.repr(given)}; an action is one of {actions}.") from None
 
 
 def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about: Mapping[str, Any]) -> None:

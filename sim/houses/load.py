@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from sim.houses.foreign import remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
 from sim.interface import MPCAT40_ID
+from sim.reading import read_json
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
@@ -63,12 +63,9 @@ def read_rules(path: Path) -> dict[str, str]:
     if not path.is_file():
         raise HouseError(f"Label rules '{path}': there is no such file.")
     try:
-        rules = json.loads(path.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise HouseError(f"Label rules '{path}' are not JSON: {error}.") from None
-    if not isinstance(rules, dict) or not all(isinstance(value, str) for value in rules.values()):
-        raise HouseError(f'Label rules \'{path}\' must be one JSON object {{"regex over names": "category"}}.')
-    return rules
+        return read_json(path, dict[str, str], what="Label rules", error=HouseError)
+    except HouseError as error:
+        raise HouseError(f'{error} They must be one JSON object {{"regex over names": "category"}}.') from None
 
 
 def validate_house(house: House, model: mujoco.MjModel) -> Labels:

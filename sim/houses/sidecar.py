@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+
+import msgspec
 
 from sim.errors import HouseError
 from sim.files import write_atomically
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
+from sim.reading import Metres, read_json
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +34,23 @@ class Sidecar:
 EMPTY_SIDECAR = Sidecar()
 
 
+class _Start(msgspec.Struct, forbid_unknown_fields=True):
+    x_m: Metres
+    y_m: Metres
+    yaw_rad: Metres
+    floor_z_m: Metres = 0.0
+
+
+class _Content(msgspec.Struct, forbid_unknown_fields=True):
+    """The file."""
+
+    reason: str = ""
+    goal: Literal[GOAL_CATEGORIES] | None = None  # pyright: ignore[reportInvalidTypeForm] - the values of a tuple
+    start: _Start | None = None
+    zone_m: tuple[Metres, Metres, Metres, Metres] | None = None
+    noise: dict[str, Any] | None = None
+
+
 def sidecar_path(house_file: Path) -> Path:
     """Returns the path of the sidecar of a house file, whether it exists or not."""
     return house_file.with_suffix(".json")
@@ -46,11 +65,15 @@ def read_sidecar(house_file: Path) -> Sidecar:
     file = sidecar_path(house_file)
     if not file.is_file():
         return EMPTY_SIDECAR
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        return _parse(content)
-    except (AttributeError, KeyError, TypeError, ValueError) as error:
-        raise HouseError(f"Sidecar '{file}': {error}") from None
+    content = read_json(file, _Content, what="Sidecar", error=HouseError)
+    start, (x0, y0, x1, y1) = content.start, content.zone_m or (0.0, 0.0, 0.0, 0.0)
+    return Sidecar(
+        start=None if start is None else Pose(start.x_m, start.y_m, start.yaw_rad, start.floor_z_m),
+        goal=content.goal,
+        noise=content.noise or {},
+        reason=content.reason,
+        zone_m=None if content.zone_m is None else (x0, y0, x1, y1),
+    )
 
 
 def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
@@ -67,36 +90,3 @@ def write_sidecar(house_file: Path, sidecar: Sidecar) -> None:
         content["noise"] = dict(sidecar.noise)
     text = json.dumps(content, indent=2, allow_nan=False)
     write_atomically(sidecar_path(house_file), text + "\n")
-
-
-def _parse(content: Mapping[str, Any]) -> Sidecar:
-    known = ("reason", "goal", "start", "zone_m", "noise")
-    for key in content:
-        if key not in known:
-            raise ValueError(f"unknown key '{key}'. The keys are: {', '.join(known)}.")
-    goal, zone = content.get("goal"), content.get("zone_m")
-    if goal is not None and goal not in GOAL_CATEGORIES:
-        raise ValueError(
-            f"goal '{goal}' is not a goal category. The goal categories are: {', '.join(GOAL_CATEGORIES)}."
-        )
-    if zone is not None and len(zone) != 4:
-        raise ValueError(f"zone_m must be [x0, y0, x1, y1], got {zone}.")
-    x0, y0, x1, y1 = map(float, zone) if zone is not None else (0.0, 0.0, 0.0, 0.0)
-    return Sidecar(
-        start=None if content.get("start") is None else _pose(content["start"]),
-        goal=goal,
-        noise=dict(content.get("noise") or {}),
-        reason=str(content.get("reason", "")),
-        zone_m=None if zone is None else (x0, y0, x1, y1),
-    )
-
-
-def _pose(start: Mapping[str, float]) -> Pose:
-    missing = sorted({"x_m", "y_m", "yaw_rad"} - set(start))
-    unknown = sorted(set(start) - {"x_m", "y_m", "yaw_rad", "floor_z_m"})
-    if missing or unknown:
-        raise ValueError(f"start must have x_m, y_m and yaw_rad (and may have floor_z_m), got {dict(start)}.")
-    values = {key: float(value) for key, value in start.items()}
-    if not all(math.isfinite(value) for value in values.values()):
-        raise ValueError(f"start must be finite, got {dict(start)}.")
-    return Pose(**values)

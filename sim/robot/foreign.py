@@ -25,11 +25,14 @@ from pathlib import Path
 from typing import Any
 
 from sim.interface import CameraModel, ConfigError
+from sim.reading import read_json
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
 
 KEYS = ("wheel_joints", "wheel_radius_m", "casters", "radius_m", "height_m")
 CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
+LARGEST_M = 1000.0
+"""Largest number of a sidecar, also of degrees."""
 MIN_CLEARANCE_M = 0.005
 """Least distance between the body's skin and the floor, so that the body does not rub on the floor."""
 WHEEL_MASS_SHARE = 0.01
@@ -123,7 +126,7 @@ def _camera(sidecar: dict[str, Any]) -> CameraModel:
 
 def _camera_forward_m(sidecar: dict[str, Any]) -> float:
     forward_m = sidecar.get("camera_forward_m", 0.0)
-    if isinstance(forward_m, bool) or not isinstance(forward_m, int | float):
+    if isinstance(forward_m, bool) or not isinstance(forward_m, int | float) or not abs(forward_m) <= LARGEST_M:
         raise ConfigError(
             f'"camera_forward_m" in its sidecar must be a number of metres; it is {json.dumps(forward_m)}.'
         )
@@ -132,11 +135,9 @@ def _camera_forward_m(sidecar: dict[str, Any]) -> float:
 
 def _read_sidecar(file: Path) -> dict[str, Any]:
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, OSError) as error:
-        raise ConfigError(f"its sidecar '{file.name}' is not JSON: {error}.") from None
-    if not isinstance(content, dict):
-        raise ConfigError(f"its sidecar '{file.name}' must be one JSON object.")
+        content = read_json(file, dict[str, Any], what="its sidecar")
+    except ConfigError as error:
+        raise ConfigError(f"{error} It must be one JSON object.") from None
     unknown = [key for key in content if key not in (*KEYS, *CAMERA_KEYS)]
     if unknown:
         keys = ", ".join((*KEYS, *CAMERA_KEYS))
@@ -155,6 +156,8 @@ def _are_names(values: list[Any]) -> bool:
 
 def _positive(sidecar: dict[str, Any], key: str, default: float | None = None) -> float:
     value = sidecar.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not (math.isfinite(value) and value > 0.0):
-        raise ConfigError(f'its sidecar needs "{key}", a number > 0; it has {json.dumps(value)}.')
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value <= LARGEST_M:
+        raise ConfigError(
+            f'its sidecar needs "{key}", a number > 0; it has {json.dumps(value)}. At most {LARGEST_M:g} is allowed.'
+        )
     return float(value)

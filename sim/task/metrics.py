@@ -17,6 +17,8 @@ TRAPPED_RADIUS_M = 1.0
 """A robot is trapped if it never gets this far from its position at the start of a window of that many steps."""
 EXPLORED_SHARE = 0.008
 """Share of a frame that the goal's true mask must cover for GT exploration to be true."""
+MOVED_M = 0.01
+"""A shorter path is that of a robot that turned on the spot, whose centre drifts by micrometres."""
 
 
 def path_efficiency(shortest_path_m: float, path_length_m: float) -> float:
@@ -56,8 +58,8 @@ def steps_to_first_sight(first_seen_step: int | None, max_steps: int) -> int:
 
 
 def per_metre(area_m2: float, path_length_m: float) -> float:
-    """Returns the floor area seen per metre driven; 0 where the robot has not moved."""
-    return area_m2 / path_length_m if path_length_m > 0.0 else 0.0
+    """Returns the floor area seen per metre driven; 0 where the robot has not moved by `MOVED_M`."""
+    return area_m2 / path_length_m if path_length_m >= MOVED_M else 0.0
 
 
 def stayed_near(positions_m: Sequence[tuple[float, float]] | NDArray[np.float64]) -> bool:

@@ -9,24 +9,28 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import struct
 import urllib.parse
 import zipfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
+from sim.reading import MAX_BYTES, Metres, parse_json, reason_of, require_small_zip
 from sim.robot.drive import Ended, Motion
 from sim.task.metrics import EXPLORED_SHARE
 
 FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
+FARTHEST_M = 10_000.0
 FOLDER = "trajectories"
 ENDED: tuple[str, ...] = get_args(Ended)
 """Meaning of the numbers in `Trajectory.ended`."""
@@ -185,29 +189,52 @@ def read_trajectory(file: Path) -> Trajectory:
     if not file.is_file():
         raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
     try:
+        require_small_zip(file, what="the file", most=MAX_BYTES)
         with np.load(file, allow_pickle=False) as content:
-            arrays = {name: content[name] for name in (*_ARRAYS, "contacts")}
-            header = json.loads(content["about"].tobytes())
-        if header["format"] != FORMAT:
-            raise ValueError(f"its format is {header['format']}, this program reads {FORMAT}")
-        scalars = {name: header["scalars"][name] for name in _SCALARS}
-        trajectory = Trajectory(**arrays, **scalars, about=header["about"])
+            arrays = {name: np.asarray(content[name]) for name in (*_ARRAYS, "contacts")}
+            text = np.asarray(content["about"]).tobytes()
+        header = parse_json(text, _Header, where="its header 'about'")
+        if header.format != FORMAT:
+            raise ValueError(f"its format is {header.format}, this program reads {FORMAT}")
+        scalars = {name: getattr(header.scalars, name) for name in _SCALARS}
+        trajectory = Trajectory(**arrays, **scalars, about=header.about)
         _check(trajectory)
     except KeyError as error:
-        raise ConfigError(f"'{file}' is no trajectory: it has no {error.args[0]!r}.") from None
-    except (OSError, ValueError, TypeError, EOFError, zipfile.BadZipFile, zlib.error) as error:
-        raise ConfigError(f"'{file}' is no trajectory: {error}.") from None
+        raise ConfigError(f"'{file}' is no trajectory: it has no {str(error.args[0])!r}.") from None
+    except (
+        OSError, ValueError, TypeError, EOFError, zipfile.BadZipFile, zlib.error, MemoryError, NotImplementedError,
+        SyntaxError, struct.error, RuntimeError,
+    ) as error:  # fmt: skip
+        raise ConfigError(f"'{file}' is no trajectory: {reason_of(error)}.") from None
     return trajectory
 
 
+class _Scalars(msgspec.Struct):
+    goal_on_storey: bool
+    nearest_instance_m: Metres | None
+    success: bool
+    end_reason: Literal["stop", "max_steps", "fallen", "error"] | None
+
+
+class _Header(msgspec.Struct):
+    """The JSON in `about`."""
+
+    format: int
+    scalars: _Scalars
+    about: dict[str, Any]
+
+
 def _check(trajectory: Trajectory) -> None:
-    """Raises ValueError where the arrays do not fit each other."""
+    """Raises ValueError where the arrays do not fit each other, or hold numbers without meaning."""
     for name, (kind, axes, more) in _ARRAYS.items():
         array = getattr(trajectory, name)
         if array.dtype != kind or array.ndim != axes or len(array) != trajectory.num_steps + more:
             raise ValueError(f"{name} is {array.dtype} {array.shape} for {trajectory.num_steps} actions")
     if trajectory.poses.shape[1:] != (4,) or trajectory.contacts.shape[1:] != (3,):
         raise ValueError(f"poses are {trajectory.poses.shape}, contacts {trajectory.contacts.shape}")
+    for name in ("poses", "contacts"):
+        if not bool((np.abs(getattr(trajectory, name)) <= FARTHEST_M).all()):
+            raise ValueError(f"{name} hold NaN, infinity or a number beyond {FARTHEST_M:g}")
     if np.any(trajectory.actions >= len(Action)) or np.any(trajectory.ended >= len(ENDED)):
         raise ValueError("an action or the reason of its end is out of range")
 

@@ -8,14 +8,16 @@ examples uses the pooled classifier.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Annotated, Any, Protocol
+
+import msgspec
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
+from sim.reading import Number, convert, read_json
 from stubborn.target.classifiers import Classifier, Features, Logistic, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
@@ -26,6 +28,40 @@ METHODS: Mapping[str, Callable[[Mapping[str, Any]], Classifier]] = MappingProxyT
 """Classifiers by name, the paper's first; `threshold` uses the mean score over all frames only."""
 ACCEPT_ALL = "none"
 """The method that accepts every candidate."""
+_Variance = Annotated[float, msgspec.Meta(gt=0.0, le=1e12)]
+
+
+_Four = tuple[Number, Number, Number, Number]
+_Variances = tuple[_Variance, _Variance, _Variance, _Variance]
+
+
+class _NaiveBayes(msgspec.Struct):
+    """Parameters of `NaiveBayes`."""
+
+    prior: tuple[_Variance, _Variance]
+    mean: tuple[_Four, _Four]
+    variance: tuple[_Variances, _Variances]
+
+
+class _Logistic(msgspec.Struct):
+    """Parameters of `Logistic`."""
+
+    inputs: list[str]
+    coefficients: list[Number]
+    intercept: Number
+
+
+class _Method(msgspec.Struct):
+    """Parameters of one method."""
+
+    pooled: dict[str, Any]
+    categories: dict[str, dict[str, Any]]
+
+
+class _File(msgspec.Struct):
+    """A file of parameters."""
+
+    methods: dict[str, Any]
 
 
 class Verifier(Protocol):
@@ -77,14 +113,19 @@ class FittedVerifier:
         """
         if method not in METHODS:
             raise ConfigError(f"Unknown verification '{method}'. There is: {', '.join((*METHODS, ACCEPT_ALL))}.")
-        make = METHODS[method]
+        make, where = METHODS[method], f"Verifier file '{file}'"
+        methods = read_json(file, _File, what="Verifier file").methods
+        if method not in methods:
+            raise ConfigError(f"{where} has no method '{method}'. It has: {', '.join(methods) or 'none'}.")
+        kind = _NaiveBayes if make == NaiveBayes.from_dict else _Logistic
+        content = convert(methods[method], _Method, where=f"{where}, method '{method}'")
+        checked = {"pooled": content.pooled, **content.categories}
+        for name, each in checked.items():
+            convert(each, kind, where=f"{where}, method '{method}', '{name}'")
         try:
-            content = json.loads(file.read_text(encoding="utf-8"))["methods"][method]
-            return cls({name: make(each) for name, each in content["categories"].items()}, make(content["pooled"]))
-        except OSError as error:
-            raise ConfigError(f"Verifier file '{file}' cannot be read: {error.strerror}.") from None
-        except (KeyError, TypeError, AttributeError, ValueError) as error:
-            raise ConfigError(f"Verifier file '{file}' is not what tools/train_verifier.py writes: {error}") from None
+            return cls({name: make(each) for name, each in content.categories.items()}, make(content.pooled))
+        except ConfigError as error:
+            raise ConfigError(f"{where} is not what tools/train_verifier.py writes: {error}") from None
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""

@@ -68,6 +68,28 @@ def die(item: object) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+class Faulty(Exception):
+    """The error of an agent of a user."""
+
+
+class FaultyAgent:
+    """An `Agent` that breaks at its second action while the file `STUBBORN_TEST_FAULT` names exists, and then stops."""
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.step = 0
+
+    def act(self, observation: Observation) -> Action:
+        self.step += 1
+        if self.step == 2 and Path(os.environ["STUBBORN_TEST_FAULT"]).exists():
+            raise Faulty("it [bold]broke[/bold]")
+        return Action.TURN_LEFT if self.step < 3 else Action.STOP
+
+
+def make_faulty(**options: object) -> FaultyAgent:
+    """Entry point `tests.helpers.players:make_faulty`."""
+    return FaultyAgent()
+
+
 class Quitter:
     """An `Agent` that stops at once."""
 

@@ -5,17 +5,20 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import zipfile
+import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Literal
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
-from sim.files import write_atomically
+from sim.files import inside, write_atomically
 from sim.housegen.furniture.item import Mount
 from sim.housegen.imported.labels import Size
 from sim.housegen.imported.meshes import Part, read_parts
@@ -23,6 +26,7 @@ from sim.housegen.imported.reduction import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, 
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
 from sim.paths import assets_dir
+from sim.reading import MAX_BYTES, read_json, require_small_zip
 
 ModelSplit = Literal["train", "transfer"]
 INDEX, MESHES = "models.json", "meshes"
@@ -150,7 +154,8 @@ def read_shape(folder: Path, model: Model) -> Shape:
     Raises:
         ConfigError: its file is missing or broken.
     """
-    file = folder / MESHES / f"{model.key}.npz"
+    file = inside(folder / MESHES, f"{model.key}.npz", what="key of a model")
+    require_small_zip(file, what="The imported model", most=MAX_BYTES)
     try:
         with np.load(file, allow_pickle=False) as arrays:
             parts = tuple(
@@ -158,7 +163,7 @@ def read_shape(folder: Path, model: Model) -> Shape:
                 for n, rgba in enumerate(arrays["rgba"])
             )
             return Shape(parts, arrays["boxes"], tuple(map(float, arrays["top"])))
-    except (OSError, ValueError, KeyError, EOFError) as error:
+    except (OSError, ValueError, LookupError, EOFError, TypeError, zipfile.BadZipFile, zlib.error) as error:
         raise ConfigError(f"The imported model '{file}' cannot be read ({error}): import it again.") from None
 
 
@@ -182,14 +187,14 @@ def read_index(folder: Path) -> list[Model]:
     if not file.is_file():
         raise ConfigError(f"'{folder}' has no {INDEX}: make it with tools/import_furniture.py.")
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        if content["version"] != VERSION:
-            raise ConfigError(f"'{file}' has version {content['version']}, not {VERSION}: import the models again.")
-        return list(_models(content["models"]))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        if isinstance(error, ConfigError):
-            raise
-        raise ConfigError(f"'{file}' cannot be read ({error}): import the models again.") from None
+        content = read_json(file, _Index, what="List of models")
+    except ConfigError as error:
+        raise ConfigError(f"{error} Import the models again with tools/import_furniture.py.") from None
+    if content.version != VERSION:
+        raise ConfigError(f"'{file}' has version {content.version}, not {VERSION}: import the models again.")
+    for model in content.models:
+        inside(folder / MESHES, f"{model.key}.npz", what="key of a model")
+    return content.models
 
 
 def sha256_of_models(folder: Path) -> str:
@@ -202,12 +207,11 @@ def sha256_of_models(folder: Path) -> str:
     return hashlib.sha256((folder / INDEX).read_bytes()).hexdigest()
 
 
-def _models(entries: Sequence[Mapping[str, Any]]) -> Iterator[Model]:
-    for entry in entries:
-        model = Model(**{**entry, "uses": tuple(entry["uses"]), "size_m": tuple(entry["size_m"])})
-        if model.split not in get_args(ModelSplit):
-            raise ValueError(f"no split '{model.split}'")
-        yield model
+class _Index(msgspec.Struct):
+    """The content of `models.json`."""
+
+    version: int
+    models: list[Model]
 
 
 def import_entries(entries: Sequence[Entry], folder: Path) -> Iterator[Model | tuple[str, str]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -17,6 +19,7 @@ def line(number: int, **metrics: object) -> dict:
     base = {
         "episode_id": f"e{number}",
         "house": f"h{number % 2}",
+        "goal": "bed",
         "success": 1.0,
         "spl": 0.5,
         "soft_spl": 0.5,
@@ -82,10 +85,11 @@ def test_a_run_from_before_trajectories_can_go_on_with_them(tmp_path: Path) -> N
 
 
 def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
-    for code, others in (("a1", []), ("a1", []), ("b2", ["a1"]), ("b2", ["a1"]), ("c3", ["a1", "b2"])):
+    codes = (("a1", []), ("a1", []), ("b2", ["a1"]), ("b2", ["a1"]), ("c3", ["a1", "b2"]))
+    for number, (code, others) in enumerate(codes):
         run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": code}})
         assert run.record_code(code) == others
-        run.append(line(1))
+        run.append(line(number))
         run.close()
     written = json.loads((tmp_path / "config.json").read_text())
     assert written["codes"] == ["a1", "b2", "c3"]
@@ -156,3 +160,83 @@ def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) 
 def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG).close()
     RunDirectory(tmp_path, CONFIG | {"explorer": None}).close()
+
+
+def write_lines(folder: Path, *lines: dict | str) -> None:
+    """Begins a run whose file of results has these lines."""
+    RunDirectory(folder, CONFIG | {"seed": 0}).close()
+    text = "".join((each if isinstance(each, str) else json.dumps(each)) + "\n" for each in lines)
+    (folder / "results.jsonl").write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ([line(1), line(1)], "line 2: episode 'e1' has the same result in line 1"),
+        ([line(1), line(2), line(1, success=0.0)], "line 3: episode 'e1' has another result in line 1"),
+        ([line(1, seed=7)], "line 1: seed is 7, but this run has 0"),
+        ([line(1, agent="oracle")], 'line 1: agent is "oracle", but this run has "stubborn"'),
+        ([line(1), "\0\0\0"], "line 2 is empty"),
+        ([line(1, success="yes")], "line 1, field 'success': expected"),
+        ([line(1, success=2.0)], "line 1, field 'success'"),
+        ([line(1, spl=[1.0])], "field 'spl'"),
+        ([line(1, end_reason="tired")], "field 'end_reason': invalid enum value 'tired'"),
+        ([{"episode_id": "e1"}], "line 1: object missing required field house"),
+        (['{"spl": NaN}'], "line 1 is not JSON"),
+    ],
+)
+def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: list, told: str, tmp_path: Path) -> None:
+    write_lines(tmp_path, *lines)
+    with pytest.raises(ConfigError, match=re.escape(told)):
+        RunDirectory(tmp_path, CONFIG | {"seed": 0})
+    (tmp_path / "results.jsonl").write_text("")
+    RunDirectory(tmp_path, CONFIG | {"seed": 0}).close()  # it is not locked
+
+
+@pytest.mark.parametrize(
+    ("episodes", "told"),
+    [
+        ({"e1": ("h1", "bed")}, None),
+        ({"e2": ("h1", "bed")}, "line 1: 'e1' is no episode of this run"),
+        ({"e1": ("h9", "bed")}, "line 1: house is 'h1', but 'h9'"),
+        ({"e1": ("h1", "sofa")}, "line 1: goal is 'bed', but 'sofa'"),
+    ],
+)
+def test_lines_of_another_split_are_refused(episodes: dict, told: str | None, tmp_path: Path) -> None:
+    write_lines(tmp_path, line(1))
+    run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
+    with contextlib.nullcontext() if told is None else pytest.raises(ConfigError, match=told):
+        run.require_of(episodes)
+    run.close()
+
+
+def test_a_dropped_line_is_said(tmp_path: Path) -> None:
+    write_lines(tmp_path, line(1))
+    with (tmp_path / "results.jsonl").open("a") as stream:
+        stream.write('{"episode_id": "e2", "su')
+    run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
+    assert "line 2 was dropped" in run.healed
+    run.close()
+
+
+@pytest.mark.parametrize("content", ["", "{", "[]", '{"seed": "0"}', '{"versions": {"code": 5}}', "\0" * 20])
+def test_a_broken_config_is_refused_with_its_name(content: str, tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG).close()
+    (tmp_path / "config.json").write_text(content)
+    with pytest.raises(ConfigError, match=r"config\.json"):
+        RunDirectory(tmp_path, CONFIG)
+
+
+def test_a_start_that_wrote_nothing_leaves_no_folder_and_one_that_did_stays(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path / "run", CONFIG)
+    run.discard_if_empty()
+    run.close()
+    assert not (tmp_path / "run").exists()
+    run = RunDirectory(tmp_path / "run", CONFIG)
+    run.append(line(1))
+    run.discard_if_empty()
+    run.close()
+    again = RunDirectory(tmp_path / "run", CONFIG)
+    again.discard_if_empty()  # it did not begin this run
+    again.close()
+    assert (tmp_path / "run" / "config.json").exists()

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, write_split
 from sim.evaluation.results import summarise
 from sim.evaluation.rollout import episode_seed, play_episode
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
+from sim.run import entry
 from tests.helpers.worlds import ledge, room, with_box
 
 SMALL = CameraModel(width_px=64, height_px=48)
@@ -91,3 +95,88 @@ def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
     assert (line["end_reason"], line["failure"], line["num_steps"]) == ("fallen", "stairs", 2)
     assert "error" not in line
     assert summarise([line])["falls"] == 1
+
+
+class Answers:
+    """An agent whose `act` answers with what a function returns."""
+
+    def __init__(self, answer: Callable[[], object]) -> None:
+        self.answer = answer
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.step = 0
+
+    def act(self, observation: object) -> object:
+        self.step += 1
+        return Action.TURN_LEFT if self.step == 1 else self.answer()
+
+
+class Signature:
+    """An agent whose methods take other arguments."""
+
+    def reset(self, goal: str, seed: int) -> None: ...
+
+    def act(self) -> Action:
+        return Action.STOP
+
+
+@pytest.mark.parametrize(
+    ("agent", "told"),
+    [
+        (Answers(lambda: 7), "step 2: act() returned 7; an action is one of 0 STOP, 1 MOVE_FORWARD"),
+        (Answers(lambda: None), "step 2: act() returned None"),
+        (Answers(lambda: 1.5), "step 2: act() returned 1.5"),
+        (Answers(lambda: np.zeros(3)), "step 2: act() returned array("),
+        (Answers(lambda: sys.exit(3)), "step 2: SystemExit: 3"),
+        (Answers(lambda: {}["sofa"]), "step 2: KeyError: 'sofa'"),
+        (Signature(), "step 1: TypeError: Signature.act() takes 1 positional argument"),
+    ],
+)
+def test_an_agent_that_breaks_ends_its_episode_as_an_error_that_names_agent_and_step(
+    agent: Any, told: str, env: ObjectNavEnv
+) -> None:
+    line = play_episode(env, agent, EPISODE, seed=0, name="my.agents:mine")
+    assert line["end_reason"] == "error"
+    assert line["error"].startswith("Agent 'my.agents:mine', ")
+    assert told in line["error"]
+    assert line["num_steps"] == (0 if isinstance(agent, Signature) else 1)
+    assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0)["end_reason"] == "stop"
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again(
+    workers: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, fault = tmp_path / "tiny", tmp_path / "fault"
+    folder.mkdir()
+    good = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml()
+    for name, text in (("good", good), ("noisy", good), ("torn", good[:200])):
+        (folder / f"{name}.xml").write_text(text)
+    (folder / "noisy.json").write_text('{"noise": {"preset": "psychic"}}')
+    start, wall = Pose(-1.0, 0.0, 0.0), Pose(2.9, 2.9, 0.0)
+    asked = [("good", start), ("torn", start), ("noisy", start), ("good", wall)]
+    episodes = [Episode(f"e{i}", house, "sofa", pose) for i, (house, pose) in enumerate(asked)]
+    write_split(folder, episodes, {house: {} for house, _ in asked}, version="1")
+    monkeypatch.setenv("STUBBORN_TEST_FAULT", str(fault))
+    fault.touch()
+    command = ["--agent", "tests.helpers.players:make_faulty", "--split", str(folder), "--episodes", "4"]
+    command += ["--workers", workers, "--semantics", "gt", "--out", str(tmp_path / "run")]
+
+    def reasons() -> dict[str, str]:
+        lines = [json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines()]
+        return {line["episode_id"]: line.get("error", "") for line in lines}
+
+    assert entry(command) == 1
+    before = reasons()
+    assert "Agent 'tests.helpers.players:make_faulty', step 2: Faulty: it [bold]broke[/bold]" in before["e0"]
+    assert "torn.xml" in before["e1"]
+    assert "psychic" in before["e2"]
+    assert "inside" in before["e3"]
+    if workers == "2":
+        return
+    fault.unlink()
+    assert entry(command) == 1
+    assert reasons() == before  # nothing is run again unasked
+    assert entry([*command, "--retry-errors"]) == 1
+    assert reasons() == before | {"e0": ""}
+    assert "4 episodes that ended with an error are run again" in capsys.readouterr().out

@@ -15,6 +15,7 @@ from sim.task.metrics import (
     TRAPPED_WINDOW_STEPS,
     goal_share,
     path_efficiency,
+    per_metre,
     soft_spl,
     spl,
     stayed_near,
@@ -84,3 +85,8 @@ def test_a_robot_that_leaves_once_and_returns_is_not_trapped():
 def test_a_walk_shorter_than_the_window_is_not_trapped():
     assert not stayed_near(walk(TRAPPED_WINDOW_STEPS - 1, 0.0))
     assert stayed_near(walk(TRAPPED_WINDOW_STEPS, 0.0))
+
+
+def test_a_robot_that_turned_on_the_spot_saw_nothing_per_metre() -> None:
+    assert per_metre(13.2, 3.5e-19) == 0.0
+    assert per_metre(13.2, 2.0) == pytest.approx(6.6)
