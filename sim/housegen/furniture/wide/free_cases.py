@@ -163,37 +163,41 @@ def _foot(w: Workbench, highest: float) -> float:
 
 def free_wardrobe(w: Workbench) -> None:
     """Builds a wardrobe of any division, front and base."""
-    wide, kinds = w.width(0.80, 2.0), (("doors",), ("doors", "doors", "drawers"), ("doors", "open", "drawers"))
+    wide = w.width(0.80, 2.0)
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("doors",), ("doors", "doors", "drawers"), ("doors", "open", "drawers"))
     _body(w, w.depth(0.52, 0.64), wide, w.height(1.70, 2.20), _foot(w, 0.14), w.choice(kinds), 0.7)
 
 
 def free_sideboard(w: Workbench) -> None:
     """Builds a sideboard of any division, front and base."""
-    wide, kinds = w.width(0.85, 1.80), (("doors", "drawers"), ("doors",), ("doors", "open", "drawers"))
+    wide = w.width(0.85, 1.80)
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("doors", "drawers"), ("doors",), ("doors", "open", "drawers"))
     _body(w, w.depth(0.34, 0.48), wide, w.height(0.68, 0.98), _foot(w, 0.28), w.choice(kinds), 0.5, light=w.chance(0.4))
 
 
 def free_display(w: Workbench) -> None:
     """Builds a tall display cabinet of any division, with glass."""
-    wide, kinds = w.width(0.60, 1.20), (("glass",), ("glass", "glass", "doors"), ("glass", "glass", "open"))
+    wide = w.width(0.60, 1.20)
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("glass",), ("glass", "glass", "doors"), ("glass", "glass", "open"))
     _body(w, w.depth(0.32, 0.44), wide, w.height(1.35, 2.05), _foot(w, 0.18), w.choice(kinds), 0.55)
 
 
 def free_media(w: Workbench) -> None:
     """Builds a low media cabinet of any division, front and base."""
-    wide, kinds = w.width(1.10, 2.0), (("doors", "open"), ("drawers", "open"), ("open",), ("doors", "drawers"))
+    wide = w.width(1.10, 2.0)
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("doors", "open"), ("drawers", "open"), ("open",), ("doors", "drawers"))
     _body(w, w.depth(0.34, 0.46), wide, w.height(0.36, 0.60), _foot(w, 0.2), w.choice(kinds), 0.55, light=w.chance(0.4))
 
 
 def free_dresser(w: Workbench) -> None:
     """Builds a chest of drawers of any rows, columns, front and base."""
-    kinds = (("drawers",), ("drawers",), ("drawers", "drawers", "doors"))
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("drawers",), ("drawers",), ("drawers", "drawers", "doors"))
     _body(w, w.depth(0.40, 0.52), w.width(0.60, 1.45), w.height(0.68, 1.25), _foot(w, 0.2), w.choice(kinds), 0.6)
 
 
 def free_bedside(w: Workbench) -> None:
     """Builds a bedside chest of any division, front and base."""
-    kinds = (("drawers",), ("drawers", "open"), ("drawers", "doors"))
+    kinds: tuple[tuple[FieldKind, ...], ...] = (("drawers",), ("drawers", "open"), ("drawers", "doors"))
     wide, high = w.width(0.36, 0.58), w.height(0.42, 0.66)
     _body(w, w.depth(0.32, 0.44), wide, high, _foot(w, 0.24), w.choice(kinds), 0.6, light=w.chance(0.3))
 
@@ -221,7 +225,8 @@ def free_run(w: Workbench) -> None:
     for side in parts.BOTH_SIDES if ends else ():
         w.box((front - 0.02, x[1] - 0.01), parts.on_side(side, 0.5 * wide - ends, 0.5 * wide), (0.0, under), body)
     fronts = _draw_fronts(w, 0.02, body)
-    kinds = w.choice((("doors",), ("doors", "drawers"), ("drawers",)))
+    options: tuple[tuple[FieldKind, ...], ...] = (("doors",), ("doors", "drawers"), ("drawers",))
+    kinds = w.choice(options)
     divide(w, front, (y[0] + ends + 0.006, y[1] - ends - 0.006), (foot + 0.005, under - 0.01), fronts, kinds, 1.0)
     for span in free:
         w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), high)

@@ -71,7 +71,7 @@ def _cushion_body(w: Workbench, wide: float, tall: float, thick: float, cloth: L
     elif pattern == "button":
         w.ellipsoid(
             (at[0] + 0.5 * thick * math.sin(lean), 0.0, at[2] + 0.5 * thick * math.cos(lean)),
-            (0.02,) * 3,
+            (0.02, 0.02, 0.02),
             trim,
             solid=False,
         )
