@@ -11,7 +11,7 @@ from typing import Any
 from sim.interface import Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.random import RandomConfig, random_agent
-from stubborn.baselines.single_frame import single_frame_agent
+from stubborn.baselines.single_frame import latest_frame_agent, single_frame_agent
 from stubborn.draw import make_painter
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
@@ -58,7 +58,12 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             AgentConfig(explorer=ThoroughConfig()),
         ),
         "single-frame": _stubborn_spec(
-            "stubborn that trusts single frames and verifies nothing", AgentConfig(), single_frame_agent
+            "stubborn without verification (--verification none)", AgentConfig(), single_frame_agent
+        ),
+        "latest-frame": _stubborn_spec(
+            "stubborn without verification and without memory of scores: the latest frame decides",
+            AgentConfig(),
+            latest_frame_agent,
         ),
         "frontier": _stubborn_spec(
             "goes to the nearest frontier (Yamauchi 1997), without measures against collisions",

@@ -26,11 +26,13 @@ from sim.analysis.metrics import (
 )
 from sim.analysis.tables import Cell, ResultTable
 from sim.composition.agents import find_agent
+from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate, paired_difference
 from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
 from stubborn import agents
+from stubborn.target.verification import ACCEPT_ALL, METHODS
 
 GROUND_TRUTH = "gt"
 """The segmentation of agents that use none: they are run once, under this name."""
@@ -41,17 +43,35 @@ def uses_segmentation(agent: str) -> bool:
     return find_agent(agent).uses_segmentation
 
 
+VERIFICATION = " --verification "
+"""Separates an agent from its method of verification in the name of a setup."""
+
+
 @dataclass(frozen=True)
 class AgentSetup:
-    """An agent with a source of segmentation: what one run evaluates."""
+    """An agent with a source of segmentation and a method of verification: what one run evaluates."""
 
     agent: str
     semantics: str
+    verification: str = RunOptions.verification
+
+    @classmethod
+    def named(cls, name: str, semantics: str) -> AgentSetup:
+        """Returns the setup of an agent, or of "AGENT --verification METHOD", with a source of segmentation."""
+        agent, _, verification = name.partition(VERIFICATION)
+        semantics = semantics if uses_segmentation(agent) else GROUND_TRUTH
+        return cls(agent, semantics, verification or RunOptions.verification)
+
+    @property
+    def name(self) -> str:
+        """The name that `named` takes."""
+        usual = self.verification == RunOptions.verification
+        return self.agent if usual else f"{self.agent}{VERIFICATION}{self.verification}"
 
     @property
     def label(self) -> str:
         """Name in a table with several kinds of segmentation."""
-        return f"{self.agent} ({self.semantics})" if uses_segmentation(self.agent) else self.agent
+        return f"{self.name} ({self.semantics})" if uses_segmentation(self.agent) else self.name
 
 
 Lines = Mapping[AgentSetup, Sequence[Line]]
@@ -76,7 +96,7 @@ class PaperTable:
     """One of the tables of the paper."""
 
     agents: tuple[str, ...]
-    """The default agents; the others are compared with the first."""
+    """The default agents (see `AgentSetup.named`); the others are compared with the first."""
     semantics: str
     """The default source of segmentation."""
     build: Callable[[Lines, Sequence[AgentSetup]], list[ResultTable]]
@@ -84,9 +104,7 @@ class PaperTable:
     def setups(self, agents: Sequence[str] = (), semantics: str | None = None) -> tuple[AgentSetup, ...]:
         """Returns the setups whose runs the table needs."""
         chosen = semantics or self.semantics
-        return tuple(
-            AgentSetup(agent, chosen if uses_segmentation(agent) else GROUND_TRUTH) for agent in agents or self.agents
-        )
+        return tuple(AgentSetup.named(agent, chosen) for agent in agents or self.agents)
 
 
 def failures(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
@@ -128,7 +146,7 @@ def exploration(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]
         for goal, some in _by_goal(lines)
     ]
     rows.append((f"all ({len(lines[setups[0]])})", [EXPLORED.cell(lines[setup]) for setup in setups]))
-    header = ("goal (episodes)", *(setup.agent for setup in setups))
+    header = ("goal (episodes)", *(setup.name for setup in setups))
     seen = ResultTable("exploration", "GT exploration, %: the goal covered 0.8 % of a frame", header, rows)
     pairs = [(a, b) for i, b in enumerate(setups) for a in setups[:i]]
     return [seen, _differences("exploration", lines, pairs, (EXPLORED, TRAPPED, COLLISIONS), {})]
@@ -143,7 +161,7 @@ def categories(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
 
     rows = [(f"{goal} ({len(some[setups[0]])})", row(some)) for goal, some in _by_goal(lines)]
     rows.append((f"all ({len(lines[setups[0]])})", row(lines)))
-    header = ("goal (episodes)", *(setup.agent for setup in setups), *(_named(pair) for pair in pairs))
+    header = ("goal (episodes)", *(setup.name for setup in setups), *(_named(pair) for pair in pairs))
     return [ResultTable("categories", f"Success, %, {setups[0].semantics} segmentation", header, rows)]
 
 
@@ -151,6 +169,14 @@ def overall(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     """Returns Table VI: success and SPL of all setups, and the difference of the first to each other one."""
     metrics = (SUCCESS, SPL, EXPLORED, COLLISIONS, STEPS)
     return _means_and_differences("overall", "All agents", lines, setups, _against_first(setups), metrics, {})
+
+
+def verification(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns success, SPL and causes of failure with each method of verification."""
+    metrics = (SUCCESS, SPL, TRAPPED, STEPS)
+    title = f"Verification, {setups[0].semantics} segmentation"
+    pairs = _against_first(setups)
+    return _means_and_differences("verification", title, lines, setups, pairs, metrics, {}) + failures(lines, setups)
 
 
 def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
@@ -167,22 +193,33 @@ def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     return [replace(means, notes=(note,)), replace(differences, rows=rows)]
 
 
+UNVERIFIED = f"stubborn{VERIFICATION}{ACCEPT_ALL}"
+"""The paper's Single-Frame: the same map, and every candidate is accepted."""
 TABLES: Mapping[str, PaperTable] = {
-    "failures": PaperTable(("stubborn", "single-frame", "frontier-avoid"), "noisy", failures),
+    "failures": PaperTable(("stubborn", UNVERIFIED, "frontier-avoid"), "noisy", failures),
     "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
     "exploration": PaperTable(("stubborn", "stubborn-i", "frontier-avoid", "frontier"), GROUND_TRUTH, exploration),
-    "categories": PaperTable(("stubborn", "single-frame"), "noisy", categories),
+    "categories": PaperTable(("stubborn", UNVERIFIED), "noisy", categories),
     "overall": PaperTable(
-        ("stubborn", "stubborn-plus", "single-frame", "frontier-avoid", "frontier", "random", "oracle"),
+        ("stubborn", "stubborn-plus", UNVERIFIED, "latest-frame", "frontier-avoid", "frontier", "random", "oracle"),
         "noisy",
         overall,
+    ),
+    "verification": PaperTable(
+        (
+            "stubborn",
+            *(f"stubborn{VERIFICATION}{method}" for method in (ACCEPT_ALL, *list(METHODS)[1:])),
+            "latest-frame",
+        ),
+        "noisy",
+        verification,
     ),
     "splits": PaperTable(
         ("stubborn", "frontier-avoid", "frontier", *list(ABLATION.values())[:-1], "oracle"), GROUND_TRUTH, splits
     ),
 }
 """The tables by name."""
-PAPER_TABLES = tuple(name for name in TABLES if name != "splits")
+PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits"))
 """The tables that the paper has too."""
 
 
@@ -237,7 +274,7 @@ def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, Agent
 
 
 def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:
-    return f"{pair[0].agent} - {pair[1].agent}"
+    return f"{pair[0].name} - {pair[1].name}"
 
 
 def _count_of_failures(lines: Sequence[Line]) -> str:

@@ -5,17 +5,19 @@
     python tools/reproduce.py failures --minutes 0            # only the table, from the existing runs
     python tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2
 
-Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; and splits, which compares
-explorers and the rows of the ablation on each of several splits. Each run has a folder `<out>/<agent>_<semantics>_...`,
-as `sim.run --record` writes it; the tables share the runs. The agents take turns, a chunk of episodes (with several
-splits, of each of them), so that they have the same first episodes whenever the tool is stopped; the same command
-resumes. Tables are printed and written to `<out>/tables/<table>.md` and `.csv`; the options --semantics, --agents,
---noise, --split and --seed become part of the name if they are given. With `--minutes 0` no episode is run, and runs of
-older code are accepted if they have the same agent, segmentation, split, seed and noise. See docs/reproduce.md.
+Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; verification, which compares
+its methods; and splits, which compares explorers and the rows of the ablation on each of several splits. Each run has a
+folder `<out>/<agent>_<semantics>_...`, as `sim.run --record` writes it; the tables share the runs. The agents take
+turns, a chunk of episodes (with several splits, of each of them), so that they have the same first episodes whenever
+the tool is stopped; the same command resumes. Tables are printed and written to `<out>/tables/<table>.md` and `.csv`;
+the options --semantics, --agents, --noise, --split and --seed become part of the name if they are given. With
+`--minutes 0` no episode is run, and runs of older code are accepted if they have the same agent, segmentation, split,
+seed and noise. See docs/reproduce.md.
 """
 
 from __future__ import annotations
 
+import shlex
 import sys
 import time
 from collections import Counter
@@ -41,7 +43,7 @@ from sim.evaluation.config_fields import differing_fields, field_text
 from sim.files import write_atomically, write_together
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
-from tools.paper_tables import PAPER_TABLES, AgentSetup, PaperTable, table_named
+from tools.paper_tables import PAPER_TABLES, VERIFICATION, AgentSetup, PaperTable, table_named
 
 SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
@@ -54,7 +56,7 @@ class Args:
     """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
-    """failures, ablation, exploration, categories, overall, splits, or all (of the paper's, without splits)."""
+    """failures, ablation, exploration, categories, overall, verification, splits, or all (the paper's)."""
     episodes: cli.Count = 200
     """The first N episodes of each split."""
     workers: cli.Count = 1
@@ -72,7 +74,8 @@ class Args:
     semantics: str | None = None
     """Source of segmentation, in place of the default of the table."""
     agents: tuple[str, ...] = ()
-    """Agents, in place of the default of the table; the others are compared with the first."""
+    """Agents, in place of the default of the table, or "AGENT --verification METHOD"; the others are compared with the
+    first."""
     noise: str = "none"
     """Noise of sensors and drive."""
     seed: cli.Seed = 0
@@ -250,7 +253,7 @@ def _named_options(args: Args) -> list[str]:
     """Returns the options that make the same table; agents and segmentation only if they were given."""
     named = [f"--episodes {args.episodes}", f"--split {args.split}"]
     named += [f"--semantics {args.semantics}"] if args.semantics else []
-    named += [f"--agents {' '.join(args.agents)}"] if args.agents else []
+    named += [f"--agents {shlex.join(args.agents)}"] if args.agents else []
     named += [f"--noise {args.noise}"] if args.noise != "none" else []
     return named + ([f"--seed {args.seed}"] if args.seed else [])
 
@@ -267,6 +270,7 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     return RunOptions(
         agent=setup.agent,
         semantics=setup.semantics,
+        verification=setup.verification,
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
@@ -281,11 +285,12 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
 
 def _folder(args: Args, setup: AgentSetup) -> Path:
     parts = (_file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args))
-    return args.out / "_".join(filter(None, parts))
+    method = "" if setup.verification == RunOptions.verification else f"verification-{setup.verification}"
+    return args.out / "_".join(filter(None, (*parts, method)))
 
 
 def _file_name(agent: str) -> str:
-    return agent.replace(":", "_").replace("/", "_")
+    return agent.replace(VERIFICATION, "-").replace(":", "_").replace("/", "_")
 
 
 def _split_name(args: Args) -> str:
@@ -308,6 +313,7 @@ def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
     """
     found = read_run(_folder(args, setup))
     expected = {"agent": setup.agent, "semantics": setup.semantics, "noise": args.noise, "seed": args.seed}
+    expected |= {"verification": setup.verification} if "verification" in found.config else {}
     expected |= {"split_identity": _identity(split)}
     for path, actual, wanted in differing_fields({key: found.config.get(key) for key in expected}, expected):
         raise ConfigError(

@@ -1,14 +1,17 @@
-"""The cause of a failed episode: one of seven, by rules on its recorded trajectory.
+"""The cause of a failed episode: one of eight, by rules on its recorded trajectory.
 
-The causes are those of the paper's Table I (section III), where people judged videos; here rules judge what the world
-recorded, so they can be wrong about the intention of the agent. The first rule that applies decides:
+The causes are those of the paper's Table I (section III), where people judged videos, and `stopped_short`, which the
+paper counts as `misc`; here rules judge what the world recorded, so they can be wrong about the intention of the agent.
+The first rule that applies decides:
 
 1. `misc`: the physics broke. `stairs`: the robot drove over an edge.
-2. The agent called STOP: `false_detection`, unless some frame showed the goal's category (which instance it was is not
-   recorded) and any instance of it is within `STOPPED_AT_GOAL_M` in plan: then the agent is assumed to have stopped at
-   the right object, but too far from it or behind a wall: `misc`. An agent that gives up, or stops at random, is a
-   false detection, because the record does not distinguish them. This rule comes before `stairs`, as in the paper:
-   the agent that has 7 % stairs among its failures with true segmentation has 0.4 % with its own.
+2. The agent called STOP. `stopped_short`: an instance of the goal is within `STOPPED_AT_GOAL_M` in plan, and the goal
+   covered 0.8 % of one of the last `FACED_FRAMES` frames; then the agent is assumed to have stopped for it, but too far
+   from it or behind a wall. Else `false_detection`: what the robot faced was not the goal, however near an instance is.
+   An agent that gives up, or stops at random, is a false detection, because the record does not distinguish them; one
+   that stops for another object beside a true instance in view counts as `stopped_short`. This rule comes before
+   `stairs`, as in the paper: the agent that has 7 % stairs among its failures with true segmentation has 0.4 % with
+   its own.
 3. `stairs`: the storey of the start has no instance.
 4. `missed_detection`: the goal covered 0.8 % of a frame, and from then on, before rules 5 and 6 applied, the agent had
    an opportunity: it was where a STOP would have succeeded and continued for `PATIENCE_STEPS`; or it never came within
@@ -34,11 +37,14 @@ from numpy.typing import NDArray
 from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
 from sim.task.trajectory import Trajectory
 
-Cause = Literal["false_detection", "missed_detection", "loop", "trapped", "explore", "stairs", "misc"]
+Cause = Literal["false_detection", "stopped_short", "missed_detection", "loop", "trapped", "explore", "stairs", "misc"]
 CAUSES: tuple[str, ...] = get_args(Cause)
-"""The causes in the order of the paper's table."""
+"""The causes in the order of the paper's table, `stopped_short` after `false_detection`."""
 STOPPED_AT_GOAL_M = 1.5
-"""An agent that stops within this distance of an instance is assumed to have stopped for that instance."""
+"""An agent that stops within this distance of an instance that it faces is assumed to have stopped for it."""
+FACED_FRAMES = 4
+"""The last frames in which the agent can have seen what it stopped for: the one of the STOP, and three actions before,
+because a low object is below the image when the robot has come near it."""
 APPROACHED_M = 1.0
 """An agent within this geodesic distance of a place where a STOP succeeds has approached the goal."""
 PATIENCE_STEPS = 20
@@ -69,9 +75,7 @@ def cause_of_failure(trajectory: Trajectory) -> Cause | None:
         return "stairs"
     seen = np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
     if trajectory.end_reason == "stop":
-        nearest_m = trajectory.nearest_instance_m
-        at_goal = nearest_m is not None and nearest_m <= STOPPED_AT_GOAL_M and len(seen) > 0
-        return "misc" if at_goal else "false_detection"
+        return "stopped_short" if _stopped_for_the_goal(trajectory) else "false_detection"
     if not trajectory.goal_on_storey:
         return "stairs"
     trapped, looping = first_trapped_step(trajectory.positions_m), first_looping_step(trajectory)
@@ -83,6 +87,15 @@ def cause_of_failure(trajectory: Trajectory) -> Cause | None:
     if looping is not None:
         return "loop"
     return "misc" if len(seen) else "explore"
+
+
+def _stopped_for_the_goal(trajectory: Trajectory) -> bool:
+    """Returns whether the robot stopped near an instance of the goal that it had just seen."""
+    nearest_m = trajectory.nearest_instance_m
+    if nearest_m is None or nearest_m > STOPPED_AT_GOAL_M:
+        return False
+    looked = trajectory.goal_share[~np.isnan(trajectory.goal_share)]
+    return bool(np.any(looked[-FACED_FRAMES:] >= EXPLORED_SHARE))
 
 
 def first_trapped_step(positions_m: NDArray[np.floating]) -> int | None:

@@ -1,4 +1,4 @@
-"""The paper's baseline for verification: a single frame decides (Table "ObjIDResults", Single-Frame)."""
+"""Baselines for verification: none at all (the paper's Single-Frame, Table "ObjIDResults"), and no memory either."""
 
 from __future__ import annotations
 
@@ -10,6 +10,14 @@ from stubborn.target.verification import AcceptAll, Verifier
 
 
 def single_frame_agent(*, config: AgentConfig, verifier: Verifier | None = None, **parts: Any) -> StubbornAgent:
+    """Returns the Stubborn agent with the same map and without verification; the verifier is not used.
+
+    One frame with a high score makes a candidate, and the agent stops there: "only the first stage" of the paper.
+    """
+    return StubbornAgent(**parts, verifier=AcceptAll(), config=config)
+
+
+def latest_frame_agent(*, config: AgentConfig, verifier: Verifier | None = None, **parts: Any) -> StubbornAgent:
     """Returns the Stubborn agent without verification, with the score of one frame in place of the layers.
 
     It goes to candidates in the frame that last showed a cell, and stops in reach of a candidate in the current frame.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 
 import cv2
@@ -61,11 +60,6 @@ class Sighting:
     cols: Int[np.ndarray, " n"]
     distance_m: Float32[np.ndarray, " n"]
     """From the robot's centre, in plan."""
-
-    def nearest_m(self, navmap: NavMap) -> float:
-        """Returns the distance of the nearest target point that was not rejected; infinite when there is none."""
-        counts = ~navmap.rejected[self.rows, self.cols]
-        return float(self.distance_m[counts].min()) if counts.any() else math.inf
 
 
 NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))

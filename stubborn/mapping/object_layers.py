@@ -70,7 +70,7 @@ class AllFrames:
 class LatestFrame:
     """The score of one frame in place of the layers: that of the frame in which a cell was last in view.
 
-    The single-frame detector of the paper's comparison. `frames_in_view` still counts frames: exploration reads it.
+    The memory of the agent `latest-frame`. `frames_in_view` still counts frames: exploration reads it.
     """
 
     def __init__(self, candidate_score: float) -> None:

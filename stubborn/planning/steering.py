@@ -62,10 +62,15 @@ def trace(route: Route, pose: Pose, max_cells: int) -> list[tuple[int, int]]:
     return cells
 
 
+def route_end(route: Route, pose: Pose) -> tuple[int, int]:
+    """Returns the goal cell at which a route ends, as row and column of its frame."""
+    return trace(route, pose, max_cells=route.goal.cells.size)[-1]
+
+
 def to_nearest_part(route: Route, pose: Pose) -> Route:
     """Returns the same route with only that connected part of the goal cells at which it ends."""
     cells = route.goal.cells
-    row, col = trace(route, pose, max_cells=cells.size)[-1]
+    row, col = route_end(route, pose)
     return replace(route, goal=replace(route.goal, cells=connected(cells, row, col, connectivity=8)))
 
 

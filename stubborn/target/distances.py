@@ -41,6 +41,8 @@ class TargetConfig:
     many, and so on."""
     margin_cells: int = 40
     """Margin around the known part of the map within which routes to a far candidate may run."""
+    least_cells: int = 4
+    """With inexact outlines, fewer connected cells are no candidate: single cells are errors at outlines."""
     target_edge_m: float = 0.08
     """A wall this near the candidate cell is the wall that the object is mounted on, and does not hide it."""
 

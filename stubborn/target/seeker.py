@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from jaxtyping import Bool
 
@@ -15,7 +14,9 @@ from sim.geometry.pose import Pose
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import Goal, Planner, Route
-from stubborn.raster import connected, distance_to, nearest
+from stubborn.planning.steering import route_end
+from stubborn.raster import distance_to, nearest
+from stubborn.target.candidates import CandidateParts
 from stubborn.target.classifiers import Features
 from stubborn.target.distances import StopDistances, TargetConfig
 from stubborn.target.verification import Verifier
@@ -29,9 +30,9 @@ class Approach:
     route: Route | None
     """None when the robot is on a viewpoint."""
     bearing_rad: float
-    """World angle from the robot to its nearest candidate cell."""
+    """World angle from the robot to the candidate cell."""
     cell: tuple[int, int]
-    """Row and column of that candidate cell on the whole map."""
+    """Row and column, on the whole map, of the candidate cell nearest to the viewpoint that the route leads to."""
     near_enough: bool = True
     """False: a STOP there would not count; the candidate can only be verified from there."""
 
@@ -60,13 +61,16 @@ class TargetSeeker:
         layers: tuple[CollisionLayer, ...],
         distances: StopDistances,
         candidate_score: float,
+        least_cells: int = 1,
     ) -> None:
         """`layers` are the collision layers to plan on, in order of preference.
 
-        A cell with a target score higher than `candidate_score` is a candidate.
+        Connected cells with a target score higher than `candidate_score` are a candidate if they are at least
+        `least_cells`.
         """
         self.config = config
         self.candidate_score = candidate_score
+        self.least_cells = least_cells
         self.planner = planner
         self.verifier = verifier
         self.distances = distances
@@ -81,9 +85,13 @@ class TargetSeeker:
         self._far = False  # whether the candidate pursued needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
 
-    def candidates(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the cells that score as the target and were neither rejected nor set aside."""
-        return (view.score_max > self.candidate_score) & ~view.rejected & ~view.set_aside
+    def parts(self, navmap: NavMap) -> CandidateParts:
+        """Returns the candidates on the known part of the map, those set aside included."""
+        return CandidateParts.of(navmap.view(self._known(navmap)), self.candidate_score, self.least_cells)
+
+    def candidates(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the cells of the whole map with candidates that are not set aside."""
+        return self._on_whole_map(navmap, self.parts(navmap).mask) & ~navmap.set_aside
 
     def acceptable(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
@@ -92,29 +100,25 @@ class TargetSeeker:
         late candidates are not verified does not apply here.
         """
         whole = self._known(navmap)
-        view = navmap.view(whole)
-        shown = view.score_max > self.candidate_score
-        count, labels = cv2.connectedComponents(shown.view(np.uint8), connectivity=8)
-        parts, cells = np.asarray(labels, np.intp), np.flatnonzero(shown)
-        best_last = cells[np.argsort(view.score_sum[shown], kind="stable")]
-        best = np.zeros(count, np.intp)
-        best[parts.ravel()[best_last]] = best_last
-        would = [self.verifier.would_accept(self.goal, features_of(view, flat)) for flat in best[1:].tolist()]
+        view, parts = navmap.view(whole), self.parts(navmap)
+        best = [_seen_best(view, parts.labels == number) for number in range(1, parts.count + 1)]
+        would = [self.verifier.would_accept(self.goal, features_of(view, flat)) for flat in best]
         accepted = np.array([False, *would])
         if self._pursued is not None:
             row, col = self._pursued
-            accepted[parts[row - whole.rows.start, col - whole.cols.start]] = True
-            accepted[0] = False  # part 0 is the background
-        result = np.zeros(navmap.frame.shape, np.bool_)
-        result[whole.index] = accepted[parts] & self.candidates(view)
-        return result
+            accepted[parts.labels[row - whole.rows.start, col - whole.cols.start]] = True
+            accepted[0] = False  # number 0 is no candidate
+        return self._on_whole_map(navmap, accepted[parts.labels]) & ~navmap.set_aside
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
-        """Returns the map cell of the nearest target point in this very frame when it is near enough to stop."""
-        if sighting.nearest_m(navmap) > self.distances.in_view_m:
+        """Returns the map cell of the nearest candidate in this very frame when it is near enough to stop."""
+        if not (sighting.distance_m <= self.distances.in_view_m).any():
             return None
-        counts = ~navmap.rejected[sighting.rows, sighting.cols]
-        point = int(np.argmin(np.where(counts, sighting.distance_m, np.inf)))
+        counts = self._on_whole_map(navmap, self.parts(navmap).mask)[sighting.rows, sighting.cols]
+        distance_m = np.where(counts, sighting.distance_m, np.inf)
+        point = int(np.argmin(distance_m))
+        if distance_m[point] > self.distances.in_view_m:
+            return None
         return int(sighting.rows[point]), int(sighting.cols[point])
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
@@ -122,7 +126,7 @@ class TargetSeeker:
         whole = self._known(navmap)
         if step >= self._retry_step:
             navmap.view(whole).set_aside[:] = False
-        if not self.candidates(navmap.view(whole)).any():
+        if not self.candidates(navmap).any():
             self._far, self._pursued = False, None
             return None
         for choice in self._choices(navmap, window, whole, step):
@@ -137,26 +141,39 @@ class TargetSeeker:
 
     def postpone(self, navmap: NavMap, step: int) -> None:
         """Sets all candidates aside: they cannot be reached with the map of now."""
-        view = navmap.view(self._known(navmap))
-        view.set_aside[self.candidates(view)] = True
+        navmap.set_aside[self.candidates(navmap)] = True
         self._far, self._pursued = False, None
         self._retry_step = step + self._wait_steps
         self._wait_steps *= 2
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
-        """Verifies the candidate at a map cell; a rejected one never counts again in this episode."""
+        """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
+
+        Returns False where there is no candidate. One that is connected to a rejected object is not new, whenever it
+        was found.
+        """
         whole = self._known(navmap)
-        view = navmap.view(whole)
-        row, col = cell[0] - whole.rows.start, cell[1] - whole.cols.start
-        instance = connected(view.score_max > self.candidate_score, row, col, connectivity=8)
+        view, parts = navmap.view(whole), self.parts(navmap)
+        number = parts.labels[cell[0] - whole.rows.start, cell[1] - whole.cols.start]
+        if number == 0:
+            return False
+        instance = parts.labels == number
         # The cells at its edge, which are nearest, also show what is beside it: the cell seen best represents it.
-        features = features_of(view, int(np.argmax(np.where(instance, view.score_sum, -1.0))))
+        features = features_of(view, _seen_best(view, instance))
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
-        if found_late or self.verifier.accepts(self.goal, features):
+        if (found_late and not parts.touches_rejected[number]) or self.verifier.accepts(self.goal, features):
             return True
         margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
         view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
         return False
+
+    def _on_whole_map(
+        self, navmap: NavMap, mask: Bool[np.ndarray, "known_rows known_cols"]
+    ) -> Bool[np.ndarray, "rows cols"]:
+        """Returns a mask over the known part of the map as one over the whole map."""
+        result = np.zeros(navmap.frame.shape, np.bool_)
+        result[self._known(navmap).index] = mask
+        return result
 
     def _known(self, navmap: NavMap) -> Window:
         return navmap.known_window(margin_cells=self.config.margin_cells)
@@ -172,11 +189,12 @@ class TargetSeeker:
             acceptable = self.acceptable(navmap)
             for part in parts:
                 yield _Choice(part, acceptable[part.index], LastResort.NONE, acceptable=True)
+        candidates = self.candidates(navmap)
         for part in parts:
             last_resort = LastResort.VERIFY if part is whole and self.verifier.may_refuse else LastResort.NONE
             if step >= self.config.last_resort_step:
                 last_resort = LastResort.STOP
-            yield _Choice(part, self.candidates(navmap.view(part)), last_resort, acceptable=False)
+            yield _Choice(part, candidates[part.index], last_resort, acceptable=False)
 
     def _approach_on(self, view: NavMap, choice: _Choice, pose: Pose) -> Approach | None:
         """Returns the approach to some candidates on one part of the map; its cell is counted in that part."""
@@ -184,16 +202,23 @@ class TargetSeeker:
             return None
         cells = nearest(choice.candidates)
         here = view.frame.cell(pose.x_m, pose.y_m)
-        cell = int(cells.rows[here]), int(cells.cols[here])
-        x_m, y_m = view.frame.centres(*cell)
-        bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
         for viewpoints in self._viewpoints.find(view, pose, cells, choice.last_resort):
-            if viewpoints.cells[here]:
-                return Approach(None, bearing_rad, cell, viewpoints.near_enough)
-            route = self.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
-            if route is not None:
-                return Approach(route, bearing_rad, cell, viewpoints.near_enough)
+            route = (
+                None if viewpoints.cells[here] else self.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
+            )
+            if route is None and not viewpoints.cells[here]:
+                continue
+            end = here if route is None else route_end(route, pose)
+            cell = int(cells.rows[end]), int(cells.cols[end])
+            x_m, y_m = view.frame.centres(*cell)
+            bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
+            return Approach(route, bearing_rad, cell, viewpoints.near_enough)
         return None
+
+
+def _seen_best(view: NavMap, instance: Bool[np.ndarray, "rows cols"]) -> int:
+    """Returns the row-major cell of an instance with the highest cumulative score."""
+    return int(np.argmax(np.where(instance, view.score_sum, -1.0)))
 
 
 def features_of(view: NavMap, flat: int) -> Features:

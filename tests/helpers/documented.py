@@ -340,6 +340,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "--out {tmp}/networks",
     ),
     # docs/results.md
+    f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 200 --workers 2": (
+        f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
+        "--out {tmp}/paper",
+    ),
     f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",

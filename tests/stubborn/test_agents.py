@@ -14,6 +14,7 @@ from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.corners import CornerConfig, CornerExplorer
 from stubborn.mapping.mapper import Sighting
+from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.classifiers import Features
@@ -120,6 +121,8 @@ def test_with_an_imperfect_segmenter_the_agent_goes_nearer():
     sighting = Sighting(np.array([720]), np.array([736]), np.array([0.8], np.float32))
     for agent, near_enough in ((exact, True), (unsure("stubborn"), False)):
         assert isinstance(agent, StubbornAgent)
+        agent.navmap.score_max[719:722, 735:738] = 1.0
+        agent.navmap.grow_known(slice(719, 722), slice(735, 738))
         assert (agent.seeker.in_reach(agent.navmap, sighting) is not None) == near_enough
 
 
@@ -155,7 +158,21 @@ def test_verification_keeps_the_agent_from_a_lookalike_at_which_one_frame_stops(
     assert bed_m < 1.0
 
 
-@pytest.mark.parametrize("name", ["stubborn", "single-frame", "frontier-avoid"])
+def test_single_frame_is_stubborn_without_verification_and_latest_frame_has_no_memory():
+    layers = []
+    for name in ("single-frame", "latest-frame"):
+        agent = unsure(name)
+        assert isinstance(agent, StubbornAgent)
+        assert isinstance(agent.seeker.verifier, AcceptAll)
+        layers.append(type(agent.mapper.layers))
+    assert layers == [AllFrames, LatestFrame]
+    parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel()}
+    without = agents.make("stubborn", segmenter=Fickle(), verifier=AcceptAll(), **parts)
+    runs = [run_episode(world(), agent, "bed", seed=2, max_steps=60) for agent in (without, unsure("single-frame"))]
+    assert runs[0].actions == runs[1].actions
+
+
+@pytest.mark.parametrize("name", ["stubborn", "single-frame", "latest-frame", "frontier-avoid"])
 def test_with_an_unsure_detector_the_same_seed_still_gives_the_same_episode(name: str):
     runs = [run_episode(world(), unsure(name), "bed", seed=2, max_steps=60).actions for _ in range(2)]
     assert runs[0] == runs[1]

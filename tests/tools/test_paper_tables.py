@@ -51,10 +51,10 @@ def test_causes_are_shares_of_the_failed_episodes_and_their_differences_of_all()
     assert cell(causes, "trapped", first).estimate.mean == pytest.approx(0.1)
     assert cell(causes, "explore", second).estimate.mean == pytest.approx(19 / 20)
     assert dict(causes.rows)["failed episodes"] == ["10 of 40", "20 of 40"]
-    explore = cell(differences, "explore", "stubborn - single-frame")
+    explore = cell(differences, "explore", "stubborn - stubborn --verification none")
     assert explore.estimate.mean == pytest.approx(-10 / 40)
     assert explore.verdict == "lower"
-    assert cell(differences, "trapped", "stubborn - single-frame").verdict == "unresolved"
+    assert cell(differences, "trapped", "stubborn - stubborn --verification none").verdict == "unresolved"
 
 
 def test_an_agent_that_never_fails_has_no_causes() -> None:
@@ -84,7 +84,7 @@ def test_goals_have_rows_in_the_contracts_order_with_their_episodes() -> None:
     (table,) = TABLES["categories"].build(lines_of(setups, failed=(4, 8)), setups)
     assert [row for row, _ in table.rows] == ["sofa (20)", "bed (20)", "all (40)"]
     assert cell(table, "bed (20)", "stubborn").estimate.mean == pytest.approx(18 / 20)
-    assert cell(table, "all (40)", "stubborn - single-frame").estimate.mean == pytest.approx(0.1)
+    assert cell(table, "all (40)", "stubborn - stubborn --verification none").estimate.mean == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -103,6 +103,15 @@ def test_tables_share_their_runs_and_the_oracle_plays_once() -> None:
         AgentSetup("random", "gt"),
         AgentSetup("stubborn", "rednet"),
     )
+
+
+def test_a_setup_has_a_name_with_its_method_of_verification() -> None:
+    name = "stubborn --verification none"
+    setup = AgentSetup.named(name, "rednet")
+    assert (setup, setup.name) == (AgentSetup("stubborn", "rednet", "none"), name)
+    assert AgentSetup.named("stubborn", "gt").name == "stubborn"
+    methods = [each.verification for each in TABLES["verification"].setups()[:-1]]
+    assert methods == ["naive-bayes", "none", "logistic", "threshold"]
 
 
 def test_a_table_that_there_is_not_is_told_what_there_is() -> None:

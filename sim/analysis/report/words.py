@@ -24,12 +24,13 @@ from sim.task.trajectory import Trajectory
 
 MEANING: Mapping[str, str] = {
     "false_detection": "The agent called STOP at an object that is not the goal.",
+    "stopped_short": "The agent faced the goal and called STOP too far from it, or behind a wall.",
     "missed_detection": "The goal was in view and the agent did not go to it.",
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
     "trapped": f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position.",
     "explore": "The goal never came into view before the steps ran out.",
     "stairs": "The goal is on another storey, or the robot drove over an edge.",
-    "misc": "No other rule applies: stopped short of the goal, ran out of steps on the path to it, or an error.",
+    "misc": "No other rule applies: ran out of steps on the path to the goal, or an error.",
 }
 """The meaning of each cause of failure (the rules are in `sim.task.failures`)."""
 ENDS: Mapping[str, str] = {

@@ -78,9 +78,21 @@ def test_a_stop_on_a_storey_without_instance_is_a_false_detection_too() -> None:
     assert cause_of_failure(episode) == "false_detection"
 
 
-@pytest.mark.parametrize(("nearest_m", "cause"), [(1.4, "misc"), (1.6, "false_detection")])
-def test_a_stop_slightly_too_far_from_the_right_object_is_no_false_detection(nearest_m: float, cause: str) -> None:
-    assert cause_of_failure(walk(line(30), end="stop", seen_at=3, nearest_instance_m=nearest_m)) == cause
+@pytest.mark.parametrize(("nearest_m", "cause"), [(1.4, "stopped_short"), (1.6, "false_detection")])
+def test_a_stop_slightly_too_far_from_the_goal_in_view_is_no_false_detection(nearest_m: float, cause: str) -> None:
+    assert cause_of_failure(walk(line(30), end="stop", seen_at=29, nearest_instance_m=nearest_m)) == cause
+
+
+@pytest.mark.parametrize("seen_at", [3, 26])
+def test_a_stop_near_an_instance_that_the_robot_does_not_face_is_a_false_detection(seen_at: int) -> None:
+    assert cause_of_failure(walk(line(30), end="stop", seen_at=seen_at, nearest_instance_m=0.4)) == "false_detection"
+
+
+def test_a_frame_that_was_not_rendered_does_not_count_among_those_faced() -> None:
+    episode = walk(line(30), end="stop", seen_at=26, nearest_instance_m=1.2)
+    share = episode.goal_share.copy()
+    share[-1] = np.nan
+    assert cause_of_failure(replace(episode, goal_share=share)) == "stopped_short"
 
 
 def test_a_stop_beside_an_instance_behind_a_wall_that_was_never_seen_is_a_false_detection() -> None:
@@ -194,5 +206,5 @@ def test_an_episode_shorter_than_the_windows_is_neither_trapped_nor_looping() ->
 
 
 def test_the_causes_are_the_contracts() -> None:
-    named = {"false_detection", "missed_detection", "loop", "trapped", "explore", "stairs", "misc"}
+    named = {"stopped_short", "false_detection", "missed_detection", "loop", "trapped", "explore", "stairs", "misc"}
     assert set(CAUSES) == named

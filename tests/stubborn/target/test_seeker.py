@@ -221,6 +221,22 @@ def test_a_part_is_acceptable_as_its_cell_seen_best():
     assert np.argwhere(seeker(Doubtful()).acceptable(navmap)).tolist() == [[30, 60], [30, 61]]
 
 
+def test_the_approached_cell_is_the_candidate_that_the_route_leads_to():
+    rows = room(R=(30, 10), T=(30, 60))
+    for row in range(22, 39):
+        for col in range(14, 33):
+            if row in (22, 38) or col in (14, 32):
+                rows[row][col] = "#"  # walls all around another candidate, which is nearer in a straight line
+    navmap, pose = known(text_of(rows))
+    navmap.score_max[30, 23] = 0.9
+    approach = seeker().approach(navmap, whole(navmap), pose, 0)
+    assert approach is not None
+    assert approach.route is not None
+    _, cols = np.nonzero(approach.route.goal.cells)
+    assert cols.min() > 32
+    assert approach.cell == (30, 60)
+
+
 def test_no_viewpoint_lies_behind_a_wall_however_near():
     rows = room(R=(30, 30), T=(30, 41))
     for row in range(60):
@@ -395,12 +411,18 @@ def sighting_at(*places: tuple[int, int, float]) -> Sighting:
 
 def test_a_target_point_in_view_within_reach_ends_the_approach():
     navmap, _ = known(text_of(room(R=(30, 10))))
+    navmap.score_max[30, [26, 31]] = 0.9
     seek = seeker()
-    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2))) is None
-    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) == (30, 26)
+    assert seek.in_reach(navmap, sighting_at((30, 31, 1.2))) is None
+    assert seek.in_reach(navmap, sighting_at((30, 31, 1.2), (30, 26, 0.8))) == (30, 26)
     navmap.rejected[30, 26] = True
     assert seek.in_reach(navmap, sighting_at((30, 31, 0.9), (30, 26, 0.8))) == (30, 31)
-    assert seek.in_reach(navmap, sighting_at((30, 30, 1.2), (30, 26, 0.8))) is None
+    assert seek.in_reach(navmap, sighting_at((30, 31, 1.2), (30, 26, 0.8))) is None
+
+
+def test_a_point_in_view_that_is_no_candidate_on_the_map_is_not_in_reach():
+    navmap, _ = known(text_of(room(R=(30, 10))))
+    assert seeker().in_reach(navmap, sighting_at((30, 26, 0.8))) is None
 
 
 def test_a_verifier_is_asked_with_the_four_features_and_refusal_takes_the_connected_cells_and_a_margin():

@@ -1,0 +1,63 @@
+"""Candidates as objects: connected cells that score as the target, without those of rejected objects.
+
+A rejected object keeps its cells for the rest of the episode. Its outline changes with every frame, so cells that join
+it later belong to it too, as long as they are no more than it had when it was rejected. A part that is larger than that
+cannot be the rest of it: it is an object that touches it, such as a table beside a rejected chair.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Int
+
+from stubborn.navmap import NavMap
+
+
+@dataclass(frozen=True)
+class CandidateParts:
+    """The candidates on a view of the map, one number each."""
+
+    labels: Int[np.ndarray, "rows cols"]
+    """Number of the candidate that a cell belongs to; 0: none."""
+    count: int
+    """Candidates have the numbers 1 to `count`."""
+    touches_rejected: Bool[np.ndarray, " numbers"]
+    """True for the number of a candidate beside a rejected object or its margin; entry 0 is False."""
+
+    @classmethod
+    def of(cls, view: NavMap, candidate_score: float, least_cells: int) -> CandidateParts:
+        """Returns the candidates on a view; parts with fewer than `least_cells` cells are none."""
+        shown = view.score_max > candidate_score
+        left = shown & ~view.rejected
+        if not left.any():
+            return cls(np.zeros(shown.shape, np.intp), 0, np.zeros(1, np.bool_))
+        objects, _ = _numbered(_grown(shown))  # pieces of one outline, with gaps between them
+        parts, areas = _numbered(left)
+        rejected_cells = np.bincount(objects[shown & view.rejected], minlength=int(objects.max()) + 1)
+        object_of = np.zeros(len(areas), np.intp)
+        object_of[parts[left]] = objects[left]
+        counts = (areas >= least_cells) & (areas > rejected_cells[object_of])
+        counts[0] = False  # the background
+        beside = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
+        number = np.where(counts, np.cumsum(counts), 0)
+        return cls(number[parts], int(counts.sum()), np.append(False, beside[counts]))
+
+    @property
+    def mask(self) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the cells of all candidates."""
+        return self.labels > 0
+
+
+def _numbered(mask: Bool[np.ndarray, "rows cols"]) -> tuple[Int[np.ndarray, "rows cols"], Int[np.ndarray, " parts"]]:
+    """Returns the number of each cell's 8-connected part, 0 outside the mask, and the cells of each part."""
+    _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
+    return np.asarray(parts, np.intp), np.asarray(stats)[:, cv2.CC_STAT_AREA].astype(np.intp)
+
+
+def _grown(mask: Bool[np.ndarray, "rows cols"]) -> Bool[np.ndarray, "rows cols"]:
+    """Returns the mask with the 8 neighbours of its cells."""
+    kernel = np.ones((3, 3), np.uint8)
+    return np.asarray(cv2.dilate(np.ascontiguousarray(mask).view(np.uint8), kernel), np.uint8).view(np.bool_)
