@@ -14,16 +14,22 @@ from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope
 from sim.houses.house import House
-from sim.houses.labels import Labels
+from sim.houses.labels import Labels, collidable_geoms, geoms_of
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
+from sim.plans.gap_kernels import lower_to_gap
 from sim.plans.plan import CELL_M, Plan
 from sim.plans.surfaces import TOP_M, occupied_spans
+from sim.robot.body import PREFIX
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import FreeSpace
-from sim.world.plan import floor_polygons
+from sim.world.freespace import STEP_HEIGHT_M, FreeSpace
+from sim.world.plan import floor_polygons, polygons_between
 from sim.world.storeys import floor_levels
 from sim.world.world import World
 
+_FAR_M = 0.6
+"""Distances to obstacles are computed up to this."""
+_PADDING_M = 1000.0
+"""Added to distances, so that 0 stands for cells beyond the grid."""
 _LEAST_CEILING_M = 1.5
 """A lower ceiling does not belong to the storey."""
 
@@ -65,7 +71,7 @@ def _storey(
         floor_z_m=floor_z_m,
         ceiling_m=_ceiling_m(world.model, at_rest, labels, floor_z_m),
         radius_m=world.robot.radius_m,
-        slack_m=_slack_m(space, frame),
+        slack_m=_slack_m(world, at_rest, space, frame, floor_z_m),
         floor=_floor(world.model, at_rest, labels, floor_z_m, frame),
         room=_rooms(world, floor_z_m, frame),
         rooms=tuple(room.name for room in world.rooms),
@@ -94,14 +100,27 @@ def _blocks(fine: NDArray, frame: GridFrame, ratio: int) -> NDArray:
     return padded.reshape(rows, ratio, cols, ratio).transpose(0, 2, 1, 3).reshape(rows, cols, ratio * ratio)
 
 
-def _slack_m(space: FreeSpace, frame: GridFrame) -> NDArray[np.float32]:
-    """Returns the distance of cell centres to the border of the free space, positive inside."""
-    ratio = round(CELL_M / space.frame.cell_m)
+def _slack_m(
+    world: World, at_rest: mujoco.MjData, space: FreeSpace, frame: GridFrame, floor_z_m: float
+) -> NDArray[np.float32]:
+    """Returns the distance of cell centres to the border of the free space, positive inside.
+
+    At obstacles it is exact; at edges of the floor and at ground that cannot be reached it comes from the cells.
+    """
+    geoms = np.flatnonzero(collidable_geoms(world.model) & ~geoms_of(world.model, PREFIX))
+    heights_m = (floor_z_m + STEP_HEIGHT_M, floor_z_m + world.robot.height_m)
+    gap_m = np.full(frame.shape, _FAR_M)
+    for polygon in polygons_between(world.model, at_rest, geoms, heights_m):
+        window = frame.index_of(polygon.bounds_m, _FAR_M)
+        x_m, y_m = frame.axes(window)
+        lower_to_gap(gap_m[window], x_m, y_m, polygon.vertices_m, polygon.normals, polygon.offsets_m)
+    ratio, fine_m = round(CELL_M / space.frame.cell_m), space.frame.cell_m
     free = np.pad(space.free, 1).astype(np.uint8)
     inside, outside = (cv2.distanceTransform(mask, cv2.DIST_L2, cv2.DIST_MASK_PRECISE) for mask in (free, 1 - free))
-    signed_m = (np.maximum(inside - 0.5, 0.0) - np.maximum(outside - 0.5, 0.0)) * space.frame.cell_m
-    blocks = _blocks(signed_m[1:-1, 1:-1].astype(np.float32) + np.float32(10.0), frame, ratio)
-    return np.where(blocks.min(axis=2) > 0.0, blocks.mean(axis=2) - np.float32(10.0), np.float32(-1.0))
+    by_cells_m = ((inside - outside) * fine_m)[1:-1, 1:-1].astype(np.float32)
+    blocks = _blocks(by_cells_m + np.float32(_PADDING_M), frame, ratio)
+    by_cells_m = np.where(blocks.min(axis=2) > 0.0, blocks.mean(axis=2) - np.float32(_PADDING_M), np.float32(-_FAR_M))
+    return np.minimum(gap_m - space.radius_m, by_cells_m).astype(np.float32)
 
 
 def _success_bits(truth: GroundTruth, floor_z_m: float, frame: GridFrame) -> NDArray[np.uint32]:

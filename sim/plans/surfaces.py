@@ -17,9 +17,10 @@ from scipy.spatial import ConvexHull, QhullError
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, mesh_triangles
-from sim.houses.labels import Labels, rendered_geoms
+from sim.houses.labels import Labels, geoms_of, rendered_geoms
 from sim.interface import MPCAT40_ID
 from sim.plans.span_kernels import mark_triangles, merge_spans, runs_of_marks
+from sim.robot.body import PREFIX
 
 SAMPLE_M = 0.02
 """Height of the boxes, one above the other over each cell, that are searched for samples of a surface."""
@@ -40,16 +41,15 @@ def occupied_spans(
     A geom without an instance belongs to the instance of index `len(labels.instances)`.
 
     Args:
-        model: a compiled house or world; a robot in it has no category and must not be rendered.
+        model: a compiled house or world; a robot in it is left out.
         data: its state; kinematics must be computed.
         labels: of `model`.
         frame: the grid.
         floor_z_m: height of the storey's floor.
     """
     skipped = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
-    robot = np.array([model.body(body).name.startswith("robot/") for body in model.geom_bodyid])
     parts = []
-    for geom in np.flatnonzero(rendered_geoms(model) & ~skipped & ~robot).tolist():
+    for geom in np.flatnonzero(rendered_geoms(model) & ~skipped & ~geoms_of(model, PREFIX)).tolist():
         instance = int(labels.geom_instance[geom])
         for cells, low_m, high_m in _of_geom(model, data, geom, frame, floor_z_m):
             owner = np.full(len(cells), instance if instance >= 0 else len(labels.instances), np.int64)

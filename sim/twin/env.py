@@ -1,0 +1,276 @@
+"""Gymnasium environments in house plans: ObjectNav without rendering and without MuJoCo, for training explorers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from sim.errors import ConfigError
+from sim.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.geometry.pose import Pose
+from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
+from sim.plans.episode import PlanEpisode, draw_goal_and_start
+from sim.plans.motion_kernels import mark_swept
+from sim.plans.plan import Plan, read_plan
+from sim.plans.sight import PlanCamera, SightConfig
+from stubborn.mapping.collision_marks import CollisionConfig, is_collision, mark_collision
+from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.planning.avoidance import visited_ground
+from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
+from stubborn.planning.steering import next_action
+from stubborn.planning.untrap import Untrap, UntrapConfig
+
+LAYERS = ("seen_obstacle", "in_view", "visited", "trail", "pessimistic_marks", "optimistic_marks", "target")
+"""The layers of an observation, in their order: those of `stubborn.navmap.NavMap`; `in_view` is True where
+`frames_in_view` is not 0, `target` where `score_max` is above 0.5."""
+_BOTH = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwinConfig:
+    """Options of `TwinEnv`."""
+
+    actions: Literal["primitive", "goal"] = "primitive"
+    """`primitive`: the four actions of the task. `goal`: a goal cell that the agent's planner heads for."""
+    goal_steps: int = 25
+    """Primitive actions towards one goal."""
+    plan_every: int = 5
+    """Primitive actions between two plans, unless a collision comes before; 1: as the agent does."""
+    ends_at_sight: bool = False
+    """True: the episode ends with the first frame that shows the target by the rule of GT exploration."""
+    max_steps: int = MAX_STEPS
+    """Primitive actions of an episode."""
+    map_cells: int = 1440
+    """Edge of the map."""
+    window_cells: int = 240
+    """Edge of the window around the robot that is observed and planned on."""
+    goal_radius_m: float = 0.5
+    """Any cell this near the goal will do."""
+    sight: SightConfig = field(default_factory=SightConfig)
+    planning: PlanningConfig = field(default_factory=PlanningConfig)
+    collisions: CollisionConfig = field(default_factory=CollisionConfig)
+    untrap: UntrapConfig = field(default_factory=UntrapConfig)
+
+    def __post_init__(self) -> None:
+        if min(self.goal_steps, self.plan_every, self.max_steps) < 1:
+            raise ConfigError(
+                f"TwinConfig needs goal_steps, plan_every and max_steps >= 1, got {self.goal_steps}, "
+                f"{self.plan_every} and {self.max_steps}."
+            )
+
+
+class TwinEnv(gymnasium.Env[Any, Any]):
+    """Find an object of a category in the plan of an apartment.
+
+    ## Actions
+    With `actions="primitive"`, `Discrete(4)`: those of `stubborn/ObjectNav-v0`. With `actions="goal"`, `Box(2)` in
+    [0, 1]: row and column of a goal in the window, 0 at its first edge and 1 at its last; the planner of `stubborn`
+    drives towards it for `goal_steps` primitive actions, to the nearest reachable cell where there is no path.
+
+    ## Observations
+    A dict: `layers` uint8 (7, window, window), 0 or 1, in the order of `LAYERS`; `goals_seen` uint32 (window, window),
+    bit g where goal category g was in view; `pose` float32 (3,), metres forward and left of the start pose and
+    heading; `objectgoal` int64 (1,). The window keeps the axes of the start frame, rows are its y; the robot is in the
+    middle.
+
+    ## Reward
+    Metres by which the action shortened the path to the nearest place where a STOP succeeds.
+
+    ## End
+    `terminated` at STOP and, with `ends_at_sight`, when the target was seen; `truncated` after `max_steps` primitive
+    actions.
+
+    ## Starting state
+    `reset(seed=...)` draws a plan, a goal in it and a start; `reset(options={"plan": 3, "goal": "bed", "start": pose})`
+    fixes them.
+
+    ## Info
+    The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
+
+    Args:
+        plans: plan files (tools/export_plans.py), or a folder of them.
+        config: all other options.
+
+    Raises:
+        ConfigError: there is no plan.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - declared by Gymnasium
+
+    def __init__(self, plans: Path | Sequence[Path], config: TwinConfig | None = None) -> None:
+        self.config = config or TwinConfig()
+        self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
+        if not self.files:
+            raise ConfigError(f"No plan in '{plans}': tools/export_plans.py writes them.")
+        self._cameras: dict[int, PlanCamera] = {}
+        self._frame = GridFrame.around_start(self.config.map_cells, 0.05)
+        self._planner = Planner(self.config.planning, visited_ground)
+        size = self.config.window_cells
+        self.observation_space = spaces.Dict(
+            {
+                "layers": spaces.Box(0, 1, (len(LAYERS), size, size), np.uint8),
+                "goals_seen": spaces.Box(0, 2**32 - 1, (size, size), np.uint32),
+                "pose": spaces.Box(-np.inf, np.inf, (3,), np.float32),
+                "objectgoal": spaces.Box(0, len(GOAL_CATEGORIES) - 1, (1,), np.int64),
+            }
+        )
+        primitive = self.config.actions == "primitive"
+        self.action_space = spaces.Discrete(len(Action)) if primitive else spaces.Box(0.0, 1.0, (2,), np.float32)
+        self._episode: PlanEpisode | None = None
+
+    @property
+    def episode(self) -> PlanEpisode:
+        """The running episode."""
+        if self._episode is None:
+            raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
+        return self._episode
+
+    def camera(self, number: int) -> PlanCamera:
+        """Returns the camera of a plan, which is read on first use."""
+        if number not in self._cameras:
+            self._cameras[number] = PlanCamera(read_plan(self.files[number]), config=self.config.sight)
+        return self._cameras[number]
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, NDArray], dict[str, Any]]:
+        """Starts an episode; see the class."""
+        super().reset(seed=seed)
+        fixed = options or {}
+        number = int(fixed.get("plan", self.np_random.integers(len(self.files))))
+        camera = self.camera(number)
+        plan: Plan = camera.plan
+        goal, start = draw_goal_and_start(plan, self.np_random)
+        self._episode = PlanEpisode(
+            camera, fixed.get("goal", goal), fixed.get("start", start), max_steps=self.config.max_steps
+        )
+        self.navmap = NavMap.empty(self._frame)
+        """The agent's map."""
+        self.goals_seen = np.zeros(self._frame.shape, np.uint32)
+        """(rows, cols) of the map: bit g is set where goal category g was in view."""
+        self._untrap = Untrap(self.config.untrap.failed_forwards)
+        self._last: Action | None = None
+        self._mark_driven(self.episode.pose)
+        self._look()
+        return self._observe(), self._info()
+
+    def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
+        """Carries out one action, primitive or towards a goal; see the class."""
+        before_m = self.episode.distance_m()
+        if self.config.actions == "primitive":
+            self._move(Action(int(action)))
+        else:
+            self._head_for(np.asarray(action, np.float64).reshape(2))
+        after_m = self.episode.distance_m()
+        reward = before_m - after_m if math.isfinite(before_m) and math.isfinite(after_m) else 0.0
+        return self._observe(), reward, self._terminated, self.episode.done and not self._terminated, self._info()
+
+    @property
+    def window(self) -> Window:
+        """The part of the map around the robot."""
+        pose = self.episode.pose
+        return self._frame.window_at(pose.x_m, pose.y_m, self.config.window_cells)
+
+    @property
+    def _terminated(self) -> bool:
+        seen = self.config.ends_at_sight and self.episode.first_seen_step is not None
+        return self.episode.stopped or seen
+
+    def _head_for(self, share: NDArray[np.float64]) -> None:
+        """Drives towards a goal, given as shares of the window's rows and columns."""
+        frame = self.window.frame
+        y_m, x_m = (
+            frame.origin_xy_m[axis] + float(np.clip(part, 0.0, 1.0)) * frame.shape[1 - axis] * frame.cell_m
+            for axis, part in ((1, share[0]), (0, share[1]))
+        )
+        route: Route | None = None
+        planned = 0
+        for number in range(self.config.goal_steps):
+            if self._terminated or self.episode.done:
+                return
+            escape = self._untrap.next_action()
+            collided = self._last is Action.MOVE_FORWARD and self._failed
+            if route is None or collided or number - planned >= self.config.plan_every:
+                route, planned = self._plan((x_m, y_m)), number
+            if escape is not None:
+                self._move(escape)
+            elif route is None:  # as the agent: push in one direction after the other
+                self._move(Action.MOVE_FORWARD if self._last is Action.TURN_LEFT else Action.TURN_LEFT)
+            else:
+                self._move(next_action(route, self.episode.pose, self.config.planning))
+
+    def _plan(self, xy_m: tuple[float, float]) -> Route | None:
+        """Returns the route to a point, else to the reachable cell nearest it."""
+        window, pose = self.window, self.episode.pose
+        free = self._planner.free_space(self.navmap.view(window), pose, CollisionLayer.PESSIMISTIC)
+        cells = np.zeros(free.frame.shape, np.bool_)
+        index, inside = cells_near_segment(free.frame, xy_m, xy_m, self.config.goal_radius_m)
+        cells[index] = inside
+        route = self._planner.route(Goal(free, cells), pose)
+        if route is not None:
+            return route
+        cell_x_m, cell_y_m = free.frame.mesh()
+        gap_m = np.where(free.reachable, np.hypot(cell_x_m - xy_m[0], cell_y_m - xy_m[1]), np.inf)
+        return self._planner.route(Goal(free, gap_m == gap_m.min()), pose)
+
+    def _move(self, action: Action) -> None:
+        """Carries out a primitive action, enters it and the frame after it into the map."""
+        before = self.episode.pose
+        moved_m = self.episode.act(action).moved_m
+        pose = self.episode.pose
+        self._failed = is_collision(action, moved_m, self.config.collisions.failed_below_m)
+        self._untrap.observe(action, self._failed)
+        self._mark_driven(before)
+        if self._failed:
+            mark_collision(self.navmap, pose, _BOTH, self.config.collisions)
+        self._last = action
+        self._look()
+
+    def _mark_driven(self, before: Pose) -> None:
+        """Enters the ground between an earlier pose and the present one, as `mark_visited` of the agent does."""
+        cell_m, (x_m, y_m), pose = self._frame.cell_m, self._frame.origin_xy_m, self.episode.pose
+        ends = ((p - o) / cell_m for p, o in ((before.y_m, y_m), (before.x_m, x_m), (pose.y_m, y_m), (pose.x_m, x_m)))
+        row_0, col_0, row_1, col_1 = ends
+        body, trail = self.episode.plan.radius_m / cell_m, self.config.collisions.trail_radius_m / cell_m
+        mark_swept(self.navmap.visited, row_0, col_0, row_1, col_1, body)
+        mark_swept(self.navmap.trail, row_0, col_0, row_1, col_1, trail)
+
+    def _look(self) -> None:
+        """Enters the frame from the present pose into the map."""
+        episode = self.episode
+        look = episode.camera.look(
+            episode.robot.pose, episode.goal, self.navmap, episode.pose, episode.num_steps, self.goals_seen
+        )
+        episode.see(look)
+
+    def _observe(self) -> dict[str, NDArray]:
+        window, pose = self.window, self.episode.pose
+        view = self.navmap.view(window)
+        layers = np.empty(self.observation_space["layers"].shape, np.uint8)
+        for number, name in enumerate(LAYERS):
+            if name == "in_view":
+                np.greater(view.frames_in_view, 0, out=layers[number].view(np.bool_))
+            elif name == "target":
+                np.greater(view.score_max, 0.5, out=layers[number].view(np.bool_))
+            else:
+                layers[number] = getattr(view, name)
+        return {
+            "layers": layers,
+            "goals_seen": self.goals_seen[window.index].copy(),
+            "pose": np.array([pose.x_m, pose.y_m, pose.yaw_rad], np.float32),
+            "objectgoal": np.array([GOAL_CATEGORIES.index(self.episode.goal)], np.int64),
+        }
+
+    def _info(self) -> dict[str, Any]:
+        measured = dict(self.episode.metrics())
+        if measured["first_seen_step"] is None:
+            del measured["first_seen_step"]  # Gymnasium's vector environments take numbers only
+        return {"house": self.episode.plan.name, "goal": self.episode.goal, **measured}
