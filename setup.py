@@ -8,6 +8,7 @@ setup(
     package_data={
         "sim.assets": ["mjcf_houses/**/*"],
         "sim.analysis.report": ["page/*"],
+        "sim.web": ["page/*"],
         "stubborn": ["**/*.json", "**/*.npz", "**/*.safetensors"],
     },
 )

@@ -21,13 +21,15 @@ ROOMS = (
     ("sim.housegen",),
     ("sim.task",),
     ("sim.episodes",),
+    ("sim.plans",),
     ("sim.env",),
     ("sim.detectors",),
     ("sim.datasets",),
     ("sim.viewers",),
     ("sim.evaluation",),
     ("sim.analysis",),
-    ("sim.composition",),
+    ("sim.composition", "sim.twin"),
+    ("sim.web",),
     ("sim.gym", "sim.run", "sim.report", "sim.teleop"),
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
@@ -44,7 +46,7 @@ AGENT_ROOMS = (
 """The rooms of `stubborn`, lowest first."""
 KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry", "sim.reading")
 """Modules of `sim` that `stubborn` may import."""
-COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop")
+COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop", "sim.twin")
 """Modules that may import both `sim` and `stubborn`."""
 
 

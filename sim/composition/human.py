@@ -136,11 +136,11 @@ class Human:
 
 
 def judged(line: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the result line of an episode that a person ended: a STOP elsewhere is `stopped_short`.
+    """Returns the result line of an episode that a person ended: a STOP far from the goal is `misc`.
 
     `false_detection` says that a segmentation took another object for the goal. A person has no segmentation.
     """
-    return {**line, "failure": "stopped_short"} if line["failure"] == "false_detection" else dict(line)
+    return {**line, "failure": "misc"} if line["failure"] == "false_detection" else dict(line)
 
 
 def _names_in_sight(semantic: NDArray[np.uint8], most: int = 8) -> str:

@@ -49,7 +49,7 @@ class Browser:
             "--disable-gpu",
             "--hide-scrollbars",
             "--disable-dev-shm-usage",
-            "--host-resolver-rules=MAP * ~NOTFOUND",  # nothing is fetched from anywhere
+            "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",  # nothing is fetched from anywhere else
             f"--user-data-dir={profile}",
             *(["--blink-settings=preferredColorScheme=0"] if dark else []),
         ]
@@ -68,9 +68,13 @@ class Browser:
 
     def open(self, file: Path, fragment: str = "") -> None:
         """Open a page from disk and wait until it is there; what was complained of or fetched before is forgotten."""
+        self.visit(file.resolve().as_uri() + fragment)
+
+    def visit(self, address: str) -> None:
+        """Open a page by its address, as `open` does."""
         self.complaints()
         self.requests()
-        self._call("POST", "/url", {"url": file.resolve().as_uri() + fragment})
+        self._call("POST", "/url", {"url": address})
 
     def run(self, script: str, *values: object) -> Any:
         """What a function body in JavaScript returns."""
