@@ -19,8 +19,11 @@ from typing import Any, TypeVar
 import msgspec
 
 from sim.errors import ConfigError
+from sim.geometry.numbers import LARGEST, is_number
+from sim.reading import parse_json, read_bytes
 
 TreeT = TypeVar("TreeT")
+MAX_SETTINGS_BYTES = 1 << 20
 
 
 def as_json(value: Any) -> Any:
@@ -81,7 +84,7 @@ def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:
             raise ConfigError(f"--config sets '{path}' twice.")
         try:
             values[path] = json.loads(text)
-        except ValueError:
+        except (ValueError, RecursionError):
             values[path] = text
     return values
 
@@ -92,16 +95,15 @@ def read_settings(file: Path) -> dict[str, Any]:
     Raises:
         ConfigError: the file is missing, unreadable, or holds no table of settings.
     """
+    content = read_bytes(file, what="--config-file", most=MAX_SETTINGS_BYTES)
+    if file.suffix != ".toml":
+        return dict(_flat(parse_json(content, dict[str, Any], where=f"--config-file '{file}'")))
     try:
-        text = file.read_text(encoding="utf-8")
-        content = tomllib.loads(text) if file.suffix == ".toml" else json.loads(text)
-    except OSError as error:
-        raise ConfigError(f"Cannot read --config-file '{file}': {error.strerror}.") from None
-    except ValueError as error:  # both parsers raise subclasses of it
+        return dict(_flat(tomllib.loads(content.decode("utf-8"))))
+    except RecursionError:
+        raise ConfigError(f"--config-file '{file}' is nested too deeply.") from None
+    except ValueError as error:
         raise ConfigError(f"--config-file '{file}' is not valid: {error}") from None
-    if not isinstance(content, dict):
-        raise ConfigError(f"--config-file '{file}' must hold an object of settings, got {type(content).__name__}.")
-    return dict(_flat(content))
 
 
 def _flat(content: Mapping[str, Any], prefix: str = "") -> Iterable[tuple[str, Any]]:
@@ -160,7 +162,11 @@ def _converted(value: Any, hint: Any, current: Any, path: str) -> Any:
             return None
         raise ConfigError(f"'{path}' has no fields here: there is nothing to configure.")
     try:
-        return msgspec.convert(value, hint, strict=False, dec_hook=_decoded)
+        converted = msgspec.convert(value, hint, strict=False, dec_hook=_decoded)
+        for each in converted if isinstance(converted, tuple) else (converted,):
+            if isinstance(each, float) and not is_number(each) and not (each == current == math.inf):
+                raise TypeError(f"a finite number of at most {LARGEST:g} is allowed")
+        return converted
     except (msgspec.ValidationError, TypeError) as error:
         raise ConfigError(f"'{path}' cannot be {value!r}: {error}. Its value now is {current!r}.") from None
 

@@ -69,4 +69,14 @@ os.environ.setdefault("LP_NUM_THREADS", "1")
 
 import mujoco  # noqa: E402
 
+
+def _disable_log_file() -> None:
+    """Stops MuJoCo from writing MUJOCO_LOG.TXT into the working directory."""
+    config = mujoco.MjLogConfig.get()
+    config.logto_file = False
+    config.set()
+
+
+_disable_log_file()
+
 __all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "mujoco"]

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
+from sim.geometry.numbers import require_numbers
 from sim.geometry.pose import wrap_angle
 
 __all__ = [
@@ -42,6 +43,8 @@ FORWARD_M = 0.25
 """Commanded displacement of MOVE_FORWARD."""
 TURN_RAD = math.radians(30.0)
 """Commanded rotation of TURN_LEFT (positive) and TURN_RIGHT (negative)."""
+MAX_SIDE_PX = 4096
+"""Largest width and height of an image."""
 MAX_STEPS = 500
 """Actions after which an episode is truncated."""
 
@@ -82,8 +85,11 @@ class CameraModel:
     """Farther surfaces read this value."""
 
     def __post_init__(self) -> None:
-        if min(self.width_px, self.height_px) < 1:
-            raise ConfigError(f"CameraModel needs at least 1 x 1 pixels, got {self.width_px} x {self.height_px}.")
+        require_numbers(self)
+        if min(self.width_px, self.height_px) < 1 or max(self.width_px, self.height_px) > MAX_SIDE_PX:
+            raise ConfigError(
+                f"CameraModel needs 1 to {MAX_SIDE_PX} pixels on each side, got {self.width_px} x {self.height_px}."
+            )
         if not 0.0 < self.hfov_rad < math.pi:
             raise ConfigError(f"CameraModel.hfov_rad must lie in (0, pi), got {self.hfov_rad}.")
         if not 0.0 <= self.min_depth_m < self.max_depth_m:
@@ -112,6 +118,7 @@ class RobotModel:
     """Camera mount ahead of the wheel axis; 0 for our robot, whose camera turns on the spot."""
 
     def __post_init__(self) -> None:
+        require_numbers(self)
         if self.radius_m <= 0 or self.height_m <= 0:
             raise ConfigError(f"RobotModel needs positive sizes, got {self.radius_m} m and {self.height_m} m.")
 
@@ -128,6 +135,7 @@ class SuccessRule:
     """Floors less than this apart are one storey."""
 
     def __post_init__(self) -> None:
+        require_numbers(self)
         if self.distance_m <= 0 or self.same_storey_m <= 0:
             raise ConfigError(
                 f"SuccessRule needs distance_m > 0 and same_storey_m > 0, got {self.distance_m} and "

@@ -28,6 +28,7 @@ from sim.housegen.imported.library import read_index
 from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import read_labels
+from sim.houses.load import load_house
 from sim.interface import CameraModel, ConfigError
 from sim.paths import assets_dir
 from sim.world.freespace import FreeSpace
@@ -73,7 +74,7 @@ def main(args: Args) -> int:
     catalogue = CATALOGUE if args.furniture is None else _imported(args.furniture, args.pool)
     sheets = {category: catalogue.styles(category) for category in args.categories or catalogue.categories}
     for path in args.houses:
-        spec = mujoco.MjSpec.from_file(str(path.resolve()))
+        spec = load_house(path).spec
         for number, storey in enumerate(_storeys(spec)):
             _save(args.out / f"{path.stem}_top{f'_{number}' if number else ''}.png", draw_top(storey))
         _save(args.out / f"{path.stem}_views.png", draw_views(spec))

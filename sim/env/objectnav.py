@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
-from sim.episodes.splits import Episode, Split, load_split, one_house
+from sim.episodes.splits import Episode, Split, load_split, one_house, require_start
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
@@ -99,6 +100,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         robot: RobotConfig | None = None,
     ) -> None:
         _check_options(goal, render_mode)
+        if house is None and (labels is not None or start is not None):
+            raise ConfigError("labels and start need house: the houses of a split have their own.")
+        if start is not None:
+            require_start(start)
         self.split: Split = load_split(split) if house is None else one_house(house, labels=labels)
         self.goal, self.start = goal, start
         self.sensors = resolve_sensors(sensors)
@@ -121,10 +126,13 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
+        self._closed = False
 
     @property
     def scene(self) -> Scene:
         """World, camera and task of the running episode: the ground truth, for oracles and viewers."""
+        if self._closed:
+            raise gymnasium.error.ClosedEnvironmentError("The environment is closed: make another one.")
         if self._scene is None:
             raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
         return self._scene
@@ -155,6 +163,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode; see the class."""
+        if self._closed:
+            raise gymnasium.error.ClosedEnvironmentError("The environment is closed: make another one.")
         super().reset(seed=seed)
         episode = self._choose(options or {})
         self._scene = None  # frees the last house before the next one is compiled
@@ -200,10 +210,19 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return self.scene.camera.render(world.data, world.camera_pose, ("rgb",))["rgb"]
 
     def close(self) -> None:
-        """Frees the renderers."""
+        """Frees the renderers; the environment cannot be used any more."""
+        self._closed = True
+        self._scene = None
         self._scenes.close()
 
     def _choose(self, options: Mapping[str, Any]) -> Episode:
+        unknown = sorted(set(options) - {"episode", "episode_id"})
+        if unknown or len(options) > 1:
+            raise ConfigError(
+                f"reset takes one of the options episode and episode_id, got {', '.join(map(str, options))}."
+            )
+        if "episode" in options and not isinstance(options["episode"], Episode):
+            raise ConfigError(f"options['episode'] must be an Episode, got {reprlib.repr(options['episode'])}.")
         if "episode" in options:
             return options["episode"]
         if "episode_id" in options:

@@ -50,9 +50,13 @@ class Episode:
     def __post_init__(self) -> None:
         if self.goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{self.goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
-        start = self.start
-        if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
-            raise EpisodeError(f"Episode '{self.episode_id}' starts at {start}; finite numbers of metres are allowed.")
+        require_start(self.start)
+
+
+def require_start(start: Pose) -> None:
+    """Raises EpisodeError where a number of a start is NaN, infinite or larger than `FARTHEST_M`."""
+    if not all(abs(value) <= FARTHEST_M for value in (start.x_m, start.y_m, start.yaw_rad, start.floor_z_m)):
+        raise EpisodeError(f"The start {start} is not allowed: finite numbers of at most {FARTHEST_M:g} are.")
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import difflib
 import re
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import regex
 from numpy.typing import NDArray
 
 from sim.errors import HouseError
@@ -22,6 +24,9 @@ from sim.interface import MPCAT40, MPCAT40_ID
 RENDERED_GROUPS = 3
 """Geoms of groups 0, 1 and 2 are rendered; those of group 3 and above are collision geoms only."""
 VOID = "void"
+RULES_S = 5.0
+"""Time for the label rules on all names of a house; those of a scene of 1,000 geoms take some milliseconds."""
+MAX_RULE_LETTERS = 1000
 _LABEL = re.compile(r"(?P<category>[A-Za-z][A-Za-z_]*)_(?P<number>\d+)")
 
 
@@ -69,6 +74,7 @@ def read_labels(
         HouseError: a visible geom has no label and there are no rules, or a rule is not valid.
     """
     compiled_rules = _compile_rules(rules)
+    until_s = time.monotonic() + RULES_S
     category_of_geom = np.zeros(model.ngeom, dtype=np.uint8)
     instance_of_geom = np.full(model.ngeom, -1, dtype=np.int32)
     members: dict[str, tuple[str, list[int]]] = {}
@@ -77,7 +83,7 @@ def read_labels(
     ignored = geoms_of(model, ignore_prefix) if ignore_prefix else np.zeros(model.ngeom, dtype=np.bool_)
     for geom in np.flatnonzero(~ignored).tolist():
         names = tuple(_names(model, geom))
-        owner, category = _first_label(names, compiled_rules)
+        owner, category = _first_label(names, compiled_rules, until_s)
         if category == VOID:
             if visible[geom]:
                 if rules is None:
@@ -153,13 +159,22 @@ def _names(model: mujoco.MjModel, geom: int) -> Iterator[str]:
         body = int(model.body_parentid[body])
 
 
-def _first_label(names: tuple[str, ...], rules: list[tuple[re.Pattern[str], str]]) -> tuple[str, str]:
+def _first_label(
+    names: tuple[str, ...], rules: list[tuple[regex.Pattern[str], str]], until_s: float
+) -> tuple[str, str]:
     """Returns the first name that is a label and its category; ("", "void") when none is."""
     for name in names:
         if not name:
             continue
         for pattern, category in rules:
-            if pattern.search(name):
+            try:
+                found = pattern.search(name, timeout=max(1e-3, until_s - time.monotonic()))
+            except TimeoutError:
+                raise HouseError(
+                    f"label rule '{pattern.pattern}' takes too long on '{name}': all rules of a house have {RULES_S:g} "
+                    "s; write it without a repetition inside a repetition."
+                ) from None
+            if found:
                 return name, category
         category = parse_label(name)
         if category is not None:
@@ -167,15 +182,17 @@ def _first_label(names: tuple[str, ...], rules: list[tuple[re.Pattern[str], str]
     return "", VOID
 
 
-def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[re.Pattern[str], str]]:
+def _compile_rules(rules: Mapping[str, str] | None) -> list[tuple[regex.Pattern[str], str]]:
     compiled = []
-    for regex, category in (rules or {}).items():
+    for rule, category in (rules or {}).items():
         if category not in MPCAT40_ID:
-            raise HouseError(f"label rule '{regex}' gives '{category}', which is not a category. {suggest(category)}")
+            raise HouseError(f"label rule '{rule}' gives '{category}', which is not a category. {suggest(category)}")
+        if len(rule) > MAX_RULE_LETTERS:
+            raise HouseError(f"label rule '{rule[:40]}...' has {len(rule)} letters; at most {MAX_RULE_LETTERS}.")
         try:
-            compiled.append((re.compile(regex), category))
-        except re.error as error:
-            raise HouseError(f"label rule '{regex}' is not a regular expression: {error}.") from None
+            compiled.append((regex.compile(rule), category))
+        except (regex.error, RecursionError, OverflowError) as error:
+            raise HouseError(f"label rule '{rule}' is not a regular expression: {error}.") from None
     return compiled
 
 

@@ -12,8 +12,9 @@ from sim.gl import mujoco
 from sim.houses.foreign import remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
+from sim.houses.mjcf import read_spec, require_sizes
 from sim.interface import MPCAT40_ID
-from sim.reading import read_json
+from sim.reading import read_json, reason_of
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
@@ -41,13 +42,11 @@ def load_house(path: Path, *, labels_path: Path | None = None) -> House:
     if not path.is_file():
         raise HouseError(f"House '{path}': there is no such file.")
     try:
-        spec = mujoco.MjSpec.from_file(str(path.resolve()))
+        spec = read_spec(path)
         notes = () if rules is None else remove_unsupported(spec)
-        model = spec.compile()
-    except (ValueError, OSError) as error:
-        raise HouseError(f"House '{path}' is not an MJCF file that MuJoCo can read: {_one_line(error)}") from None
-    house = House(path.stem, spec, rules, path)
-    try:
+        model = _compiled(spec)
+        require_sizes(model)
+        house = House(path.stem, spec, rules, path)
         labels = validate_house(house, model)
     except HouseError as error:
         raise HouseError(f"House '{path}': {error}") from None
@@ -128,6 +127,8 @@ def _quote(name: str) -> str:
     return f"'{name}'" if name else "without a name"
 
 
-def _one_line(error: Exception) -> str:
-    """Returns MuJoCo's message of several lines as one line."""
-    return " ".join(str(error).split())
+def _compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except (ValueError, OSError, MemoryError) as error:
+        raise HouseError(f"it is not an MJCF file that MuJoCo can read: {reason_of(error)}") from None

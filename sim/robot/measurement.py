@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope
+from sim.houses.mjcf import read_spec, require_sizes
 from sim.interface import ConfigError
 from sim.robot.config import RobotFile
 
@@ -67,10 +68,7 @@ def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
     Raises:
         ConfigError: MuJoCo cannot read the file, or it does not have the wheel joints.
     """
-    try:
-        spec = mujoco.MjSpec.from_file(str(file.path))
-    except (ValueError, OSError) as error:
-        raise ConfigError(f"it is not an MJCF file that MuJoCo can read: {' '.join(str(error).split())}") from None
+    spec = read_spec(file.path, error=ConfigError)
     for number, body in enumerate(spec.bodies):
         body.name = body.name or f"body_{number}"  # the code below identifies bodies by name
     _make_paths_absolute(spec, file)
@@ -123,6 +121,7 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
         model = spec.compile()
     except ValueError as error:
         raise ConfigError(f"it cannot be compiled: {' '.join(str(error).split())}") from None
+    require_sizes(model, error=ConfigError)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     left, right = _wheels(model, data, file)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from sim.errors import ConfigError
 from sim.interface import MAX_STEPS, SuccessRule
 
+MOST_STEPS = 1_000_000
+
 
 @dataclass(frozen=True, kw_only=True)
 class TaskConfig:
@@ -17,5 +19,5 @@ class TaskConfig:
     """Number of actions after which an episode is truncated."""
 
     def __post_init__(self) -> None:
-        if self.max_steps < 1:
-            raise ConfigError(f"TaskConfig.max_steps must be at least 1, got {self.max_steps}.")
+        if not 1 <= self.max_steps <= MOST_STEPS:  # NaN is not
+            raise ConfigError(f"TaskConfig.max_steps must be in [1, {MOST_STEPS}], got {self.max_steps}.")

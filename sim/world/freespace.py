@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.errors import HouseError
 from sim.geometry.convex import ConvexPolygon
 from sim.geometry.convex_kernels import clear_near, mark_inside
 from sim.geometry.fast_marching import distances
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 CELL_M = 0.025
 """Edge of a cell of the free space."""
+MAX_CELLS = 25_000_000
+"""Cells of the grid of a storey: 125 x 125 m. The largest house that ships has 2 million."""
 STEP_HEIGHT_M = 0.03
 """Lower geoms are no obstacles: they pass under the robot, or the robot climbs them."""
 NEAREST_FREE_M = 0.3
@@ -232,4 +235,9 @@ def _frame_around(extent: list[ConvexPolygon]) -> GridFrame:
     low = np.floor(bounds[:, :2].min(axis=0) / CELL_M)
     high = np.ceil(bounds[:, 2:].max(axis=0) / CELL_M)
     cols, rows = (high - low).astype(int).tolist()
+    if rows * cols > MAX_CELLS:
+        raise HouseError(
+            f"A storey of {cols * CELL_M:.0f} x {rows * CELL_M:.0f} m is too large: its free space is computed for at "
+            f"most {MAX_CELLS * CELL_M**2:.0f} m2."
+        )
     return GridFrame(origin_xy_m=(float(low[0] * CELL_M), float(low[1] * CELL_M)), shape=(rows, cols), cell_m=CELL_M)

@@ -45,7 +45,6 @@ class World:
         self.config = robot or RobotConfig()
         self.robot = self.config.model
         self.rule = rule or SuccessRule()
-        _disable_log_file()
         self.model, self.labels, self.rooms = compile_world(house, self.config)
         self.data = mujoco.MjData(self.model)
         self._body = Body.find(self.model, self.data)
@@ -185,10 +184,3 @@ class World:
 
     def _physics_error(self, fault: str) -> PhysicsError:
         return PhysicsError(f"House '{self.house.name}' at {self.data.time:.2f} s: {fault}")
-
-
-def _disable_log_file() -> None:
-    """Stops MuJoCo from writing MUJOCO_LOG.TXT into the working directory."""
-    config = mujoco.MjLogConfig.get()
-    config.logto_file = False
-    config.set()

@@ -63,6 +63,10 @@ def test_all_fields_have_a_path_and_each_can_be_set_to_its_own_value() -> None:
         ({"legs.shape": "oval"}, "'legs.shape' cannot be 'oval'"),
         ({"legs": 3}, "'legs' is a group of fields, set one of them: length_m, count, shape"),
         ({"sizes_m.first": 3}, "'sizes_m' cannot be"),
+        ({"legs.length_m": "nan"}, "'legs.length_m' cannot be 'nan': a finite number of at most 1e[+]09"),
+        ({"legs.length_m": "inf"}, "'legs.length_m' cannot be 'inf'"),
+        ({"legs.length_m": 1e308}, "'legs.length_m' cannot be 1e[+]308"),
+        ({"sizes_m": [0.5, float("nan")]}, "'sizes_m' cannot be"),
     ],
 )
 def test_what_cannot_be_set_is_refused_by_name(values: dict[str, object], message: str) -> None:
@@ -88,9 +92,12 @@ def test_a_file_of_settings_may_be_toml_or_json(tmp_path: Path) -> None:
     toml.write_text('top = "oak"\n[legs]\nlength_m = 0.5\n')
     nested.write_text('{"legs": {"length_m": 0.5}, "top": "oak"}')
     assert read_settings(toml) == read_settings(nested) == {"legs.length_m": 0.5, "top": "oak"}
-    for content in ("[1]", "{", "\x00"):
+    for content in ("[1]", "{", "\x00", "[" * 9999, '{"a": ' * 9999, '{"a": NaN}'):
         nested.write_text(content)
         with pytest.raises(ConfigError, match=r"a\.json"):
             read_settings(nested)
+    toml.write_text(f"a = {'[' * 9999}")
+    with pytest.raises(ConfigError, match=r"a\.toml"):
+        read_settings(toml)
     with pytest.raises(ConfigError, match="No such file"):
         read_settings(tmp_path / "none.toml")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import gymnasium
@@ -14,9 +14,10 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel, ConfigError, SuccessRule
+from sim.interface import Action, CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.sensors.profiles import get_profile
 from sim.task.config import TaskConfig
 from tests.helpers.worlds import room, with_box
@@ -199,3 +200,50 @@ def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exce
 def test_step_before_reset_is_refused(env: ObjectNavEnv) -> None:
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(Action.STOP)
+
+
+def test_a_closed_environment_says_so(house: Path) -> None:
+    env = ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.0), camera=SMALL, sensors=())
+    env.reset(seed=0)
+    env.close()
+    for use in (lambda: env.step(Action.TURN_LEFT), env.reset):
+        with pytest.raises(gymnasium.error.ClosedEnvironmentError, match="closed"):
+            use()
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"episode": None, "episode_id": "a"}, "one of the options episode and episode_id"),
+        ({"epsiode_id": "a"}, "got epsiode_id"),
+        ({"episode": {"goal": "sofa"}}, "must be an Episode, got {'goal': 'sofa'}"),
+        ({"episode": None}, "must be an Episode, got None"),
+    ],
+)
+def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, told: str) -> None:
+    with pytest.raises(ConfigError, match=told):
+        env.reset(options=options)
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: ObjectNavEnv(labels="rules.json"), "labels and start need house"),
+        (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels and start need house"),
+        (lambda: CameraModel(hfov_rad=math.nan), "hfov_rad must be a finite number"),
+        (lambda: CameraModel(height_m=math.inf), "height_m must be a finite number"),
+        (lambda: CameraModel(width_px=10**6), "1 to 4096 pixels"),
+        (lambda: RobotModel(radius_m=math.nan), "RobotModel.radius_m must be a finite number"),
+        (lambda: SuccessRule(distance_m=math.nan), "SuccessRule.distance_m must be a finite number"),
+        (lambda: SuccessRule(same_storey_m=1e308), "of at most 1e[+]09, got 1e[+]308"),
+        (lambda: TaskConfig(max_steps=10**12), "max_steps must be in"),
+        (lambda: Episode("e", "h", "sofa", Pose(math.nan, 0.0, 0.0)), "finite numbers of at most 10000"),
+        (lambda: Episode("e", "h", "sofa", Pose(1e308, 0.0, 0.0)), "finite numbers of at most 10000"),
+        (lambda: ObjectNavEnv(house="a.xml", start=Pose(0.0, math.inf, 0.0)), "finite numbers of at most 10000"),
+        (lambda: Episode("e", "h", "spoon", Pose(0.0, 0.0, 0.0)), "Unknown goal 'spoon'"),
+    ],
+)
+def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], told: str) -> None:
+    with pytest.raises((ConfigError, EpisodeError), match=told):
+        make()

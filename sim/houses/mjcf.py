@@ -1,0 +1,192 @@
+"""Reads MJCF files from anywhere: what a file asks for is counted before MuJoCo builds it.
+
+A few lines of MJCF can ask for any amount of memory: `replicate` in `replicate`, a texture of 60,000 x 60,000 pixels, a
+custom array of a given size. `read_spec` refuses such files, and numbers that are not finite, by name.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NoReturn
+from xml.parsers import expat
+
+import numpy as np
+
+from sim.errors import HouseError, ObjectNavError
+from sim.gl import mujoco
+from sim.reading import image_size_px, printable, read_bytes, reason_of
+
+MAX_ELEMENTS = 100_000
+"""Elements of a file after `replicate`; the largest house that ships has 6,000."""
+MAX_FILES = 100
+"""Files that a file may include."""
+MAX_TEXTURE_BYTES = 512 << 20
+"""All textures of a file together; those that ship have 10 MB."""
+MAX_ASSET_BYTES = 512 << 20
+"""Files of meshes and other assets together."""
+MAX_ARRAY = 1_000_000
+"""Largest custom array, buffer or count of a file."""
+LARGEST = 1e15
+"""Largest magnitude of a number in a file."""
+FARTHEST_M = 10_000.0
+"""Largest coordinate or size of a geom, a body, a site or a vertex."""
+_SUSPECT = re.compile(r"(?=\s*[-+.\dnNiI])[^nNeE]*?(?:[nN]|[eE]\+?\d{2}|\d{16})", re.DOTALL)
+"""Matches numbers of which one may be nan, inf or beyond `LARGEST`; a quick test, names fail at their first letter."""
+_LENGTHS: Mapping[str, tuple[str, ...]] = {
+    "hfield": ("nrow", "ncol"),
+    "numeric": ("size",),
+    "size": (
+        "nuserdata",
+        "nkey",
+        *(f"nuser_{of}" for of in ("body", "jnt", "geom", "site", "cam", "tendon", "sensor")),
+    ),
+    "user": ("dim",),
+}
+"""Attributes whose product is the length of an array."""
+_LENGTHS_ANYWHERE = ("nsample",)
+_NAMES = frozenset((
+    "name", "class", "childclass", "material", "mesh", "texture", "hfield", "file", "target", "body", "body1", "body2",
+    "geom", "geom1", "geom2", "joint", "joint1", "joint2", "site", "model", "prefix", "data",
+))  # fmt: skip
+"""Attributes whose value is a name."""
+_NOT_FINITE = frozenset(("nan", "inf", "infinity"))
+
+
+def read_spec(path: Path, *, error: type[ObjectNavError] = HouseError) -> mujoco.MjSpec:
+    """Returns the specification of an MJCF file.
+
+    Args:
+        path: the file.
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, is not MJCF, asks for too much, or has a number that
+            is not finite. The message names element and attribute but not the file.
+    """
+    path = path.resolve()
+    _Scan(error).count(path)
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+    except (ValueError, OSError, RecursionError) as fault:
+        raise error(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)}") from None
+    spec.memory = spec.nconmax = spec.njmax = spec.nstack = -1  # as much as the model needs
+    _require_small_assets(spec, path.parent, error)
+    return spec
+
+
+def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
+    """Raises an error where a compiled model has a position or a size that is not finite or beyond `FARTHEST_M`."""
+    for kind, field in (("body", "pos"), ("geom", "pos"), ("geom", "size"), ("site", "pos"), ("site", "size")):
+        values = getattr(model, f"{kind}_{field}")
+        bad = np.flatnonzero(~(np.abs(values) <= FARTHEST_M).all(axis=1))
+        if bad.size:
+            name = getattr(model, kind)(int(bad[0])).name or f"number {bad[0]}"
+            found = " ".join(f"{value:g}" for value in values[bad[0]])
+            raise error(f"{kind} '{name}': {field} is {found}; at most {FARTHEST_M:g} m are allowed.")
+    if not bool((np.abs(model.mesh_vert) <= FARTHEST_M).all()):
+        raise error(f"a mesh has a vertex that is not finite or beyond {FARTHEST_M:g} m.")
+
+
+class _Scan:
+    """Counts what the elements of a file and of the files that it includes ask for."""
+
+    def __init__(self, error: type[ObjectNavError]) -> None:
+        self._error = error
+        self._files = 0
+        self._elements = 0.0
+        self._factors = [1.0]
+
+    def count(self, path: Path) -> None:
+        """Counts a file; raises an error where that is too much."""
+        self._files += 1
+        if self._files > MAX_FILES:
+            self._refuse(f"it includes more than {MAX_FILES} files.")
+        content = read_bytes(path, what="its file", error=self._error)
+        parser = expat.ParserCreate()
+        parser.StartElementHandler = lambda tag, values: self._start(path, tag, values)
+        parser.EndElementHandler = lambda tag: self._factors.pop()
+        parser.StartDoctypeDeclHandler = lambda *_: self._refuse("a document type is not allowed in MJCF.")
+        try:
+            parser.Parse(content, True)
+        except expat.ExpatError as fault:
+            self._refuse(f"it is not an MJCF file that MuJoCo can read: {fault} of '{path.name}'.")
+
+    def _start(self, path: Path, tag: str, values: Mapping[str, str]) -> None:
+        where = f"{tag} '{values['name']}'" if "name" in values else tag
+        for key, text in values.items():
+            if key not in _NAMES and _SUSPECT.match(text):
+                self._require_finite(f"{printable(where)}: {key}", text)
+        self._require_small_arrays(where, tag, values)
+        factor = self._factors[-1]
+        self._elements += factor
+        if tag in ("replicate", "composite", "flexcomp"):
+            factor *= math.prod(max(1.0, number) for number in _numbers(values.get("count", "1")))
+        if tag == "mesh" and "builtin" in values:
+            factor *= max(1.0, math.prod(max(1.0, number) for number in _numbers(values.get("params", ""))) / 1000.0)
+        self._elements += factor - self._factors[-1]
+        self._factors.append(factor)
+        if self._elements > MAX_ELEMENTS:
+            self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
+        if tag in ("include", "model") and values.get("file"):
+            self.count(path.parent / values["file"])
+        if tag == "attach":
+            self._refuse("attach: a house is one file; other files are put into it by include.")
+
+    def _require_small_arrays(self, where: str, tag: str, values: Mapping[str, str]) -> None:
+        """Refuses an element whose array MuJoCo would allocate while it reads the file."""
+        keys = _LENGTHS.get(tag, ()) + tuple(key for key in values if key in _LENGTHS_ANYWHERE)
+        asked = math.prod(max(1.0, number) for key in keys for number in _numbers(values.get(key, "")))
+        if asked > MAX_ARRAY:
+            self._refuse(f"{printable(where)} asks for {asked:g} numbers; at most {MAX_ARRAY:g} are allowed.")
+
+    def _require_finite(self, where: str, text: str) -> None:
+        """Refuses a list of numbers of which one is not finite or too large."""
+        words = text.split()
+        if any(word.lower().lstrip("+-") in _NOT_FINITE for word in words) and _all_numbers(words):
+            self._refuse(f"{where} = '{printable(text)}' is not finite.")
+        if any(abs(number) > LARGEST for number in _numbers(text)):
+            self._refuse(f"{where} = '{printable(text)}' is too large; at most {LARGEST:g} is allowed.")
+
+    def _refuse(self, message: str) -> NoReturn:
+        raise self._error(message)
+
+
+def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
+    """Raises an error where the textures or the files of meshes of a specification are too large."""
+    size = sum(_texture_bytes(texture, folder / (spec.texturedir or ""), error) for texture in spec.textures)
+    if size > MAX_TEXTURE_BYTES:
+        raise error(f"its textures have {size >> 20} MB; at most {MAX_TEXTURE_BYTES >> 20} MB are allowed.")
+    assets = (*spec.meshes, *spec.hfields, *spec.skins)
+    files = [folder / (spec.meshdir or "") / each.file for each in assets if each.file]
+    size = sum(file.stat().st_size for file in files if file.is_file())
+    if size > MAX_ASSET_BYTES:
+        raise error(f"its meshes have {size >> 20} MB; at most {MAX_ASSET_BYTES >> 20} MB are allowed.")
+
+
+def _texture_bytes(texture: mujoco.MjsTexture, folder: Path, error: type[ObjectNavError]) -> int:
+    """Returns the bytes of a texture in memory; raises an error where a file is unreadable."""
+    channels = max(1, int(texture.nchannel))
+    size = max(0, texture.width) * max(0, texture.height) * channels * (6 if texture.type else 1)
+    for name in (texture.file, *texture.cubefiles):
+        file = folder / name
+        if not name or not file.is_file():
+            continue  # MuJoCo names a missing file
+        with file.open("rb") as stream:
+            width, height = image_size_px(stream.read(1 << 16)) or (0, 0)
+        size += max(width * height * 4, file.stat().st_size)
+    return size
+
+
+def _numbers(text: str) -> list[float]:
+    """Returns the numbers of a list of numbers; none where a word is no number."""
+    try:
+        return [float(word) for word in text.split()]
+    except ValueError:
+        return []
+
+
+def _all_numbers(words: list[str]) -> bool:
+    return len(_numbers(" ".join(words))) == len(words)

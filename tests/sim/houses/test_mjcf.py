@@ -1,0 +1,114 @@
+"""Files that ask for too much, or hold numbers without meaning, are refused at once and by name."""
+
+from __future__ import annotations
+
+import struct
+import time
+import zlib
+from pathlib import Path
+
+import pytest
+
+from sim.errors import HouseError
+from sim.houses.load import load_house
+from sim.world.world import World
+from tests.helpers.worlds import room, with_box
+
+FLOOR = '<geom name="floor_00" type="plane" size="3 3 1"/>'
+BOX = '<geom name="{name}" type="box" size="{size}" pos="{pos}"/>'
+
+
+def house(world: str = "", assets: str = "", more: str = "") -> str:
+    return f"<mujoco>{more}<asset>{assets}</asset><worldbody>{FLOOR}{world}</worldbody></mujoco>"
+
+
+def box(name: str = "wall_00", size: str = "1 1 1", pos: str = "0 0 1") -> str:
+    return BOX.format(name=name, size=size, pos=pos)
+
+
+def replicate(count: int, inner: str) -> str:
+    return f'<replicate count="{count}" offset="0 0 0.001">{inner}</replicate>'
+
+
+def png(width: int, height: int) -> bytes:
+    """A PNG file of 1 bit per pixel, all 0: 50 KB for 20,000 x 20,000 pixels."""
+
+    def chunk(kind: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+    header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"")) + chunk(b"IEND", b"")
+
+
+TOO_MUCH = {
+    "replicate": (house(replicate(10**9, box("chair_00"))), "replicate|chair_00.*more than 100000 elements"),
+    "replicate in replicate": (house(replicate(999, replicate(999, replicate(999, box())))), "more than 100000"),
+    "composite": (house('<body><composite type="cable" count="99999 99999 1" size="1"/></body>'), "more than 100000"),
+    "a mesh of any resolution": (
+        house(assets='<mesh name="m" builtin="supersphere" params="100000 100000 1 1"/>'),
+        "more than 100000",
+    ),
+    "a texture that is drawn": (
+        house(assets='<texture name="t" type="2d" builtin="flat" width="60000" height="60000"/>'),
+        "textures have .* MB; at most 512 MB",
+    ),
+    "a texture in a file": (house(assets='<texture name="t" type="2d" file="bomb.png"/>'), "textures have .* MB"),
+    "a height field": (
+        house(assets='<hfield name="h" nrow="99999" ncol="99999" size="1 1 1 1"/>'),
+        "hfield 'h' asks for 9",
+    ),
+    "a custom array": (house(more='<custom><numeric name="n" size="2000000000"/></custom>'), "numeric 'n' asks for"),
+    "user data": (house(more='<size nuserdata="2000000000"/>'), "size asks for 2e.09"),
+    "a document type": ("<!DOCTYPE a [<!ENTITY b 'c'>]>" + house(), "a document type is not allowed"),
+    "itself": (house(more='<include file="house.xml"/>'), "more than 100 files"),
+}
+NO_NUMBERS = {
+    "nan": (house(box(pos="nan 0 0")), r"geom 'wall_00': pos = 'nan 0 0' is not finite"),
+    "an infinite size": (house(box(size="inf 1 1")), r"geom 'wall_00': size = 'inf 1 1' is not finite"),
+    "a huge position": (house(box(pos="0 0 1e308")), r"geom 'wall_00': pos = '0 0 1e308' is too large"),
+    "a far position": (house(box(pos="0 0 20000")), r"geom 'wall_00': pos is 0 0 20000; at most 10000 m"),
+    "a name with escapes": (house(box(name="\x9b31m", pos="nan 0 0")), r"geom '\\x9b31m'"),
+}
+
+
+@pytest.mark.parametrize(("text", "told"), (TOO_MUCH | NO_NUMBERS).values(), ids=TOO_MUCH | NO_NUMBERS)
+def test_a_file_that_asks_for_too_much_or_has_no_numbers_is_refused_soon(text: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(text)
+    (tmp_path / "bomb.png").write_bytes(png(60_000, 60_000))
+    began_s = time.process_time()
+    with pytest.raises(HouseError, match=told) as refused:
+        load_house(tmp_path / "house.xml")
+    assert "house.xml" in str(refused.value)
+    assert time.process_time() - began_s < 5.0
+
+
+def test_names_that_look_like_numbers_without_meaning_are_names(tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house(f'<body name="inf">{box()}</body>'))
+    assert load_house(tmp_path / "house.xml").name == "house"
+
+
+def test_a_house_of_kilometres_has_no_free_space_grid() -> None:
+    with pytest.raises(HouseError, match=r"A storey of 4000 x 4000 m is too large.*at most 15625 m2"):
+        from sim.task.ground_truth import GroundTruth
+
+        far = with_box(room(6, 6), "sofa_00", centre_m=(2, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+        far.spec.worldbody.sites[0].size = (2000, 2000, 1)
+        GroundTruth(World(far)).space(0.0)
+
+
+def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sim.houses.labels.RULES_S", 0.2)
+    (tmp_path / "house.xml").write_text(house(box(name="a" * 60 + "b")))
+    (tmp_path / "rules.json").write_text('{"(?:a|aa)+$": "wall", "b": "wall"}')
+    with pytest.raises(HouseError, match=r"takes too long on 'aaa"):
+        load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")
+
+
+@pytest.mark.parametrize(
+    ("rule", "told"), [("(" * 900, "not a regular"), ("a{1,99999}" * 150, "1500 letters"), ("[", "not a regular")]
+)
+def test_a_label_rule_that_is_none_or_too_long_is_refused(rule: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "house.xml").write_text(house(box()))
+    (tmp_path / "rules.json").write_text(f'{{"{rule}": "wall"}}')
+    with pytest.raises(HouseError, match=told):
+        load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")
