@@ -39,12 +39,11 @@ _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "hfield": ("nrow", "ncol"),
     "numeric": ("size",),
     "size": (
-        "nuserdata",
-        "nkey",
-        *(f"nuser_{of}" for of in ("body", "jnt", "geom", "site", "cam", "tendon", "sensor")),
+        "nuserdata", "nkey", "nuser_body", "nuser_jnt", "nuser_geom", "nuser_site", "nuser_cam", "nuser_tendon",
+        "nuser_actuator", "nuser_sensor",
     ),
     "user": ("dim",),
-}
+}  # fmt: skip
 """Attributes whose product is the length of an array."""
 _LENGTHS_ANYWHERE = ("nsample",)
 _NAMES = frozenset((

@@ -11,6 +11,7 @@ import pytest
 
 from sim.errors import HouseError
 from sim.houses.load import load_house
+from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
 
@@ -88,12 +89,11 @@ def test_names_that_look_like_numbers_without_meaning_are_names(tmp_path: Path) 
 
 
 def test_a_house_of_kilometres_has_no_free_space_grid() -> None:
+    far = with_box(room(6, 6), "sofa_00", centre_m=(2, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    far.spec.worldbody.sites[0].size = (2000, 2000, 1)
+    truth = GroundTruth(World(far))
     with pytest.raises(HouseError, match=r"A storey of 4000 x 4000 m is too large.*at most 15625 m2"):
-        from sim.task.ground_truth import GroundTruth
-
-        far = with_box(room(6, 6), "sofa_00", centre_m=(2, 0, 0.4), half_m=(0.4, 0.8, 0.4))
-        far.spec.worldbody.sites[0].size = (2000, 2000, 1)
-        GroundTruth(World(far)).space(0.0)
+        truth.space(0.0)
 
 
 def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
