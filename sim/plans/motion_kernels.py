@@ -59,3 +59,25 @@ def mark_swept(layer, row_0, col_0, row_1, col_1, radius):
             y, x = y - along * d_row, x - along * d_col
             if y * y + x * x <= limit:
                 layer[row, col] = True
+
+
+@njit(cache=True, error_model="numpy")
+def mark_square(layer, row, col, cos, sin, near, edge):
+    """Sets the cells of a layer whose centre lies in a square ahead of a pose (`square_ahead` of the agent).
+
+    Args:
+        layer: (rows, cols) bool, is changed.
+        row: of the pose, with fraction.
+        col: the same.
+        cos: of the heading.
+        sin: the same.
+        near: cells from the pose to the near edge.
+        edge: cells along an edge.
+    """
+    reach = near + 1.5 * edge
+    for r in range(max(int(row - reach), 0), min(int(row + reach) + 1, layer.shape[0])):
+        for c in range(max(int(col - reach), 0), min(int(col + reach) + 1, layer.shape[1])):
+            y, x = r + 0.5 - row, c + 0.5 - col
+            ahead, left = cos * x + sin * y, cos * y - sin * x
+            if near <= ahead <= near + edge and abs(left) <= 0.5 * edge:
+                layer[r, c] = True

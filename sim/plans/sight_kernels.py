@@ -143,7 +143,7 @@ def cast_rays(
                             count += 1
                         flags[map_row, map_col] |= flag
                 if floor[row, col] and not seen_floor[row, col] and near_m < middle_m <= far_m:
-                    at = round((up_0 + height_m / middle_m) * per_row)
+                    at = math.floor((up_0 + height_m / middle_m) * per_row)  # nearer rows are closed
                     if horizon <= at < image_rows and (_bits(at, at) & open_0) | (_bits(at - 64, at - 64) & open_1):
                         seen_floor[row, col] = True
                         new_floor += 1

@@ -18,10 +18,10 @@ from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
 from sim.plans.episode import PlanEpisode, draw_goal_and_start
-from sim.plans.motion_kernels import mark_swept
+from sim.plans.motion_kernels import mark_square, mark_swept
 from sim.plans.plan import Plan, read_plan
 from sim.plans.sight import PlanCamera, SightConfig
-from stubborn.mapping.collision_marks import CollisionConfig, is_collision, mark_collision
+from stubborn.mapping.collision_marks import CollisionConfig, is_collision
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
@@ -31,7 +31,6 @@ from stubborn.planning.untrap import Untrap, UntrapConfig
 LAYERS = ("seen_obstacle", "in_view", "visited", "trail", "pessimistic_marks", "optimistic_marks", "target")
 """The layers of an observation, in their order: those of `stubborn.navmap.NavMap`; `in_view` is True where
 `frames_in_view` is not 0, `target` where `score_max` is above 0.5."""
-_BOTH = (CollisionLayer.PESSIMISTIC, CollisionLayer.OPTIMISTIC)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,18 +229,28 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         self._untrap.observe(action, self._failed)
         self._mark_driven(before)
         if self._failed:
-            mark_collision(self.navmap, pose, _BOTH, self.config.collisions)
+            self._mark_collision(pose)
         self._last = action
         self._look()
 
     def _mark_driven(self, before: Pose) -> None:
         """Enters the ground between an earlier pose and the present one, as `mark_visited` of the agent does."""
-        cell_m, (x_m, y_m), pose = self._frame.cell_m, self._frame.origin_xy_m, self.episode.pose
-        ends = ((p - o) / cell_m for p, o in ((before.y_m, y_m), (before.x_m, x_m), (pose.y_m, y_m), (pose.x_m, x_m)))
-        row_0, col_0, row_1, col_1 = ends
-        body, trail = self.episode.plan.radius_m / cell_m, self.config.collisions.trail_radius_m / cell_m
-        mark_swept(self.navmap.visited, row_0, col_0, row_1, col_1, body)
-        mark_swept(self.navmap.trail, row_0, col_0, row_1, col_1, trail)
+        cell_m, pose = self._frame.cell_m, self.episode.pose
+        ends = *self._place(before), *self._place(pose)
+        mark_swept(self.navmap.visited, *ends, self.episode.plan.radius_m / cell_m)
+        mark_swept(self.navmap.trail, *ends, self.config.collisions.trail_radius_m / cell_m)
+
+    def _mark_collision(self, pose: Pose) -> None:
+        """Enters the marks in front of a failed move, as `mark_collision` of the agent does."""
+        c, cell_m = self.config.collisions, self._frame.cell_m
+        ahead = *self._place(pose), math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), c.near_edge_m / cell_m
+        mark_square(self.navmap.pessimistic_marks, *ahead, c.wide_m / cell_m)
+        mark_square(self.navmap.optimistic_marks, *ahead, c.narrow_m / cell_m)
+
+    def _place(self, pose: Pose) -> tuple[float, float]:
+        """Returns row and column of a pose on the map, with fractions."""
+        (x_m, y_m), cell_m = self._frame.origin_xy_m, self._frame.cell_m
+        return (pose.y_m - y_m) / cell_m, (pose.x_m - x_m) / cell_m
 
     def _look(self) -> None:
         """Enters the frame from the present pose into the map."""
@@ -253,17 +262,16 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
     def _observe(self) -> dict[str, NDArray]:
         window, pose = self.window, self.episode.pose
-        view = self.navmap.view(window)
-        layers = np.empty(self.observation_space["layers"].shape, np.uint8)
+        layers = np.empty((len(LAYERS), *window.frame.shape), np.bool_)
         for number, name in enumerate(LAYERS):
             if name == "in_view":
-                np.greater(view.frames_in_view, 0, out=layers[number].view(np.bool_))
+                np.greater(self.navmap.frames_in_view[window.index], 0, out=layers[number])
             elif name == "target":
-                np.greater(view.score_max, 0.5, out=layers[number].view(np.bool_))
+                np.greater(self.navmap.score_max[window.index], 0.5, out=layers[number])
             else:
-                layers[number] = getattr(view, name)
+                layers[number] = getattr(self.navmap, name)[window.index]
         return {
-            "layers": layers,
+            "layers": layers.view(np.uint8),
             "goals_seen": self.goals_seen[window.index].copy(),
             "pose": np.array([pose.x_m, pose.y_m, pose.yaw_rad], np.float32),
             "objectgoal": np.array([GOAL_CATEGORIES.index(self.episode.goal)], np.int64),

@@ -1,0 +1,110 @@
+"""The twin environment and the agent in it."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from sim.errors import ConfigError, EpisodeError
+from sim.geometry.pose import Pose
+from sim.interface import Action
+from sim.plans.episode import PlanEpisode
+from sim.plans.export import export_plans
+from sim.plans.plan import read_plan, write_plan
+from sim.plans.sight import PlanCamera
+from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.env import LAYERS, TwinConfig, TwinEnv
+from stubborn.agents import SPECS
+from tests.helpers.worlds import room, with_box
+
+
+@pytest.fixture(scope="module")
+def plans(tmp_path_factory) -> Path:
+    """A folder with the plan of two rooms behind each other, with a bed in the second one."""
+    folder = tmp_path_factory.mktemp("plans")
+    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
+    house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
+    (plan,) = export_plans(house, {})
+    write_plan(folder / "flat.npz", plan)
+    return folder
+
+
+START = {"plan": 0, "goal": "bed", "start": Pose(-3.0, 1.0, 3.0)}
+
+
+def test_the_twin_never_imports_mujoco():
+    code = "import sys, sim.twin.env, sim.twin.agent; print('mujoco' in sys.modules)"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True).strip() == "False"
+
+
+@pytest.mark.parametrize("actions", ["primitive", "goal"])
+def test_the_environment_keeps_gymnasiums_contract(plans, actions):
+    check_env(TwinEnv(plans, TwinConfig(actions=actions, goal_steps=5)), skip_render_check=True)
+
+
+def test_reward_is_the_progress_and_a_stop_at_the_goal_succeeds(plans):
+    env = TwinEnv(plans)
+    observation, info = env.reset(seed=0, options=START)
+    assert observation["layers"][LAYERS.index("visited")].sum() == pytest.approx(np.pi * 3.6**2, rel=0.1)
+    total, first_m = 0.0, env.episode.distance_m()
+    assert info["shortest_path"] == pytest.approx(first_m)
+    for action in [Action.TURN_RIGHT] * 5 + [Action.MOVE_FORWARD] * 8:
+        _, reward, terminated, truncated, info = env.step(action)
+        total += reward
+        assert (terminated, truncated) == (False, False)
+    assert total == pytest.approx(first_m - env.episode.distance_m())
+    assert total > 1.0
+    _, _, terminated, _, info = env.step(Action.STOP)
+    assert terminated
+    assert info["success"] == 0.0
+    env.reset(options={**START, "start": Pose(1.6, 0.6, 0.0)})
+    assert env.step(Action.STOP)[4]["success"] == 1.0
+
+
+def test_a_goal_is_driven_to_around_a_wall_and_the_episode_ends_at_sight(plans):
+    env = TwinEnv(plans, TwinConfig(actions="goal", ends_at_sight=True))
+    env.reset(seed=0, options=START)
+    cos, sin, steps, terminated = np.cos(3.0), np.sin(3.0), 0, False
+    while not terminated and steps < 8:
+        x_m, y_m = 5.0, -1.5  # south-east in the world; the window is 12 m wide and has the start's heading of 3 rad
+        goal = 0.5 + np.array([cos * y_m - sin * x_m, cos * x_m + sin * y_m]) / 12.0
+        _, _, terminated, _, info = env.step(goal.astype(np.float32))
+        steps += 1
+    assert terminated
+    assert info["first_seen_step"] == info["num_steps"] <= 75
+    assert info["collisions"] <= 2
+
+
+def test_the_same_seed_gives_the_same_episode_and_no_state_survives_a_reset(plans):
+    frames = []
+    env = TwinEnv(plans)
+    for _ in range(2):
+        first, _ = env.reset(seed=5)
+        for action in (1, 1, 2, 1):
+            last = env.step(action)[0]
+        frames.append((first, last))
+    for one, other in zip(*frames, strict=True):
+        for key, value in one.items():
+            np.testing.assert_array_equal(value, other[key])
+
+
+def test_the_agent_finds_the_bed_in_the_plan(plans):
+    agent = TwinAgent(twin_config(SPECS["stubborn"].config))
+    camera = PlanCamera(read_plan(plans / "flat.npz"))
+    found = play(agent, camera, "bed", START["start"], seed=0)
+    assert found["success"] == 1.0
+    assert found["num_steps"] < 120
+    sight = play(agent, camera, "bed", START["start"], seed=0, until_sight=True)
+    assert sight["num_steps"] == sight["first_seen_step"] == found["first_seen_step"]
+
+
+def test_errors_say_what_there_is(plans):
+    with pytest.raises(ConfigError, match="No plan in"):
+        TwinEnv(plans / "nowhere")
+    with pytest.raises(EpisodeError, match=r"has no goal 'sofa'\. It has: bed"):
+        PlanEpisode(PlanCamera(read_plan(plans / "flat.npz")), "sofa", START["start"])
