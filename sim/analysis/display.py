@@ -8,8 +8,10 @@ from typing import Any
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
+from rich.text import Text
 
 from sim.evaluation.results import SUMMARY_METRICS
+from sim.reading import printable
 
 Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
@@ -17,10 +19,21 @@ PLAIN_WIDTH = 120
 """Columns of output that is not a terminal (a file, a pipe, a CI log)."""
 
 
+class PlainConsole(Console):
+    """A console for which text is text: brackets are no markup, and control characters are written as escapes."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(markup=False, emoji=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Returns text for the terminal; every text that is printed and every cell of a table comes here."""
+        return super().render_str(printable(text), **options)
+
+
 def make_console() -> Console:
     """Returns a console for the terminal, or for plain text that is wide enough for the tables."""
-    console = Console()
-    return console if console.is_terminal else Console(width=PLAIN_WIDTH)
+    console = PlainConsole()
+    return console if console.is_terminal else PlainConsole(width=PLAIN_WIDTH)
 
 
 def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: int) -> Iterator[dict[str, Any]]:
@@ -59,7 +72,7 @@ def _with_bar(console: Console, lines: Iterable[dict[str, Any]], total: int) -> 
         MofNCompleteColumn(),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
     )
     with Progress(*columns, console=console) as progress:
         task = progress.add_task("loading the first house", total=total)

@@ -7,7 +7,6 @@ import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from rich.markup import escape
 from rich.table import Table
 
 from sim.evaluation.bootstrap import Estimate
@@ -85,14 +84,14 @@ class ResultTable:
 
 
 def to_rich(table: ResultTable) -> Table:
-    """Returns the table for the terminal."""
-    caption = escape("\n".join(table.footnotes)) or None
+    """Returns the table for a `sim.analysis.display.PlainConsole`."""
+    caption = "\n".join(table.footnotes) or None
     shown = Table(title=table.title, caption=caption, title_justify="left", caption_justify="left")
     shown.add_column(table.header[0])
     for name in table.header[1:]:
         shown.add_column(name, justify="right")
     for label, cells in table.rows:
-        shown.add_row(escape(label), *(escape(_text(cell, "\n")) for cell in cells))
+        shown.add_row(label, *(_text(cell, "\n") for cell in cells))
     return shown
 
 

@@ -79,6 +79,14 @@ class ResultLine(msgspec.Struct):
     steps_per_s: Measured = None
 
 
+_NOT_WRITTEN = {
+    name: None
+    for name in ResultLine.__struct_fields__[-len(ResultLine.__struct_defaults__) :]
+    if name not in (*IDENTITY, "error")
+}
+"""Fields that a line may lack, which readers then find as None."""
+
+
 class SplitIdentity(msgspec.Struct):
     """What identifies the source of a run's episodes."""
 
@@ -306,6 +314,8 @@ def read_result_lines(file: Path, line_type: type = ResultLine) -> Lines:
         ConfigError: a line before the last is broken, or an episode has two lines.
     """
     found = read_lines(file, line_type, what="Results")
+    if line_type is ResultLine:
+        found = found._replace(values=[_NOT_WRITTEN | line for line in found.values])
     first: dict[str, int] = {}
     for number, line in enumerate(found.values, start=1):
         before = first.setdefault(line["episode_id"], number)
