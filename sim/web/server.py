@@ -117,6 +117,8 @@ class Hub:
             self._frame_number += 1
         else:
             self._told = told or self._told
+            if self._told["phase"] == "loading":
+                self._frame = None  # that of the last episode
             self._state_number += 1
         for client in self.clients:
             client.news.set()

@@ -92,18 +92,17 @@ class Session:
         shared = SharedAgent(parts, pictures, self.controls, self._audience)
 
         def begun(env: ObjectNavEnv) -> None:
-            more = {"max_steps": env.task_config.max_steps, "legends": pictures.legends()}
-            self._tell(
-                wish, "playing", f"Looking for {with_article(wish.goal)}.", episode_id=episode.episode_id, **more
-            )
+            about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
+            self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
+        about: dict[str, Any] = {}
         watcher = _Watcher(begun, shared)
         line = play_episode(parts.env, shared, episode, seed=episode_seed(0, episode.episode_id), viewers=[watcher])
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.segmenter is not None and not shared.stopped_by_person
         outcome = explain_end(line, wish.goal, parts.env.success_rule, nearest_m, detects=detects)
-        self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome), episode_id=episode.episode_id)
+        self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome), **about)
 
     def _parts_for(self, wish: Wish) -> tuple[Parts, Pictures]:
         """Returns environment, agent and pictures; those of the last episode where they fit."""

@@ -65,6 +65,7 @@ function told(news) {
   document.body.dataset.phase = news.phase;
   document.body.dataset.driver = news.driver;
   const playing = news.phase === "playing";
+  if (news.phase === "loading") document.body.dataset.step = "-1";
   $("message").textContent = news.message;
   $("driver").textContent = news.driver === "person" ? "you drive" : news.wish ? news.wish.agent : "agent";
   $("pause").textContent = news.paused ? "Run" : "Pause";

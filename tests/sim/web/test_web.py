@@ -1,0 +1,292 @@
+"""`python -m sim.web` as its users meet it: in headless Chromium, with a second client, and with hostile requests."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.helpers.browser import Browser, missing
+
+pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
+pytest.importorskip("uvicorn", reason="no uvicorn: pip install -e '.[web]'")
+client = pytest.importorskip("websockets.sync.client", reason="no websockets: pip install -e '.[web]'")
+
+from websockets.exceptions import WebSocketException  # noqa: E402
+
+WISH = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "semantics": "gt"}
+LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0, "num_steps": 9}
+
+
+class Server:
+    """A server in a process of its own, on a port that stays the same when it is started again."""
+
+    def __init__(self, runs: Path, port: int = 0) -> None:
+        command = [sys.executable, "-m", "sim.web", "--port", str(port), "--runs", str(runs)]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout is not None
+        found = re.search(r"http://127\.0\.0\.1:(\d+)", self.process.stdout.readline())
+        assert found
+        self.port = int(found[1])
+        self.address = f"http://127.0.0.1:{self.port}"
+
+    def get(self, path: str, host: str | None = None, **headers: str) -> tuple[int, dict[str, str], bytes]:
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        connection.request("GET", path, headers={"Host": host or f"127.0.0.1:{self.port}", **headers})
+        answer = connection.getresponse()
+        content = answer.read()
+        connection.close()
+        return answer.status, {name.lower(): value for name, value in answer.getheaders()}, content
+
+    def connect(self, origin: str | None = "own", host: str | None = None) -> Any:
+        headers = {} if host is None else {"Host": host}
+        origin = self.address if origin == "own" else origin
+        return client.connect(f"ws://127.0.0.1:{self.port}/live", origin=origin, additional_headers=headers)
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("web")
+    run = folder / "runs" / "mine"
+    (run / "videos").mkdir(parents=True)
+    (run / "results.jsonl").write_text(json.dumps(LINE) + "\n" + json.dumps(LINE | {"episode_id": "e/1"}) + "\n")
+    (run / "config.json").write_text(json.dumps({"agent": "stubborn", "semantics": "gt"}))
+    (run / "videos" / "e%2F0.mp4").write_bytes(b"a video")
+    (folder / "secret.mp4").write_bytes(b"a secret")
+    os.symlink(folder / "secret.mp4", run / "videos" / "e%2F1.mp4")
+    os.symlink(folder, folder / "runs" / "elsewhere")
+    return folder / "runs"
+
+
+@pytest.fixture(scope="module")
+def server(runs: Path) -> Iterator[Server]:
+    server = Server(runs)
+    yield server
+    server.kill()
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    if reason := missing():
+        pytest.skip(reason)
+    browser = Browser(tmp_path_factory.mktemp("chromium"), width=1400, height=1000)
+    yield browser
+    browser.close()
+
+
+def wait_for(condition: Callable[[], Any], seconds: float = 60.0) -> Any:
+    end = time.monotonic() + seconds
+    while not (value := condition()):
+        assert time.monotonic() < end, "it did not happen"
+        time.sleep(0.05)
+    return value
+
+
+def state_of(socket: Any, phase: str) -> dict[str, Any]:
+    """Waits for a state of this phase and returns it."""
+    while True:
+        message = socket.recv(timeout=60)
+        if isinstance(message, str) and (state := json.loads(message)).get("phase") == phase:
+            return state
+
+
+def frame_of(socket: Any) -> tuple[dict[str, Any], bytes]:
+    """Waits for a frame; returns its header and its pictures."""
+    while isinstance(message := socket.recv(timeout=60), str):
+        pass
+    length = struct.unpack(">I", message[:4])[0]
+    return json.loads(message[4 : 4 + length]), message[4 + length :]
+
+
+# ---- what is refused
+
+
+def test_other_hosts_other_origins_and_sockets_of_other_pages_are_refused(server: Server) -> None:
+    own = f"127.0.0.1:{server.port}"
+    assert server.get("/")[0] == 200
+    assert server.get("/", f"localhost:{server.port}")[0] == 200
+    assert server.get("/", "rebound.example")[0] == 403
+    assert server.get("/api/choices", own, Origin="http://other.example")[0] == 403
+    for origin, host in ((None, None), ("http://other.example", None), ("null", None), ("own", "rebound.example")):
+        with pytest.raises(WebSocketException):
+            server.connect(origin, host)
+    with server.connect() as socket:
+        assert json.loads(socket.recv(timeout=10))["kind"] == "state"
+
+
+def test_only_the_page_and_files_of_runs_are_served(server: Server) -> None:
+    status, headers, page = server.get("/")
+    assert (status, b"<title>" in page) == (200, True)
+    assert "script-src 'self'" in headers["content-security-policy"]
+    assert not re.search(rb"https?://", page)
+    for path in ("/page.css", "/page.js", "/icon.svg"):
+        assert server.get(path)[0] == 200
+    assert server.get("/runs/mine/video?episode=e/0")[2] == b"a video"
+    for path in (
+        "/server.py",
+        "/../server.py",
+        "/page.js/..%2f..%2fserver.py",
+        "/runs/mine/video?episode=e/1",  # a link out of the folder
+        "/runs/mine/video?episode=../../../secret",
+        "/runs/..%2f..%2f/video?episode=secret",
+        "/runs/elsewhere/video?episode=secret",
+        "/runs/mine/report.html",
+        "/runs/mine/config.json",
+    ):
+        status, _, content = server.get(path)
+        assert status == 404, path
+        assert b"secret" not in content or b"has no video" in content, path
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "no JSON",
+        "[]",
+        '{"do": "start"}',
+        json.dumps({"do": "start", **WISH, "agent": "os:system"}),
+        json.dumps({"do": "start", **WISH, "agent": "oracle", "house": "../../etc"}),
+        json.dumps({"do": "start", **WISH, "agent": "oracle", "split": "/tmp"}),
+        json.dumps({"do": "start", **WISH, "agent": "oracle", "semantics": ["gt"]}),
+    ],
+)
+def test_what_does_not_ship_with_the_package_cannot_be_started(server: Server, message: str) -> None:
+    with server.connect() as socket:
+        socket.send(message)
+        answers = (json.loads(socket.recv(timeout=10)) for _ in range(5))
+        assert next(answer for answer in answers if answer["kind"] == "refused")["message"]
+
+
+# ---- in a real browser
+
+
+def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return document.querySelectorAll('#goal option').length"))
+    for name, value in {**WISH, "agent": "oracle"}.items():
+        browser.run(
+            "const s = document.getElementById(arguments[0]); s.value = arguments[1];"
+            "s.dispatchEvent(new Event('change'));",
+            name,
+            value,
+        )
+    with server.connect() as second:
+        second.send(json.dumps({"do": "show", "pictures": ["plan"]}))
+        second.send(json.dumps({"do": "speed", "per_s": 60}))
+        browser.click("#start")
+        begun = state_of(second, "playing")
+        assert (begun["wish"]["house"], begun["wish"]["goal"]) == ("wedged_spawn", "bed")
+        header, pictures = frame_of(second)
+        assert [name for name, _ in header["pictures"]] == ["plan"]
+        assert pictures[:2] == b"\xff\xd8"  # a JPEG
+        ended = state_of(second, "ended")
+        assert ended["outcome"]["found"]
+    wait_for(lambda: browser.run("return document.body.dataset.phase") == "ended")
+    assert browser.run("return document.getElementById('outcome-headline').textContent").startswith("Found after")
+    wait_for(lambda: browser.run("return document.querySelector('#facts').textContent.includes(', stop,')"))
+    drawn = browser.run("""
+        return [...document.querySelectorAll("figure")].filter((figure) => {
+            const canvas = figure.querySelector("canvas");
+            const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+            return data.some((value, i) => i % 4 < 3 && value > 100);
+        }).map((figure) => figure.dataset.name);
+    """)
+    assert {"camera", "chase", "plan", "semantic", "depth"} <= set(drawn)
+    assert browser.complaints() == []
+    assert all(address.startswith((server.address, "blob:", "data:")) for address in browser.requests())
+
+
+def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_back(
+    server: Server, browser: Browser
+) -> None:
+    browser.visit(server.address)
+    wait_for(lambda: browser.run("return document.querySelector('#link').textContent") == "connected")
+    with server.connect() as second:
+        second.send(json.dumps({"do": "show", "pictures": []}))
+        second.send(json.dumps({"do": "start", **WISH, "agent": "stubborn"}))
+        state_of(second, "playing")
+        wait_for(lambda: browser.run("return document.body.dataset.phase") == "playing")
+        browser.click("#pause")
+        wait_for(lambda: browser.run("return document.querySelector('#pause').textContent") == "Run")
+        before = wait_for(lambda: frame_now(browser) + 1)
+        browser.click("#step")
+        wait_for(lambda: frame_now(browser) >= before)
+        browser.click("#take")
+        wait_for(lambda: browser.run("return document.querySelector('#driver').textContent") == "you drive")
+        for step in range(10):
+            now = frame_now(browser)
+            if step % 2:
+                browser.click('[data-action="2"]')  # by mouse or finger
+            else:
+                browser.keys("body", "d")
+            wait_for(lambda now=now: frame_now(browser) > now)
+        driven = frame_now(browser)
+        browser.click("#take")
+        browser.click("#pause")
+        wait_for(lambda: frame_now(browser) > driven)  # the agent goes on
+        assert browser.run("return document.querySelector('#driver').textContent") == "stubborn"
+        browser.click('[data-action="0"]')
+        ended = state_of(second, "ended")
+    assert "came too early" in ended["outcome"]["sentence"]  # a person's STOP is no false detection
+    assert browser.complaints() == []
+
+
+def frame_now(browser: Browser) -> int:
+    """Returns the step that the page shows; -1 before the first."""
+    return int(browser.run("return document.body.dataset.step ?? -1"))
+
+
+def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    browser.click("#tab-runs")
+    wait_for(lambda: browser.run("return document.querySelectorAll('#run-list button').length") == 1)
+    browser.click("#run-list button")
+    rows = wait_for(lambda: browser.run("return [...document.querySelectorAll('#episodes tr')].map(r => r.innerText)"))
+    assert "found" in rows[0]
+    assert [("Video" in row) for row in rows] == [True, False]
+    assert browser.complaints() == []
+
+
+def test_nothing_is_wider_than_a_phone(server: Server, browser: Browser) -> None:
+    browser.resize(390, 844)
+    try:
+        browser.visit(server.address)
+        for tab in ("live", "runs"):
+            browser.click(f"#tab-{tab}")
+            assert browser.run("return document.documentElement.scrollWidth") <= 390
+    finally:
+        browser.resize(1400, 1000)
+
+
+def test_the_page_comes_back_when_the_server_is_killed_and_started_again(
+    runs: Path, server: Server, browser: Browser
+) -> None:
+    browser.visit(server.address)
+    link = "return document.querySelector('#link').textContent"
+    wait_for(lambda: browser.run(link) == "connected")
+    server.kill()
+    wait_for(lambda: "lost" in browser.run(link))
+    server.process = Server(runs, server.port).process
+    wait_for(lambda: browser.run(link) == "connected")
+    assert browser.run("return document.body.dataset.phase") == "idle"
+
+
+def test_a_port_in_use_is_told_in_a_sentence(server: Server) -> None:
+    command = [sys.executable, "-m", "sim.web", "--port", str(server.port)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error: Cannot listen on 127.0.0.1, port {server.port}: ")
