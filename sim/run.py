@@ -49,8 +49,8 @@ def main(options: RunOptions) -> int:
         episodes, options = shard.select(episodes), replace(options, out=options.out / shard.folder)
     lines, summary = run_missing(options, episodes, split, console)
     display.print_results(console, lines, summary)
-    if options.video:
-        console.print(f"Videos are in {options.out}/videos.", highlight=False, soft_wrap=True)
+    assert options.out is not None
+    display.print_where_to_look(console, options.out, video=options.video)
     return 1 if summary["errors"] else 0
 
 
@@ -90,8 +90,11 @@ def run_missing(
         )
         _report_resumed(run, len(episodes), len(todo), console)
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", options)
-        lines = executor.run(spec, todo, on_death=lambda episode: _lost_line(options, episode))
-        for line in () if not todo else display.with_progress(console, lines, total=len(todo)):
+        progress = display.ProgressReport(console, total=len(todo))
+        lines = executor.run(
+            spec, todo, on_death=lambda episode: _lost_line(options, episode), on_start=progress.started
+        )
+        for line in progress.over(lines) if todo else ():
             run.append(line)
         return run.lines, run.write_summary({"split": split})
     finally:

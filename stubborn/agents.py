@@ -17,6 +17,7 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.thorough import ThoroughConfig
+from stubborn.plus import PlusConfig, plus_agent
 from stubborn.target.verification import Verifier
 
 NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
@@ -32,6 +33,15 @@ ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
     }
 )
 """The rows of the paper's ablation table; v is the full agent."""
+_ROW_WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        "stubborn-i": "no measure against collisions",
+        "stubborn-ii": "only the way out of traps",
+        "stubborn-iii": "the way out of traps, and collisions in the map",
+        "stubborn-iv": "all measures, but visited ground does not count as free",
+        "stubborn-v": "all measures; the same as stubborn",
+    }
+)
 
 EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
     {"corners": CornerConfig(), "thorough": ThoroughConfig(), "frontier": FrontierConfig()}
@@ -49,13 +59,15 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         "stubborn": _stubborn_spec("the paper's agent, with all four measures against collisions", AgentConfig()),
         **{
             name: _stubborn_spec(
-                f"row {name.removeprefix('stubborn-')} of the paper's ablation", AgentConfig(avoidance=row)
+                f"row {name.removeprefix('stubborn-')} of the paper's ablation: {_ROW_WORDS[name]}",
+                AgentConfig(avoidance=row),
             )
             for name, row in ABLATION.items()
         },
         "stubborn-plus": _stubborn_spec(
-            "stubborn that also looks around and visits what it has not seen; not in the paper",
-            AgentConfig(explorer=ThoroughConfig()),
+            "ours: tracks objects, looks before it goes to them, and visits what it has not seen; not in the paper",
+            PlusConfig(),
+            plus_agent,
         ),
         "single-frame": _stubborn_spec(
             "stubborn without verification (--verification none)", AgentConfig(), single_frame_agent

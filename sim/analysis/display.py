@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import threading
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import Any, Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -15,6 +20,8 @@ from sim.reading import printable
 
 Line = Mapping[str, Any]
 MOST_EPISODES_SHOWN = 20
+QUIET_S = 5.0
+"""Output that is not a terminal is never silent for longer than about this while an episode runs."""
 PLAIN_WIDTH = 120
 """Columns of output that is not a terminal (a file, a pipe, a CI log)."""
 
@@ -36,14 +43,95 @@ def make_console() -> Console:
     return console if console.is_terminal else PlainConsole(width=PLAIN_WIDTH)
 
 
-def with_progress(console: Console, lines: Iterable[dict[str, Any]], *, total: int) -> Iterator[dict[str, Any]]:
-    """Yields the lines and shows progress: a bar in a terminal, else one line of text per episode."""
-    if console.is_terminal:
-        yield from _with_bar(console, lines, total)
-        return
-    for number, line in enumerate(lines, start=1):
-        console.print(f"[{number}/{total}] {describe(line)}", highlight=False, markup=False, soft_wrap=True)
-        yield line
+class Started(Protocol):
+    """An episode that begins."""
+
+    @property
+    def episode_id(self) -> str: ...  # noqa: D102
+    @property
+    def house(self) -> str: ...  # noqa: D102
+    @property
+    def goal(self) -> str: ...  # noqa: D102
+
+
+class ProgressReport:
+    """Says which episodes begin, run and end: with a bar in a terminal, else with lines of text.
+
+    A line is printed when an episode begins and when it ends, and every `QUIET_S` seconds in between, so that a log or
+    a pipe shows that the run goes on.
+    """
+
+    def __init__(self, console: Console, *, total: int, quiet_s: float = QUIET_S) -> None:
+        self._console, self._total, self._quiet_s = console, total, quiet_s
+        self._running: dict[str, tuple[Started, float]] = {}
+        self._lock = threading.Lock()
+        self._over = threading.Event()
+        self._printed_s = time.monotonic()
+        self._done = 0
+        self._bar = _bar(console) if console.is_terminal else None
+
+    def started(self, episode: Started) -> None:
+        """Says that an episode begins."""
+        with self._lock:
+            self._running[episode.episode_id] = (episode, time.monotonic())
+            self._print(f"{episode.episode_id} begins: looking for {_goal(episode)} in house {episode.house}")
+
+    def over(self, lines: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+        """Yields the result lines, and says what happens until the last one."""
+        watch = threading.Thread(target=self._say_that_it_runs, daemon=True, name="progress")
+        with contextlib.ExitStack() as stack:
+            if self._bar is not None:
+                stack.enter_context(self._bar)
+                self._task = self._bar.add_task("loading the first house", total=self._total)
+            watch.start()
+            stack.callback(watch.join)
+            stack.callback(self._over.set)
+            for line in lines:
+                self._ended(line)
+                yield line
+
+    def _ended(self, line: Line) -> None:
+        with self._lock:
+            self._running.pop(line["episode_id"], None)
+            self._done += 1
+            if self._bar is not None:
+                self._bar.update(self._task, advance=1)
+            self._print(f"[{self._done}/{self._total}] {describe(line)}")
+
+    def _say_that_it_runs(self) -> None:
+        while not self._over.wait(min(0.5, self._quiet_s)):
+            with self._lock:
+                now_s = time.monotonic()
+                if self._running and self._bar is None and now_s - self._printed_s >= self._quiet_s:
+                    running = (f"{name} for {now_s - since_s:.0f} s" for name, (_, since_s) in self._running.items())
+                    self._print(f"[{self._done}/{self._total}] running: {', '.join(running)}")
+
+    def _print(self, words: str) -> None:
+        self._printed_s = time.monotonic()
+        if self._bar is not None:
+            self._bar.update(self._task, description=words)
+            return
+        self._console.print(words, highlight=False, markup=False, soft_wrap=True)
+        self._console.file.flush()
+
+
+def _bar(console: Console) -> Progress:
+    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    return Progress(*columns, TextColumn("{task.description}", markup=False), console=console)
+
+
+def _goal(episode: Started) -> str:
+    return episode.goal.replace("_", " ")
+
+
+def print_where_to_look(console: Console, out: Path, *, video: bool) -> None:
+    """Prints where the results of a run are, and the commands that show them."""
+    say = functools.partial(console.print, highlight=False, soft_wrap=True)
+    say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
+    if video:
+        say(f"Videos are in {out}/videos.")
+    say(f"A page about this run: python -m sim.report {out}")
+    say("Watch an agent in the browser, or drive yourself: python -m sim.web")
 
 
 def describe(line: Line) -> str:
@@ -64,21 +152,6 @@ def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str,
     for line in lines:
         if line.get("error"):
             console.print(f"error in {line['episode_id']}: {line['error']}", markup=False, soft_wrap=True)
-
-
-def _with_bar(console: Console, lines: Iterable[dict[str, Any]], total: int) -> Iterator[dict[str, Any]]:
-    columns = (
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        TextColumn("{task.description}", markup=False),
-    )
-    with Progress(*columns, console=console) as progress:
-        task = progress.add_task("loading the first house", total=total)
-        for line in lines:
-            progress.update(task, advance=1, description=describe(line))
-            yield line
 
 
 def _episode_table(lines: Sequence[Line]) -> Table:

@@ -25,13 +25,21 @@ EXECUTORS = ("local", "ray")
 class Executor(Protocol):
     """A place where work items are run."""
 
-    def run(self, spec: RunnerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
+    def run(
+        self,
+        spec: RunnerSpec,
+        items: Sequence[ItemT],
+        *,
+        on_death: Callable[[ItemT], Any],
+        on_start: Callable[[ItemT], None] | None = None,
+    ) -> Iterator[Any]:
         """Yields a result line for each item, in the order in which the items end.
 
         Args:
             spec: how each worker builds its runner.
             items: the work.
             on_death: returns the line of an item whose worker died twice.
+            on_start: called in this process when an item begins.
 
         Raises:
             WorkersError: no worker can be started.
@@ -70,12 +78,20 @@ class Processes:
 
     workers: int = 1
 
-    def run(self, spec: RunnerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
+    def run(
+        self,
+        spec: RunnerSpec,
+        items: Sequence[ItemT],
+        *,
+        on_death: Callable[[ItemT], Any],
+        on_start: Callable[[ItemT], None] | None = None,
+    ) -> Iterator[Any]:
         """See `Executor`."""
         if self.workers == 1 or len(items) <= 1:
-            yield from run_here(spec, items)
+            yield from run_here(spec, items, on_start=on_start)
         else:
-            yield from run_in_pool(ProcessPool(spec), items, max_workers=self.workers, on_death=on_death)
+            pool = ProcessPool(spec)
+            yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
 
 
 class _Process:

@@ -60,9 +60,17 @@ class RayCluster:
                 ) from None
         return cls(workers)
 
-    def run(self, spec: RunnerSpec, items: Sequence[ItemT], *, on_death: Callable[[ItemT], Any]) -> Iterator[Any]:
+    def run(
+        self,
+        spec: RunnerSpec,
+        items: Sequence[ItemT],
+        *,
+        on_death: Callable[[ItemT], Any],
+        on_start: Callable[[ItemT], None] | None = None,
+    ) -> Iterator[Any]:
         """See `sim.evaluation.executors.Executor`."""
-        yield from run_in_pool(_ActorPool(spec), items, max_workers=self.workers, on_death=on_death)
+        pool = _ActorPool(spec)
+        yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
 
 
 class WorkerActor:

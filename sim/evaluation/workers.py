@@ -114,18 +114,27 @@ class ItemRunner:
             self._runner.close()
 
 
-def run_here(spec: RunnerSpec, items: Sequence[ItemT]) -> Iterator[Any]:
-    """Yields the result line of each item, run in this process, house by house."""
+def run_here(
+    spec: RunnerSpec, items: Sequence[ItemT], *, on_start: Callable[[ItemT], None] | None = None
+) -> Iterator[Any]:
+    """Yields the result line of each item, run in this process, house by house; `on_start` is called before each."""
     runner = spec.build()
     try:
         for item in sorted(items, key=lambda item: item.house):  # stable: keeps the order within a house
+            if on_start is not None:
+                on_start(item)
             yield runner.run(item)
     finally:
         runner.close()
 
 
 def run_in_pool(
-    pool: WorkerPool[Any], items: Sequence[ItemT], *, max_workers: int, on_death: Callable[[ItemT], Any]
+    pool: WorkerPool[Any],
+    items: Sequence[ItemT],
+    *,
+    max_workers: int,
+    on_death: Callable[[ItemT], Any],
+    on_start: Callable[[ItemT], None] | None = None,
 ) -> Iterator[Any]:
     """Yields a result line for each item, in the order in which the items end.
 
@@ -134,12 +143,13 @@ def run_in_pool(
         items: the work.
         max_workers: largest number of workers at a time.
         on_death: returns the line of an item whose worker died `MAX_TRIES` times.
+        on_start: called when a worker gets an item.
 
     Raises:
         WorkersError: workers die before they are ready.
         Exception: any exception that a runner raised.
     """
-    scheduler = _Scheduler(pool, _Queue(list(items)), min(max_workers, len(items)), on_death)
+    scheduler = _Scheduler(pool, _Queue(list(items)), min(max_workers, len(items)), on_death, on_start)
     try:
         yield from scheduler.lines()
     finally:
@@ -189,6 +199,7 @@ class _Scheduler(Generic[ItemT]):
     queue: _Queue[ItemT]
     max_workers: int
     on_death: Callable[[ItemT], Any]
+    on_start: Callable[[ItemT], None] | None = None
     slots: list[_WorkerSlot[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
     failed_starts: int = 0
@@ -217,6 +228,8 @@ class _Scheduler(Generic[ItemT]):
         if slot.item is not None:
             slot.house = slot.item.house
             slot.worker.send(slot.item)
+            if self.on_start is not None:
+                self.on_start(slot.item)
 
     def _receive(self, slot: _WorkerSlot[ItemT]) -> Iterator[Any]:
         """Handles one message of a worker: that it is ready, a line, or its death."""

@@ -1,13 +1,20 @@
-"""Text in a terminal is text: brackets are no markup, and escapes of ids and paths do not reach it."""
+"""Text in a terminal is text (no markup, no escapes of ids and paths), and a run is never silent for long."""
 
 from __future__ import annotations
 
 import io
+import re
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from rich.table import Table
 
-from sim.analysis.display import PlainConsole, with_progress
+from sim.analysis.display import PlainConsole, ProgressReport
+from sim.episodes.splits import Episode
+from sim.geometry.pose import Pose
 
 
 def printed(*objects: object, terminal: bool = False) -> str:
@@ -39,5 +46,26 @@ def test_the_progress_of_an_episode_with_brackets_in_its_id_is_shown(capsys: pyt
     line = {"episode_id": "a[/b]", "goal": "bed", "success": 1.0, "num_steps": 3, "wall_time_s": 1.0}
     stream = io.StringIO()
     console = PlainConsole(file=stream, width=100, force_terminal=True)
-    assert list(with_progress(console, [line], total=1)) == [line]
+    progress = ProgressReport(console, total=1)
+    assert list(progress.over([line])) == [line]
     assert "a[/b]: bed found" in stream.getvalue()
+
+
+def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_ends() -> None:
+    stream = io.StringIO()
+    progress = ProgressReport(PlainConsole(file=stream, width=100), total=1, quiet_s=0.05)
+    episode = Episode("e0", "val_00", "tv_monitor", Pose(0.0, 0.0, 0.0))
+    line = {"episode_id": "e0", "goal": "tv_monitor", "success": 1.0, "num_steps": 3, "wall_time_s": 1.0}
+
+    def lines() -> Iterator[dict[str, Any]]:
+        progress.started(episode)
+        time.sleep(0.4)
+        yield line
+
+    assert list(progress.over(lines())) == [line]
+    first, *running, last = stream.getvalue().splitlines()
+    assert first == "e0 begins: looking for tv monitor in house val_00"
+    assert running
+    assert all(re.fullmatch(r"\[0/1\] running: e0 for \d+ s", each) for each in running)
+    assert last == "[1/1] e0: tv_monitor found after 3 steps, 1 s"
+    assert "progress" not in {thread.name for thread in threading.enumerate()}
