@@ -207,6 +207,14 @@ class Segmenter(Protocol):
         """Returns the scores of one frame for the goal category."""
         ...
 
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns the probability of each category of `MPCAT40` but void, float32 (40, h, w), in their order.
+
+        The resolution may be any whole fraction of the image's. Of a frame without any information on a pixel, all of
+        its probabilities may be 0. Only agents that track objects of all categories read it (`stubborn-plus`).
+        """
+        ...
+
 
 @runtime_checkable
 class NamesCategories(Protocol):

@@ -62,6 +62,10 @@ class TrueSegmentation:
         """Returns scores 1 and 0, float32 (h, w), of the frame that the environment rendered last."""
         return self._scores_of.scores({"semantic": self._env.truth_images["semantic"]}, goal)
 
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns posteriors 1 and 0, float32 (40, h / 4, w / 4), of the frame that the environment rendered last."""
+        return self._scores_of.posteriors({"semantic": self._env.truth_images["semantic"]})
+
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the true category of each pixel, uint8 (h, w)."""
         del observation
@@ -76,6 +80,10 @@ class NoSegmentation:
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Raises ConfigError: the agent asked for scores although it declared that it does not use them."""
         raise ConfigError("This agent reads scores but declares uses_segmentation=False in its AgentSpec.")
+
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Raises ConfigError, as `scores` does."""
+        raise ConfigError("This agent reads posteriors but declares uses_segmentation=False in its AgentSpec.")
 
 
 def _make_network(env: ObjectNavEnv, config: NetworkConfig) -> Segmenter:

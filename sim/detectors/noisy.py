@@ -133,6 +133,32 @@ class NoisySegmenter:
         """
         if goal not in MPCAT40_ID:
             raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
+        shown, classified, rng = self._classified()
+        return self._score(shown, classified, MPCAT40_ID[goal], rng)
+
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns the probabilities of the categories in the frame that the environment rendered last, (40, h, w).
+
+        It shows the same objects, mistakes and outlines as `scores` of that frame, but without the blobs: the first
+        category of an object has its confidence, the second a share of the rest, and all others share what is left. A
+        missed object has no information.
+        """
+        shown, classified, rng = self._classified()
+        c, classes = self.config, len(MPCAT40) - 1
+        objects = np.arange(len(classified.first))
+        second = c.runner_up * (1.0 - classified.confidence)
+        rest = (1.0 - classified.confidence - second) / classes
+        table = np.zeros((len(objects) + 1, classes + 1), np.float32)  # the last row: no object
+        table[:-1] = rest[:, None]
+        table[objects, classified.second] += second
+        table[objects, classified.first] += classified.confidence
+        table[:-1][classified.first == 0] = 1.0 / classes
+        table[-1] = 1.0 / classes
+        down, right, _ = self._waves(shown.shape, rng)
+        return np.ascontiguousarray(table.T[1:])[:, self._warped(shown, down, right)]
+
+    def _classified(self) -> tuple[NDArray[np.intp], Classification, np.random.Generator]:
+        """Returns the object that each pixel shows, -1 for none, the objects' classification, and the generator."""
         scene = self._episode.scene
         if scene.world is not self._world:
             self._world, self._objects = scene.world, LabelledObjects.of(scene.world)
@@ -142,8 +168,7 @@ class NoisySegmenter:
         shown = self._objects.of_geom[geom]  # (h, w) index of the object; -1: none
         share = np.bincount(shown.reshape(-1) + 1, minlength=len(self._objects.category) + 1)[1:] / shown.size
         pose = scene.world.camera_pose
-        classified = self.classify(self._objects, share, (pose.x_m, pose.y_m), seed, rng)
-        return self._score(shown, classified, MPCAT40_ID[goal], rng)
+        return shown, self.classify(self._objects, share, (pose.x_m, pose.y_m), seed, rng), rng
 
     def classify(
         self,
@@ -193,26 +218,40 @@ class NoisySegmenter:
         other = np.where(classified.first == goal, rest, classified.confidence)
         target, other = np.append(target, c.background), np.append(other, 0.0)  # the last entry: no object
         target = np.clip(target, c.background, 1.0 - c.background)
-        height, width = shown.shape
-        cells = max(2, round(height * c.stride_px / c.blob_px)), max(2, round(width * c.stride_px / c.blob_px))
-        waves = rng.standard_normal((*cells, 3)).astype(np.float32)
-        down, right, blob = cv2.split(cv2.resize(waves, (width, height), interpolation=cv2.INTER_CUBIC))
-        px = np.float32(c.outline_px / c.stride_px)
-        warped = cv2.remap(
-            shown.astype(np.int16),
-            np.arange(width, dtype=np.float32)[None, :] + px * np.asarray(right),
-            np.arange(height, dtype=np.float32)[:, None] + px * np.asarray(down),
-            cv2.INTER_NEAREST,
-            borderMode=cv2.BORDER_REPLICATE,
-        )
-        shown = np.asarray(warped, np.intp)
+        down, right, blob = self._waves(shown.shape, rng)
+        shown = self._warped(shown, down, right)
         self._categories = np.append(classified.first, 0).astype(np.uint8)[shown]
-        odds = (target / (1.0 - target)).astype(np.float32)[shown] * np.exp(np.float32(c.blob_logit) * np.asarray(blob))
+        odds = (target / (1.0 - target)).astype(np.float32)[shown] * np.exp(np.float32(c.blob_logit) * blob)
         remaining = 1.0 / (1.0 + odds)
         scores = np.stack([odds * remaining, (other / (1.0 - target)).astype(np.float32)[shown] * remaining], axis=-1)
         soft = cv2.blur(scores, (3, 3), borderType=cv2.BORDER_REPLICATE)
         target_score, other_score = cv2.split(np.clip(soft, 0.0, 1.0))
         return Scores(np.asarray(target_score, np.float32), np.asarray(other_score, np.float32))
+
+    def _waves(
+        self, shape: tuple[int, ...], rng: np.random.Generator
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+        """Returns three smooth random images: displacement of outlines downwards and to the right, and blobs."""
+        c, (height, width) = self.config, shape
+        cells = max(2, round(height * c.stride_px / c.blob_px)), max(2, round(width * c.stride_px / c.blob_px))
+        waves = rng.standard_normal((*cells, 3)).astype(np.float32)
+        down, right, blob = cv2.split(cv2.resize(waves, (width, height), interpolation=cv2.INTER_CUBIC))
+        return np.asarray(down, np.float32), np.asarray(right, np.float32), np.asarray(blob, np.float32)
+
+    def _warped(
+        self, shown: NDArray[np.intp], down: NDArray[np.float32], right: NDArray[np.float32]
+    ) -> NDArray[np.intp]:
+        """Returns the image of objects with inexact outlines."""
+        height, width = shown.shape
+        px = np.float32(self.config.outline_px / self.config.stride_px)
+        warped = cv2.remap(
+            shown.astype(np.int16),
+            np.arange(width, dtype=np.float32)[None, :] + px * right,
+            np.arange(height, dtype=np.float32)[:, None] + px * down,
+            cv2.INTER_NEAREST,
+            borderMode=cv2.BORDER_REPLICATE,
+        )
+        return np.asarray(warped, np.intp)
 
 
 @dataclass(frozen=True, eq=False)

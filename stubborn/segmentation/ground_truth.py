@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
+from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
+
+STRIDE_PX = 4
+"""Edge of the image block of one posterior."""
 
 
 class GroundTruthSegmenter:
@@ -29,3 +32,9 @@ class GroundTruthSegmenter:
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the category of each pixel, mpcat40 ids (h, w)."""
         return observation["semantic"]
+
+    def posteriors(self, observation: Observation) -> NDArray[np.float32]:
+        """Returns 1 for the category in the middle of each 4 x 4 pixels, else 0, (40, h / 4, w / 4); void has 0."""
+        every = STRIDE_PX
+        semantic = observation["semantic"][every // 2 :: every, every // 2 :: every]
+        return (semantic[None] == np.arange(1, len(MPCAT40), dtype=np.uint8)[:, None, None]).astype(np.float32)

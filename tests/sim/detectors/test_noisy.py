@@ -200,6 +200,24 @@ def test_without_errors_the_scores_are_the_ground_truth(env: ObjectNavEnv):
     assert (said & truth).sum() / (said | truth).sum() > 0.9
 
 
+def test_posteriors_show_the_same_objects_and_mistakes_as_the_scores_of_the_frame(env: ObjectNavEnv):
+    segmenter = NoisySegmenter(env, NoisyConfig(blob_logit=0.0, mistake_rate=0.5))
+    env.reset(seed=3)
+    for _ in range(4):
+        observation, *_ = env.step(Action.TURN_LEFT)
+        posteriors = segmenter.posteriors(observation)
+        assert posteriors.shape == (40, 120, 160)
+        assert posteriors.dtype == np.float32
+        assert (posteriors >= 0.0).all()
+        assert posteriors.sum(axis=0).max() <= 1.0 + 1e-5
+        for goal in ("sofa", "seating"):
+            target = segmenter.scores(observation, goal).target
+            differs = np.abs(posteriors[MPCAT40_ID[goal] - 1] - target) > 0.05
+            assert differs.mean() < 0.15  # outlines are blurred in the scores
+            inside = np.abs(np.diff(target, axis=0, append=target[-1:])) < 1e-3
+            assert differs[inside].mean() < 0.05
+
+
 def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a_sofa_a_high_one(env: ObjectNavEnv):
     mistaken, right = {}, {}
     for seed in range(12):
