@@ -35,8 +35,9 @@ from stubborn.planning.avoidance import CollisionAvoidance, collision_policies
 from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
+from stubborn.target.approach import Approach
 from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.seeker import Approach, TargetSeeker
+from stubborn.target.seeker import Seeker, TargetSeeker
 from stubborn.target.verification import AcceptAll, Verifier
 
 _TREAD_M = 0.10
@@ -86,6 +87,7 @@ class StubbornAgent:
         verifier: Verifier | None = None,
         explorer: Explorer | None = None,
         layers: ObjectLayers | None = None,
+        seeker: Seeker | None = None,
         config: AgentConfig = AgentConfig(),
     ) -> None:
         """Builds the agent from its parts.
@@ -99,6 +101,7 @@ class StubbornAgent:
             verifier: judges candidates; by default it accepts all.
             explorer: chooses where to look; by default the one of `config.explorer`.
             layers: keeps the scores; by default those of all frames.
+            seeker: decides on candidates; by default the paper's, with `verifier`.
             config: all other parameters.
         """
         self.config = config
@@ -108,7 +111,7 @@ class StubbornAgent:
         self.mapper = Mapper(camera, robot, config.mapping, layers)
         self.planner = Planner(config.planning, self.policies.proven_ground)
         self.explorer = explorer or config.explorer.make(camera)
-        self.seeker = TargetSeeker(
+        self.seeker: Seeker = seeker or TargetSeeker(
             config.target,
             self.planner,
             verifier or AcceptAll(),
@@ -167,7 +170,9 @@ class StubbornAgent:
         exact_depth = self.mapper.add_depth(self.navmap, depth, pose)
         scores = self.segmenter.scores(observation, self.goal)
         rim_px = 0 if exact_depth and self.segmenter.spec.exact_outlines else self.config.mapping.rim_px
-        return self.mapper.add_scores(self.navmap, depth, scores, pose, self.step, rim_px=rim_px)
+        sighting = self.mapper.add_scores(self.navmap, depth, scores, pose, self.step, rim_px=rim_px)
+        self.seeker.observe(self.navmap, observation, pose, self.step)
+        return sighting
 
     def _decide(self, pose: Pose, sighting: Sighting) -> Action:
         """Stops at the target, else gets unstuck, else approaches a candidate, else explores."""
@@ -209,7 +214,8 @@ class StubbornAgent:
             return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT
         if self.seeker.judge(self.navmap, approach.cell):
             if approach.near_enough:
-                return Action.STOP
+                nearer = self.seeker.one_more_forward(self.navmap, approach, pose)
+                return Action.MOVE_FORWARD if nearer else Action.STOP
             self.seeker.postpone(self.navmap, self.step)
         return Action.TURN_LEFT
 

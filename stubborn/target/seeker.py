@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Bool
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
+from sim.interface import Observation
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import CollisionLayer, NavMap
-from stubborn.planning.planner import Goal, Planner, Route
-from stubborn.planning.steering import route_end
-from stubborn.raster import distance_to, nearest
+from stubborn.planning.planner import Planner
+from stubborn.raster import distance_to
+from stubborn.target.approach import Approach, approach_on
 from stubborn.target.candidates import CandidateParts
 from stubborn.target.classifiers import Features
 from stubborn.target.distances import StopDistances, TargetConfig
@@ -23,18 +24,36 @@ from stubborn.target.verification import Verifier
 from stubborn.target.viewpoints import LastResort, ViewpointFinder
 
 
-@dataclass(frozen=True)
-class Approach:
-    """The route to the nearest viewpoint of the candidates that are pursued."""
+class Seeker(Protocol):
+    """Decides on candidates of the goal: where to go for them, and when to stop."""
 
-    route: Route | None
-    """None when the robot is on a viewpoint."""
-    bearing_rad: float
-    """World angle from the robot to the candidate cell."""
-    cell: tuple[int, int]
-    """Row and column, on the whole map, of the candidate cell nearest to the viewpoint that the route leads to."""
-    near_enough: bool = True
-    """False: a STOP there would not count; the candidate can only be verified from there."""
+    def reset(self, goal: str) -> None:
+        """Forgets the last episode."""
+        ...
+
+    def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
+        """Learns from a frame that has been entered into the map."""
+        ...
+
+    def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
+        """Returns the map cell of a candidate in this very frame that is near enough to stop; None: there is none."""
+        ...
+
+    def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
+        """Returns the approach to a candidate; None: explore."""
+        ...
+
+    def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
+        """Returns whether the candidate at a map cell, at which the robot looks, is the goal."""
+        ...
+
+    def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
+        """Returns whether to go one forward nearer before the STOP at an accepted candidate that the robot faces."""
+        ...
+
+    def postpone(self, navmap: NavMap, step: int) -> None:
+        """Sets aside the candidates that are approached: they cannot be reached with the map of now."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -50,7 +69,7 @@ class _Choice:
 
 
 class TargetSeeker:
-    """Finds candidates on the map, plans to them and judges them."""
+    """The paper's `Seeker`: it finds candidates on the map, plans to them and verifies them by their object layers."""
 
     def __init__(
         self,
@@ -84,6 +103,13 @@ class TargetSeeker:
         self._wait_steps = self.config.retry_after_steps
         self._far = False  # whether the candidate pursued needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
+
+    def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
+        """See `Seeker`; all that this seeker knows is on the map."""
+
+    def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
+        """Returns False: the paper's agent stops where it verifies."""
+        return False
 
     def parts(self, navmap: NavMap) -> CandidateParts:
         """Returns the candidates on the known part of the map, those set aside included."""
@@ -130,7 +156,7 @@ class TargetSeeker:
             self._far, self._pursued = False, None
             return None
         for choice in self._choices(navmap, window, whole, step):
-            found = self._approach_on(navmap.view(choice.part), choice, pose)
+            found = approach_on(navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort)
             if found is not None:
                 row, col = found.cell[0] + choice.part.rows.start, found.cell[1] + choice.part.cols.start
                 self._far = choice.part is whole
@@ -195,25 +221,6 @@ class TargetSeeker:
             if step >= self.config.last_resort_step:
                 last_resort = LastResort.STOP
             yield _Choice(part, candidates[part.index], last_resort, acceptable=False)
-
-    def _approach_on(self, view: NavMap, choice: _Choice, pose: Pose) -> Approach | None:
-        """Returns the approach to some candidates on one part of the map; its cell is counted in that part."""
-        if not choice.candidates.any():
-            return None
-        cells = nearest(choice.candidates)
-        here = view.frame.cell(pose.x_m, pose.y_m)
-        for viewpoints in self._viewpoints.find(view, pose, cells, choice.last_resort):
-            route = (
-                None if viewpoints.cells[here] else self.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
-            )
-            if route is None and not viewpoints.cells[here]:
-                continue
-            end = here if route is None else route_end(route, pose)
-            cell = int(cells.rows[end]), int(cells.cols[end])
-            x_m, y_m = view.frame.centres(*cell)
-            bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
-            return Approach(route, bearing_rad, cell, viewpoints.near_enough)
-        return None
 
 
 def _seen_best(view: NavMap, instance: Bool[np.ndarray, "rows cols"]) -> int:

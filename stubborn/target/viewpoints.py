@@ -59,7 +59,7 @@ class ViewpointFinder:
         `nearest` holds, for each cell of the view, the distance and the place of the nearest candidate cell.
         """
         gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
-        in_sight = self._in_sight(view, gap_m, nearest)
+        in_sight = self.in_sight(view, gap_m, nearest, self.distances.viewpoints_m[-1])
         unseen = self.planner.unseen(view)
         free_spaces: dict[CollisionLayer, FreeSpace] = {}
         for within_m, layer in self.distances.tried_on(self.layers):
@@ -78,12 +78,22 @@ class ViewpointFinder:
             near_enough = last_resort is LastResort.STOP
             yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)
 
-    def _in_sight(
-        self, view: NavMap, gap_m: Float32[np.ndarray, "rows cols"], nearest: NearestCells
+    def look_from(self, view: NavMap, pose: Pose, nearest: NearestCells, between_m: tuple[float, float]) -> Viewpoints:
+        """Returns the cells in sight of a candidate at a distance from it, from which it can be looked at."""
+        gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
+        free = self.planner.free_space(view, pose, self.layers[0], self.planner.unseen(view))
+        seen = self.in_sight(view, gap_m, nearest, between_m[1])
+        return Viewpoints(free, free.reachable & seen & (gap_m >= between_m[0]), near_enough=False)
+
+    def in_sight(
+        self, view: NavMap, gap_m: Float32[np.ndarray, "rows cols"], nearest: NearestCells, within_m: float
     ) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the cells near a candidate from which nothing hides its nearest cell."""
+        """Returns the cells within a distance of a candidate from which nothing hides its nearest cell.
+
+        `gap_m` is the distance of each cell to the candidate.
+        """
         edge_cells = self.target_edge_m / view.frame.cell_m
-        rows, cols = np.nonzero(gap_m <= self.distances.viewpoints_m[-1])
+        rows, cols = np.nonzero(gap_m <= within_m)
         ends = nearest.rows[rows, cols], nearest.cols[rows, cols]
         in_sight = np.zeros_like(view.rejected)
         in_sight[rows, cols] = sight_is_clear(view.seen_at_eye_level, (rows, cols), ends, edge_cells)

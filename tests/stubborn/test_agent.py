@@ -140,6 +140,9 @@ class Smeared:
         target = np.asarray(cv2.dilate(true.target, np.ones((7, 7), np.uint8)), np.float32)
         return Scores(target, 1.0 - target)
 
+    def posteriors(self, observation: Observation) -> np.ndarray:
+        return GroundTruthSegmenter().posteriors(observation)
+
 
 @pytest.mark.parametrize("exact", [True, False])
 def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: bool):

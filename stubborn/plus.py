@@ -1,0 +1,56 @@
+"""`stubborn-plus`: our agent. It is the paper's with other target detection, and explores more thoroughly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from sim.interface import CameraModel, RobotModel, Segmenter, SuccessRule
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.exploration.explorer import ExplorerConfig
+from stubborn.exploration.thorough import ThoroughConfig
+from stubborn.planning.avoidance import collision_policies
+from stubborn.planning.planner import Planner
+from stubborn.target.distances import StopDistances
+from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
+from stubborn.target.verification import Verifier
+from stubborn.target.viewpoints import ViewpointFinder
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlusConfig(AgentConfig):
+    """All parameters of `stubborn-plus`."""
+
+    explorer: ExplorerConfig = field(default_factory=ThoroughConfig)
+    """See `AgentConfig`; by default it also looks around and visits what it has not seen."""
+    seeker: TrackSeekerConfig = field(default_factory=TrackSeekerConfig)
+    """Tracks of objects, and what is decided on them."""
+
+
+def plus_agent(
+    *,
+    camera: CameraModel,
+    robot: RobotModel,
+    segmenter: Segmenter,
+    config: PlusConfig,
+    success: SuccessRule = SuccessRule(),  # noqa: B008 - frozen
+    verifier: Verifier | None = None,
+    **parts: Any,
+) -> StubbornAgent:
+    """Returns the agent; the verifier of the paper's features is not used."""
+    policies = collision_policies(config.avoidance, config.untrap)
+    distances = StopDistances.of(config.target, success, segmenter.spec)
+    planner = Planner(config.planning, policies.proven_ground)
+    seeker = TrackSeeker(
+        config.seeker,
+        config.target,
+        camera=camera,
+        robot=robot,
+        segmenter=segmenter,
+        finder=ViewpointFinder(planner, policies.approach, distances, config.target.target_edge_m),
+        distances=distances,
+        candidate_score=config.mapping.candidate_score,
+    )
+    return StubbornAgent(
+        camera=camera, robot=robot, segmenter=segmenter, success=success, config=config, seeker=seeker, **parts
+    )

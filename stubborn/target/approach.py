@@ -1,0 +1,75 @@
+"""The approach to a candidate: the route to its nearest viewpoint."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Int
+
+from sim.geometry.pose import Pose
+from stubborn.navmap import NavMap
+from stubborn.planning.planner import Goal, Route
+from stubborn.planning.steering import route_end
+from stubborn.raster import nearest
+from stubborn.target.viewpoints import LastResort, ViewpointFinder, Viewpoints
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The route to the nearest viewpoint of the candidates that are pursued."""
+
+    route: Route | None
+    """None when the robot is on a viewpoint."""
+    bearing_rad: float
+    """World angle from the robot to the candidate cell."""
+    cell: tuple[int, int]
+    """Row and column, on the whole map, of the candidate cell nearest to the viewpoint that the route leads to."""
+    near_enough: bool = True
+    """False: a STOP there would not count; the candidate can only be verified from there."""
+
+
+def approach_on(
+    view: NavMap,
+    candidates: Bool[np.ndarray, "rows cols"],
+    pose: Pose,
+    finder: ViewpointFinder,
+    last_resort: LastResort,
+) -> Approach | None:
+    """Returns the approach to some candidates on a part of the map; its cell is counted in that part.
+
+    None where they have no viewpoint that can be reached.
+    """
+    if not candidates.any():
+        return None
+    cells = nearest(candidates)
+    for viewpoints in finder.find(view, pose, cells, last_resort):
+        found = approach_to(view, viewpoints, cells.rows, cells.cols, pose, finder)
+        if found is not None:
+            return found
+    return None
+
+
+def approach_to(
+    view: NavMap,
+    viewpoints: Viewpoints,
+    nearest_row: Int[np.ndarray, "rows cols"],
+    nearest_col: Int[np.ndarray, "rows cols"],
+    pose: Pose,
+    finder: ViewpointFinder,
+) -> Approach | None:
+    """Returns the approach to viewpoints; None where there is no route.
+
+    `nearest_row` and `nearest_col` are the candidate cell that is nearest to each cell of the view.
+    """
+    here = view.frame.cell(pose.x_m, pose.y_m)
+    there = bool(viewpoints.cells[here])
+    route = None if there else finder.planner.route(Goal(viewpoints.free, viewpoints.cells), pose)
+    if route is None and not there:
+        return None
+    end = here if route is None else route_end(route, pose)
+    cell = int(nearest_row[end]), int(nearest_col[end])
+    x_m, y_m = view.frame.centres(*cell)
+    bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
+    return Approach(route, bearing_rad, cell, viewpoints.near_enough)

@@ -1,0 +1,217 @@
+"""The seeker of `stubborn-plus`: it decides on tracks, looks before it goes, and tries the best one at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from sim.geometry.grid import Window, cells_near_segment
+from sim.geometry.pose import Pose
+from sim.interface import FORWARD_M, CameraModel, Observation, RobotModel, Segmenter
+from stubborn.mapping.mapper import Sighting
+from stubborn.navmap import NavMap
+from stubborn.raster import nearest
+from stubborn.target.approach import Approach, approach_on
+from stubborn.target.distances import StopDistances, TargetConfig
+from stubborn.target.look import LookConfig, Verdicts, look_at
+from stubborn.target.tracks import TrackConfig, Tracks
+from stubborn.target.viewpoints import LastResort, ViewpointFinder
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackSeekerConfig:
+    """Tracks, and what is decided on them."""
+
+    tracks: TrackConfig = field(default_factory=TrackConfig)
+    look: LookConfig = field(default_factory=LookConfig)
+
+
+class TrackSeeker:
+    """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.target.tracks` and `look`."""
+
+    def __init__(
+        self,
+        config: TrackSeekerConfig,
+        distances_config: TargetConfig,
+        *,
+        camera: CameraModel,
+        robot: RobotModel,
+        segmenter: Segmenter,
+        finder: ViewpointFinder,
+        distances: StopDistances,
+        candidate_score: float,
+    ) -> None:
+        """Where cells of a track have a target score above `candidate_score`, only these count as it."""
+        self.config = config
+        self.target = distances_config
+        self.camera = camera
+        self.robot = robot
+        self.segmenter = segmenter
+        self.finder = finder
+        self.distances = distances
+        self.candidate_score = candidate_score
+        self.reset("")
+
+    def reset(self, goal: str) -> None:
+        """See `Seeker`."""
+        self.goal = goal
+        self.step = 0
+        self.tracks: Tracks | None = None
+        self.verdicts = Verdicts(self.config.look, exact=not self.segmenter.spec.needs_verification)
+        self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
+        """Of the goal, for each track."""
+        self.pursued: int | None = None
+        """The doubtful track that is looked at."""
+        self._chosen: list[int] = []  # tracks that are approached as accepted
+        self._retry_step: dict[int, int] = {}
+        self._wait_steps: dict[int, int] = {}
+        self._went_nearer = False
+
+    def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
+        """See `Seeker`."""
+        if self.tracks is None:
+            self.tracks = Tracks(self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame)
+        self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
+        self.probability = self.tracks.probabilities(self.goal)
+        self.verdicts.update(self.probability, self.tracks.evidence)
+        self.step = step
+        self._chosen = self._to_approach(step)
+
+    def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
+        """See `Seeker`."""
+        if not self._chosen or not (sighting.distance_m <= self.distances.in_view_m).any():
+            return None
+        counts = self.cells_of(navmap, self._chosen)[sighting.rows, sighting.cols]
+        distance_m = np.where(counts, sighting.distance_m, np.inf)
+        point = int(np.argmin(distance_m))
+        if distance_m[point] > self.distances.in_view_m:
+            return None
+        return int(sighting.rows[point]), int(sighting.cols[point])
+
+    def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
+        """See `Seeker`: accepted tracks come first, then the best doubtful one."""
+        last = self.config.look.last_try(step) <= 1.0 or step >= self.target.last_resort_step
+        resort = LastResort.STOP if last else LastResort.NONE
+        while self._chosen:
+            found = self._drive_in(navmap, window, pose, self._chosen, resort)
+            if found is not None:
+                return found
+            self._set_aside(self._chosen)
+            self._chosen = self._to_approach(step)
+        doubtful = [t for t in self.verdicts.doubtful(self.probability) if self._is_due(t)]
+        while doubtful:
+            track = self._best_of(doubtful, pose)
+            found = self._look(navmap, window, pose, track)
+            if found is not None:
+                self.pursued = track
+                return found
+            doubtful.remove(track)
+        self.pursued = None
+        return None
+
+    def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
+        """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
+        if self._chosen:
+            return True
+        if self.pursued is not None:
+            self.verdicts.looked(self.pursued)
+            self.verdicts.update(self.probability, self._of_episode().evidence)
+            self.pursued = None
+        return False
+
+    def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
+        """See `Seeker`: once, where nothing that was seen is in the way and the STOP would be short."""
+        wanted_m = self.distances.nearer_viewpoint_m
+        if self._went_nearer or wanted_m is None:
+            return False
+        x_m, y_m = navmap.frame.centres(*approach.cell)
+        if pose.distance_to(Pose(float(x_m), float(y_m), 0.0)) <= wanted_m:
+            return False
+        index, swept = cells_near_segment(navmap.frame, pose.xy_m, pose.ahead(FORWARD_M), self.robot.radius_m)
+        self._went_nearer = not navmap.seen_obstacle[index][swept].any()
+        return self._went_nearer
+
+    def postpone(self, navmap: NavMap, step: int) -> None:
+        """See `Seeker`."""
+        self._set_aside(self._chosen or ([] if self.pursued is None else [self.pursued]))
+
+    def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the cells of the whole map that some tracks own."""
+        result = np.zeros(navmap.frame.shape, np.bool_)
+        for track in tracks:
+            index, mask = self._of_episode().footprint(track)
+            scored = mask & (navmap.score_max[index] > self.candidate_score)
+            result[index] |= scored if scored.any() else mask
+        return result
+
+    def _to_approach(self, step: int) -> list[int]:
+        """Returns the accepted tracks; near the end of the episode, without any, the most probable one."""
+        accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
+        least = self.config.look.last_try(step)
+        if accepted or least > 1.0:
+            return accepted
+        due = [t for t in np.flatnonzero(self.probability >= least).tolist() if self._is_due(t)]
+        return [max(due, key=lambda t: self.probability[t])] if due else []
+
+    def _best_of(self, doubtful: list[int], pose: Pose) -> int:
+        """Returns the pursued track, or the one with the highest probability less the cost of its distance."""
+        if self.pursued in doubtful:
+            return self.pursued
+        x_m, y_m = self._of_episode().middles(np.array(doubtful))
+        cost = self.config.look.per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
+        return doubtful[int(np.argmax(self.probability[doubtful] - cost))]
+
+    def _drive_in(
+        self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
+    ) -> Approach | None:
+        """Returns the approach to some tracks, on the local window if that is enough, else on the whole map."""
+        cells = self.cells_of(navmap, tracks)
+        for part in (window, self._known(navmap)):
+            last = resort if part is not window else LastResort.NONE
+            found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
+            if found is not None:
+                return _on_map(found, part)
+        return None
+
+    def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
+        """Returns the approach to a place to look at a track from; None: it was decided on, or it is set aside."""
+        tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
+        seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
+        for part in (window, self._known(navmap)):
+            view, mask = navmap.view(part), cells[part.index]
+            if not mask.any():
+                continue
+            found = look_at(view, nearest(mask), middle_xy_m, seen_from, pose, self.finder, self.config.look)
+            if found is not None:
+                return _on_map(found, part)
+        if self.verdicts.looks.get(track, 0) or seen_from.any():
+            self.verdicts.settle(track, float(self.probability[track]))
+            return None
+        found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
+        if found is None:
+            self._set_aside([track])
+        return found
+
+    def _is_due(self, track: int) -> bool:
+        return self.step >= self._retry_step.get(track, 0)
+
+    def _set_aside(self, tracks: list[int]) -> None:
+        """Tries these tracks again later, each time after twice as many steps."""
+        for track in tracks:
+            wait = self._wait_steps.get(track, self.target.retry_after_steps)
+            self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
+
+    def _known(self, navmap: NavMap) -> Window:
+        return navmap.known_window(margin_cells=self.target.margin_cells)
+
+    def _of_episode(self) -> Tracks:
+        assert self.tracks is not None, "observe comes first"
+        return self.tracks
+
+
+def _on_map(approach: Approach, part: Window) -> Approach:
+    """Returns an approach on a part of the map, with its cell counted on the whole map."""
+    return replace(approach, cell=(approach.cell[0] + part.rows.start, approach.cell[1] + part.cols.start))

@@ -1,0 +1,229 @@
+"""Objects with an identity: tracks in 3-D on the map, made of the detections of all classes.
+
+A track owns voxels. A region of equal labels in a frame extends the track that owns most of its voxels, else it begins
+a track. Each frame then gives every track in view the mean posterior of the pixels on its voxels, whatever region they
+are in: an object that was taken for a picture once, and for a mirror in other views, is the mirror that it mostly looks
+like. Voxels that are hidden have no pixels, so a track is judged only where it is visible.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int, Int16
+
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
+from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
+from stubborn.mapping.projection import Rays
+from stubborn.target.evidence import Evidence, EvidenceConfig
+from stubborn.track_kernels import claim, label_pixels, overlaps_of, regions_of, sums_by_track, voxels_of
+
+STRUCTURE = (
+    "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",
+)  # fmt: skip
+"""Classes that are no objects: they begin no tracks, but their probability counts against those there are."""
+_IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackConfig:
+    """How detections become tracks. The values are reasoned, not fitted."""
+
+    voxel_cells: int = 2
+    """Edge of a voxel in cells of the map."""
+    top_m: float = 2.2
+    """Higher points belong to no track."""
+    hot: float = 0.25
+    """A pixel is labelled as the goal from this probability on, though another class may be more probable."""
+    least_pixels: int = 12
+    """Smaller regions of a frame are no detections."""
+    depth_jump: float = 0.12
+    """Neighbouring pixels are one surface if their depths differ by less than this share; 12 % is what the top of a
+    table that is seen flat needs."""
+    same_share: float = 0.3
+    """A region extends a track that owns at least this share of its pixels."""
+    merge_share: float = 0.2
+    """Tracks of one category with at least this share each of a region's pixels are one object."""
+    part_share: float = 0.4
+    """A region of the goal with less than this share of a track's pixels in the frame is an object on it, not the track
+    itself; likewise a region of another class on a track of the goal."""
+    most_tracks: int = 512
+    """Further objects are not tracked."""
+    evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
+    """How views are fused."""
+
+    def __post_init__(self) -> None:
+        if self.voxel_cells < 1 or not 2 <= self.most_tracks < 2**15:
+            raise ConfigError(
+                f"TrackConfig needs voxel_cells >= 1 and most_tracks in [2, 32768), got {self.voxel_cells} and "
+                f"{self.most_tracks}."
+            )
+
+
+class Track(NamedTuple):
+    """What is known of one object."""
+
+    number: int
+    probability: Float32[np.ndarray, " classes"]
+    """Of each category of `MPCAT40` but void."""
+    bottom_m: float
+    """Height of its lowest voxel."""
+    top_m: float
+    """Height of its highest voxel's upper side."""
+    extent_m: tuple[float, float]
+    """Edges of the rectangle around it in plan, x and y."""
+    middle_xy_m: tuple[float, float]
+
+    @property
+    def category(self) -> str:
+        """The most probable category."""
+        return MPCAT40[1 + int(np.argmax(self.probability))]
+
+    @property
+    def off_the_floor(self) -> bool:
+        """True for an object that hangs on a wall or stands on another one."""
+        return self.bottom_m > 0.3
+
+
+class Tracks:
+    """All objects seen in an episode."""
+
+    def __init__(self, config: TrackConfig, camera: CameraModel, camera_forward_m: float, frame: GridFrame) -> None:
+        """`frame` is that of the map; voxels are whole cells of it."""
+        self.config = config
+        self.camera = camera
+        self.frame = frame
+        self._forward_m = camera_forward_m
+        self._edge_m = frame.cell_m * config.voxel_cells
+        rows, cols = (n // config.voxel_cells for n in frame.shape)
+        self._shape = (rows, cols, int(config.top_m / self._edge_m))
+        self._owner: Int16[np.ndarray, " voxels"] = np.zeros(int(np.prod(self._shape)), np.int16)
+        self._size = np.zeros(config.most_tracks, np.int64)
+        self._low = np.full((config.most_tracks, 3), np.iinfo(np.int32).max, np.int64)
+        self._high = np.full((config.most_tracks, 3), -1, np.int64)
+        self._now = np.arange(config.most_tracks)  # the track that each one is a part of
+        self._rays: dict[int, Rays] = {}
+        self.evidence = Evidence(config.evidence, config.most_tracks, len(_IS_OBJECT))
+        self.count = 0
+        """Tracks have the numbers 1 to `count`."""
+        self.in_view: Int[np.ndarray, " n"] = np.zeros(0, np.intp)
+        """Tracks with enough pixels in the last frame."""
+
+    def add(
+        self,
+        posteriors: Float32[np.ndarray, "classes h w"],
+        depth: Float32[np.ndarray, "height_px width_px"],
+        pose: Pose,
+        goal: str,
+    ) -> None:
+        """Enters one frame: posteriors at a whole fraction of the depth image, which is in metres."""
+        rays = self._rays_for(posteriors.shape[2])
+        d, voxel = self._voxels(rays, depth, pose)
+        label = label_pixels(posteriors, _IS_OBJECT, MPCAT40_ID[goal] - 1, self.config.hot)
+        region, count = regions_of(label, voxel, d, self.config.depth_jump)
+        overlap, labels = overlaps_of(region, count, label, voxel, self._owner, self.count + 1)
+        track_of, takes_over = self._associate(overlap, labels, MPCAT40_ID[goal] - 1)
+        claim(region, voxel, self._owner, track_of, takes_over, self._size, self._low, self._high, self._shape)
+        sums, pixels = sums_by_track(posteriors, voxel, self._owner, self.count + 1)
+        self.in_view = np.flatnonzero(pixels >= self.config.least_pixels)
+        if self.in_view.size:
+            x_m, y_m = self.middles(self.in_view)
+            mean = sums[self.in_view] / pixels[self.in_view, None].astype(np.float32)
+            self.evidence.add(self.in_view, mean, pixels[self.in_view], pose.x_m - x_m, pose.y_m - y_m)
+
+    def probabilities(self, goal: str) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probability of the goal for each track; entry 0 is 0, as for a track that owns nothing."""
+        probability = self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1].copy()
+        probability[self._size[: self.count + 1] == 0] = 0.0
+        probability[0] = 0.0
+        return probability
+
+    def middles(self, tracks: Int[np.ndarray, " n"]) -> tuple[np.ndarray, np.ndarray]:
+        """Returns x and y of the middle of each track's rectangle, metres."""
+        middle = 0.5 * (self._low[tracks] + self._high[tracks] + 1) * self._edge_m
+        return self.frame.origin_xy_m[0] + middle[:, 1], self.frame.origin_xy_m[1] + middle[:, 0]
+
+    def track(self, number: int) -> Track:
+        """Returns what is known of one track."""
+        (x_m,), (y_m,) = self.middles(np.array([number]))
+        low, high = self._low[number], self._high[number] + 1
+        rows_m, cols_m, _ = (high - low) * self._edge_m
+        bottom_m, top_m = low[2] * self._edge_m, high[2] * self._edge_m
+        probability = self.evidence.probability[number]
+        return Track(number, probability, float(bottom_m), float(top_m), (float(cols_m), float(rows_m)), (x_m, y_m))
+
+    def footprint(self, number: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
+        """Returns the map cells of a track's voxels: rows and columns of a rectangle, and a mask over it."""
+        (row, col, _), (last_row, last_col, _) = self._low[number], self._high[number]
+        volume = self._owner.reshape(self._shape)[row : last_row + 1, col : last_col + 1]
+        n = self.config.voxel_cells
+        mask = (volume == number).any(axis=2).repeat(n, axis=0).repeat(n, axis=1)
+        return (slice(n * row, n * (last_row + 1)), slice(n * col, n * (last_col + 1))), mask
+
+    def _rays_for(self, width: int) -> Rays:
+        block_px = self.camera.width_px // width
+        if block_px not in self._rays:
+            self._rays[block_px] = Rays(self.camera, block_px // 2, block_px)
+        return self._rays[block_px]
+
+    def _voxels(
+        self, rays: Rays, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose
+    ) -> tuple[Float32[np.ndarray, "h w"], Int[np.ndarray, "h w"]]:
+        """Returns the depth of the posteriors' pixels and the voxel of each, -1 without one."""
+        d, camera = rays.sample(depth), self.camera
+        x_m, y_m = pose.ahead(self._forward_m)
+        voxel = voxels_of(
+            d, rays.left, rays.up, x_m, y_m, pose.yaw_rad, camera.height_m, camera.min_depth_m, camera.max_depth_m,
+            *self.frame.origin_xy_m, self._edge_m, self._shape,
+        )  # fmt: skip
+        return d, voxel
+
+    def _associate(
+        self, overlap: Int[np.ndarray, "regions tracks"], labels: Int[np.ndarray, " regions"], goal: int
+    ) -> tuple[Int[np.ndarray, " regions"], Bool[np.ndarray, " regions"]]:
+        """Returns the track of each region, 0 for none, and whether it takes voxels over; new tracks are begun."""
+        c, track_of = self.config, np.zeros(len(labels), np.int64)
+        takes_over = np.zeros(len(labels), np.bool_)
+        pixels, shown = overlap.sum(axis=1), overlap.sum(axis=0)
+        for region in np.flatnonzero(pixels >= c.least_pixels).tolist():
+            owned = overlap[region, 1:]
+            best = 1 + int(np.argmax(owned)) if owned.size else 0
+            if best and overlap[region, best] >= c.same_share * pixels[region]:
+                small = overlap[region, best] < c.part_share * shown[best]
+                one_is_goal = (labels[region] == goal) != (int(np.argmax(self.evidence.probability[best])) == goal)
+                takes_over[region] = small and one_is_goal
+                track_of[region] = self._begin() if takes_over[region] else self._merged(overlap[region], best)
+            elif overlap[region, 0] >= c.least_pixels:
+                track_of[region] = self._begin()
+        return track_of, takes_over
+
+    def _merged(self, overlap: Int[np.ndarray, " tracks"], best: int) -> int:
+        """Returns the track of a region, after tracks of the same category that it shows as one object are merged.
+
+        The oldest one stays, with what was decided on it.
+        """
+        category = np.argmax(self.evidence.probability[: len(overlap)], axis=1)
+        shown = overlap >= max(self.config.merge_share * overlap.sum(), self.config.least_pixels)
+        shown[0], shown[best] = False, True
+        same = np.unique(self._now[np.flatnonzero(shown & (category == category[best]))]).tolist()
+        for track in same[1:]:
+            low, high = self._low[track], self._high[track] + 1
+            volume = self._owner.reshape(self._shape)[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
+            volume[volume == track] = same[0]
+            self._size[same[0]] += self._size[track]
+            self._size[track] = 0
+            self._now[self._now == track] = same[0]
+            self._low[same[0]] = np.minimum(self._low[same[0]], low)
+            self._high[same[0]] = np.maximum(self._high[same[0]], self._high[track])
+            self.evidence.merge(track, same[0])
+        return same[0]
+
+    def _begin(self) -> int:
+        """Returns the number of a new track; 0 where there are too many."""
+        if self.count + 1 >= self.config.most_tracks:
+            return 0
+        self.count += 1
+        return self.count

@@ -1,0 +1,184 @@
+"""Compiled loops over the pixels of one frame, for `stubborn.target.tracks`: labels, regions, voxels, sums."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+NO_LABEL = -1
+
+
+@njit(cache=True)
+def label_pixels(posteriors, is_object, goal, hot):
+    """Returns the most probable class of each pixel, -1 where that is no object; the goal from probability `hot` on.
+
+    Args:
+        posteriors: (classes, rows, cols) float32.
+        is_object: (classes,) bool.
+        goal: class of the goal.
+        hot: least probability of the goal at which a pixel gets its label.
+    """
+    classes, rows, cols = posteriors.shape
+    best = posteriors[0].copy()
+    label = np.zeros((rows, cols), np.int16)
+    for k in range(1, classes):
+        for r in range(rows):
+            for c in range(cols):
+                if posteriors[k, r, c] > best[r, c]:
+                    best[r, c] = posteriors[k, r, c]
+                    label[r, c] = k
+    for r in range(rows):
+        for c in range(cols):
+            if posteriors[goal, r, c] >= hot:
+                label[r, c] = goal
+            elif not is_object[label[r, c]]:
+                label[r, c] = NO_LABEL
+    return label
+
+
+@njit(cache=True)
+def voxels_of(depth, left, up, x_m, y_m, yaw_rad, height_m, near_m, far_m, origin_x_m, origin_y_m, edge_m, shape):
+    """Returns the row-major voxel of each depth pixel, -1 without one.
+
+    Args:
+        depth: (rows, cols) float32, metres along the optical axis.
+        left: (cols,) metres to the left per metre of depth.
+        up: (rows,) metres upwards per metre of depth.
+        x_m: position of the camera; also `y_m`, `yaw_rad` and its `height_m` above the floor.
+        near_m: depths from here to `far_m` are valid.
+        origin_x_m: outer corner of the first voxel; also `origin_y_m`.
+        edge_m: edge of a voxel.
+        shape: rows (y), columns (x) and layers (height) of the volume.
+    """
+    rows, cols = depth.shape
+    result = np.full((rows, cols), -1, np.int64)
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    for r in range(rows):
+        for c in range(cols):
+            d = depth[r, c]
+            if not near_m <= d < far_m:
+                continue
+            x = x_m + d * (cos - sin * left[c]) - origin_x_m
+            y = y_m + d * (sin + cos * left[c]) - origin_y_m
+            row, col = int(y / edge_m), int(x / edge_m)
+            layer = int(max(height_m + d * up[r], 0.0) / edge_m)
+            if x >= 0.0 and y >= 0.0 and row < shape[0] and col < shape[1] and layer < shape[2]:
+                result[r, c] = (row * shape[1] + col) * shape[2] + layer
+    return result
+
+
+@njit(cache=True)
+def _root(parent, i):
+    while parent[i] != i:
+        parent[i] = parent[parent[i]]
+        i = parent[i]
+    return i
+
+
+@njit(cache=True)
+def regions_of(label, voxel, depth, jump):
+    """Returns the number of each pixel's region, 1 on, 0 for none, and the number of regions.
+
+    Neighbours belong together if their labels are equal and their depths differ by less than `jump` of the depth.
+    """
+    rows, cols = label.shape
+    parent = np.arange(rows * cols)
+    for r in range(rows):
+        for c in range(cols):
+            if label[r, c] < 0 or voxel[r, c] < 0:
+                continue
+            for other_r, other_c in ((r - 1, c), (r, c - 1)):
+                if other_r < 0 or other_c < 0 or voxel[other_r, other_c] < 0:
+                    continue
+                if label[other_r, other_c] != label[r, c]:
+                    continue
+                if abs(depth[r, c] - depth[other_r, other_c]) < jump * depth[r, c]:
+                    parent[_root(parent, r * cols + c)] = _root(parent, other_r * cols + other_c)
+    number = np.zeros(rows * cols, np.int32)
+    region = np.zeros((rows, cols), np.int32)
+    count = 0
+    for r in range(rows):
+        for c in range(cols):
+            if label[r, c] < 0 or voxel[r, c] < 0:
+                continue
+            root = _root(parent, r * cols + c)
+            if number[root] == 0:
+                count += 1
+                number[root] = count
+            region[r, c] = number[root]
+    return region, count
+
+
+@njit(cache=True)
+def overlaps_of(region, count, label, voxel, owner, tracks):
+    """Returns the pixels of each region by the track that owns their voxels, (count + 1, tracks), and their labels.
+
+    Column 0 counts voxels without an owner.
+    """
+    overlap = np.zeros((count + 1, tracks), np.int32)
+    labels = np.zeros(count + 1, np.int16)
+    for r in range(region.shape[0]):
+        for c in range(region.shape[1]):
+            if region[r, c] > 0:
+                overlap[region[r, c], owner[voxel[r, c]]] += 1
+                labels[region[r, c]] = label[r, c]
+    return overlap, labels
+
+
+@njit(cache=True)
+def claim(region, voxel, owner, track_of, takes_over, size, low, high, shape):
+    """Gives voxels to tracks: those without an owner and, where a region takes over, all of it.
+
+    Args:
+        region: (rows, cols) number of each pixel's region, 0: none.
+        voxel: (rows, cols) row-major voxel of each pixel.
+        owner: (voxels,) track of each voxel, 0: none; is changed.
+        track_of: (regions,) track of each region, 0: none.
+        takes_over: (regions,) True: voxels of other tracks change their owner.
+        size: (tracks,) number of voxels of each track; is changed.
+        low: (tracks, 3) least row, column and layer of each track; is changed.
+        high: (tracks, 3) highest ones; is changed.
+        shape: of the volume.
+    """
+    for r in range(region.shape[0]):
+        for c in range(region.shape[1]):
+            track = track_of[region[r, c]]
+            if track == 0:
+                continue
+            at = voxel[r, c]
+            before = owner[at]
+            if before == track or (before != 0 and not takes_over[region[r, c]]):
+                continue
+            owner[at] = track
+            size[track] += 1
+            if before != 0:
+                size[before] -= 1
+            layer = at % shape[2]
+            col = (at // shape[2]) % shape[1]
+            row = at // (shape[2] * shape[1])
+            for axis, value in ((0, row), (1, col), (2, layer)):
+                low[track, axis] = min(low[track, axis], value)
+                high[track, axis] = max(high[track, axis], value)
+
+
+@njit(cache=True)
+def sums_by_track(posteriors, voxel, owner, tracks):
+    """Returns the sum of the posteriors of the pixels of each track, (tracks, classes), and how many these are."""
+    classes, rows, cols = posteriors.shape
+    track = np.zeros((rows, cols), np.int16)
+    pixels = np.zeros(tracks, np.int32)
+    for r in range(rows):
+        for c in range(cols):
+            if voxel[r, c] >= 0:
+                track[r, c] = owner[voxel[r, c]]
+                pixels[track[r, c]] += 1
+    sums = np.zeros((tracks, classes), np.float32)
+    for k in range(classes):
+        for r in range(rows):
+            for c in range(cols):
+                if track[r, c] > 0:
+                    sums[track[r, c], k] += posteriors[k, r, c]
+    pixels[0] = 0
+    return sums, pixels

@@ -1,0 +1,131 @@
+"""Tracks in a world of boxes: identity from frame to frame, confusers that compete, evidence only where visible."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.geometry.grid import GridFrame
+from sim.geometry.pose import Pose
+from sim.interface import MPCAT40, MPCAT40_ID
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target.evidence import Evidence, EvidenceConfig
+from stubborn.target.tracks import TrackConfig, Tracks
+from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld
+
+WALL = Box((4.0, 4.2), (-3.0, 3.0), (0.0, 2.5))
+TABLE = Box((2.0, 2.6), (-0.5, 0.5), (0.0, 0.7), "table")
+PICTURE = Box((3.95, 4.0), (0.8, 1.4), (1.0, 1.6), "picture")
+CHAIR = Box((2.0, 2.4), (1.2, 1.6), (0.0, 0.9), "chair")
+FRAME = GridFrame.around_start(300, 0.05)
+
+
+def tracked() -> Tracks:
+    return Tracks(TrackConfig(), SMALL_CAMERA, 0.0, FRAME)
+
+
+def look(
+    tracks: Tracks, pose: tuple[float, float, float], *boxes: Box, goal: str = "table", taken_for: str | None = None
+) -> None:
+    """Enters a frame of some boxes; with `taken_for`, half of the table's probability goes to another category."""
+    world = GridWorld([WALL, *boxes], pose, camera=SMALL_CAMERA)
+    observation = world.observe(goal)
+    posteriors = np.array(GroundTruthSegmenter().posteriors(observation))
+    if taken_for is not None:
+        table = posteriors[MPCAT40_ID["table"] - 1].copy()
+        posteriors[MPCAT40_ID["table"] - 1] = 0.3 * table
+        posteriors[MPCAT40_ID[taken_for] - 1] += 0.7 * table
+    tracks.add(posteriors, observation["depth"], Pose(*pose), goal)
+
+
+def of(tracks: Tracks, category: str) -> list:
+    """Returns the tracks that are surely of a category; slivers of a side just seen are not."""
+    found = [tracks.track(i) for i in range(1, tracks.count + 1)]
+    return [track for track in found if track.category == category and track.probability.max() > 0.5]
+
+
+VIEWS = ((0.0, 0.0, 0.0), (0.2, 0.3, -0.1), (0.4, 0.5, -0.25), (0.6, 0.8, -0.4), (0.8, 1.2, -0.75))
+
+
+def test_an_object_is_one_track_from_all_sides_that_are_passed():
+    tracks = tracked()
+    for pose in VIEWS:
+        look(tracks, pose, TABLE, PICTURE)
+    assert len(of(tracks, "table")) == 1
+    assert len(of(tracks, "picture")) == 1
+    (table,), (picture,) = of(tracks, "table"), of(tracks, "picture")
+    assert (table.bottom_m, picture.bottom_m) == (0.0, pytest.approx(1.0, abs=0.11))
+    assert table.top_m == pytest.approx(0.7, abs=0.11)
+    assert picture.top_m == pytest.approx(1.6, abs=0.11)
+    assert picture.off_the_floor
+    assert not table.off_the_floor
+    assert table.middle_xy_m == pytest.approx((2.3, 0.0), abs=0.2)
+    index, mask = tracks.footprint(table.number)
+    x_m, y_m = FRAME.centres(*np.nonzero(np.pad(mask, ((index[0].start, 0), (index[1].start, 0)))))
+    assert 1.9 <= x_m.min() <= x_m.max() <= 2.7
+    assert -0.6 <= y_m.min() <= y_m.max() <= 0.6
+
+
+def test_objects_side_by_side_are_two_tracks():
+    tracks = tracked()
+    for pose in VIEWS:
+        look(tracks, pose, TABLE, CHAIR)
+    assert [len(of(tracks, name)) for name in ("table", "chair")] == [1, 1]
+
+
+def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
+    tracks = tracked()
+    look(tracks, VIEWS[0], TABLE, goal="cabinet", taken_for="cabinet")
+    assert tracks.probabilities("cabinet").max() > 0.5
+    for pose in VIEWS[1:]:
+        look(tracks, pose, TABLE, goal="cabinet")
+    assert tracks.probabilities("cabinet").max() < 0.1
+    assert len(of(tracks, "table")) == 1
+
+
+def test_what_is_hidden_is_not_judged():
+    tracks = tracked()
+    look(tracks, VIEWS[0], TABLE)
+    before = tracks.probabilities("table").max()
+    screen = Box((1.0, 1.05), (-2.0, 2.0), (0.0, 2.5))
+    look(tracks, VIEWS[0], screen, TABLE)
+    assert tracks.probabilities("table").max() == before
+    assert 1 not in tracks.in_view
+
+
+def test_a_tracks_probability_is_zero_where_it_lost_all_voxels_or_does_not_exist():
+    tracks = tracked()
+    look(tracks, VIEWS[0], TABLE)
+    assert tracks.probabilities("table")[0] == 0.0
+    assert len(tracks.probabilities("table")) == tracks.count + 1
+
+
+CLASSES = len(MPCAT40) - 1
+
+
+def seen(*views: tuple[float, float, float], frames: int = 1) -> float:
+    """Returns the fused probability of class 0 after views (bearing in rad, distance in metres, its probability)."""
+    evidence = Evidence(EvidenceConfig(), 2, CLASSES)
+    for bearing_rad, distance_m, p in views * frames:
+        mean = np.full((1, CLASSES), 0.02 / (CLASSES - 2), np.float32)
+        mean[0, 0], mean[0, 1] = p * 0.98, (1.0 - p) * 0.98
+        at = np.array([distance_m * np.cos(bearing_rad)]), np.array([distance_m * np.sin(bearing_rad)])
+        evidence.add(np.array([1]), mean, np.array([200]), *at)
+    return float(evidence.probability[1, 0])
+
+
+def test_looking_longer_from_one_place_is_no_further_evidence():
+    once, often = seen((0.0, 2.0, 0.6)), seen((0.0, 2.0, 0.6), frames=50)
+    assert often == pytest.approx(once, abs=1e-3)
+    assert once == pytest.approx(0.6, abs=0.05)
+
+
+def test_views_that_differ_count_and_those_that_contradict_cancel():
+    one, three = seen((0.0, 2.0, 0.6)), seen((0.0, 2.0, 0.6), (1.5, 2.0, 0.6), (3.0, 2.0, 0.6))
+    assert three > one + 0.02
+    assert seen((0.0, 2.0, 0.9), (1.5, 2.0, 0.1)) == pytest.approx(0.5, abs=0.05)
+
+
+def test_a_look_from_too_near_or_too_far_counts_less():
+    assert seen((0.0, 2.0, 0.1), (1.5, 0.8, 0.9)) < 0.3
+    assert seen((0.0, 2.0, 0.1), (1.5, 4.5, 0.9)) < 0.3
