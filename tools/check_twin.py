@@ -50,11 +50,11 @@ class Args:
     """Folders of recorded runs on that split."""
     explore: bool = False
     """Also run the agent of each run in the twin."""
-    episodes: int | None = None
+    episodes: cli.Count | None = None
     """Only the first so many episodes of each run."""
-    shift_m: float = 0.01
+    shift_m: cli.NotNegative = 0.01
     """Distance by which the starts of the second run in the twin are moved."""
-    out: Path | None = None
+    out: cli.OutFile | None = None
     """File for a JSON line of each episode."""
 
 

@@ -146,6 +146,8 @@ def main(args: Args) -> int:
         os.environ["LP_NUM_THREADS"] = "1"  # before the first context: llvmpipe reads it then
     root = args.root or assets_dir()
     names = [name for name in SPLITS if (root / name / f"{name}.json.gz").is_file()]
+    if not names:
+        raise ConfigError(f"--root '{root}' has no split; one of {', '.join(SPLITS)} is a folder in it.")
     splits = {name: _load(root / name) for name in names}
     facts = {name: describe_all(root / name, args) for name in names}
     parts = [HEAD, _summary_table(splits, facts), _category_houses_table(splits, facts)]

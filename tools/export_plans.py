@@ -39,23 +39,23 @@ from sim.plans.plan import write_plan
 class Args:
     """Options of the command."""
 
-    out: Path
+    out: cli.OutFolder
     """Folder for the npz files; created if missing."""
     split: str | None = None
     """Name or folder of a split whose houses are exported."""
-    houses: int | None = None
+    houses: cli.Count | None = None
     """Number of houses; by default all of the split, or 1."""
-    workers: int = 1
+    workers: cli.Count = 1
     """Number of processes."""
     shard: str | None = None
     """Part of the work, "i/n", for several machines."""
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
-    first_seed: int = 0
+    first_seed: cli.Seed = 0
     """Without a split: the first of consecutive seeds."""
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; drawn when not given."""
-    area_m2: float | None = None
+    area_m2: cli.Positive | None = None
     """Without a split: floor area; drawn when not given."""
 
 

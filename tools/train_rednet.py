@@ -160,7 +160,9 @@ class Trainer:
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         second = model.config.second
-        sampler = Sampler(camera, args.block_px, Augmentation(), args.window_px, args.whole_share, second)
+        sampler = Sampler(
+            camera, args.block_px, Augmentation(), args.window_px, args.whole_share, args.focus_share, second
+        )
         repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
         self.data = ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
         self.val_block_px = args.val_block_px or args.block_px
@@ -384,7 +386,7 @@ def _append(file: Path, row: dict[str, Any]) -> None:
 
 
 def _check(args: Args) -> None:
-    """Raises ConfigError for arguments that are not allowed."""
+    """Raises ConfigError for arguments that are not allowed, or name no shards."""
     if args.size not in NETWORKS:
         raise ConfigError(f"--size must be one of {', '.join(NETWORKS)}, got '{args.size}'.")
     if args.precision not in ("auto", "bf16", "fp32"):
@@ -404,12 +406,15 @@ def _check(args: Args) -> None:
         raise ConfigError(f"--window-px must be at least 32 (the network halves it five times), got {args.window_px}.")
     if not 0.0 <= args.whole_share <= 1.0 or (args.whole_share and args.window_px is None):
         raise ConfigError(f"--whole-share must be in [0, 1] and needs --window-px, got {args.whole_share}.")
+    if args.focus_share and args.window_px is None:
+        raise ConfigError(f"--focus-share needs --window-px, got {args.focus_share} without it.")
     if args.val_block_px is not None and args.val_block_px < 1:
         raise ConfigError(f"--val-block-px must be at least 1, got {args.val_block_px}.")
     if args.batch < 2:
         raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
     if args.hours is not None and args.hours <= 0:
         raise ConfigError(f"--hours must be > 0, got {args.hours}.")
+    _all_shards((*args.views, *args.val_views))
 
 
 if __name__ == "__main__":

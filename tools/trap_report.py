@@ -72,7 +72,6 @@ class Args:
 def main(args: Args) -> int:
     """Runs the missing episodes, then writes the table."""
     console = display.make_console()
-    args.out.mkdir(parents=True, exist_ok=True)
     results = args.out / "results.jsonl"
     found = read_lines(results, Row, what="Results")
     if found.torn:
@@ -83,6 +82,7 @@ def main(args: Args) -> int:
         done = {row["episode_id"] for row in rows if row["agent"] == name}
         for trial in run_trials(args, name, done):
             rows.append(row_of(trial))
+            results.parent.mkdir(parents=True, exist_ok=True)
             with results.open("a", encoding="utf-8") as file:
                 file.write(json.dumps(rows[-1]) + "\n")
             outcome = "escaped" if trial.escaped else "stuck"
