@@ -43,12 +43,12 @@ def main(args: Args) -> int:
         raise ConfigError(f"sim.web needs {', '.join(missing)}: pip install -e '.[web]'.")
     if not 0 <= args.port <= 65535:
         raise ConfigError(f"--port must lie between 0 and 65535, got {args.port}.")
+    listening = _listen(args.host, args.port)  # before the imports, which take seconds
     import uvicorn
 
     from sim.web.catalogue import Runs
     from sim.web.server import MAX_MESSAGE_BYTES, Hub, make_app
 
-    listening = _listen(args.host, args.port)
     port = listening.getsockname()[1]
     hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
     app = make_app(Hub(), Runs(args.runs), hosts=hosts)

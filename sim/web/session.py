@@ -173,7 +173,7 @@ class SharedAgent:
             "ended": advised is None,
             "last": None if self._last is None else ACTION_WORDS[self._last],
             "advice": None if advised is None else ACTION_WORDS[advised],
-            "doing": painter.words() if painter is not None else "",
+            "doing": painter.words() if painter is not None and not self.stopped_by_person else "",
             "collided": bool(self.info.get("collided", False)),
             "collisions": int(metrics["collisions"]),
             "driven_m": float(metrics["path_length"]),

@@ -184,6 +184,25 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/gymnasium.md
     f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
+    # docs/plans.md
+    f"{PYTHON} tools/export_plans.py --split val --out runs/plans/val --workers 2": (
+        f"{PYTHON} tools/export_plans.py --split val --houses 1 --workers 1 --out {{tmp}}/plans",
+    ),
+    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/train --workers 2": (
+        f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --kind studio --houses 1 --workers 1"
+        " --out {tmp}/plans",
+    ),
+    f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large": Only(
+        "a large house takes long; the command before it is tried with a small one"
+    ),
+    f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
+        f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 1 --workers 1 --out {{tmp}}/real",
+    ),
+    f"{PYTHON} tools/check_twin.py --plans runs/plans/val --runs runs/real --explore": (
+        f"{PYTHON} tools/export_plans.py --split val --houses 1 --out {{tmp}}/plans",
+        f"{_RUN} --semantics gt --record --episodes 1 --out {{tmp}}/real",
+        f"{PYTHON} tools/check_twin.py --plans {{tmp}}/plans --runs {{tmp}}/real --explore --out {{tmp}}/lines.jsonl",
+    ),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
@@ -363,6 +382,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
+    f"{PYTHON} -m sim.web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
     f"{PYTHON} -m sim.teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{PYTHON} -m sim.teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
     # docs/verification.md
