@@ -13,8 +13,8 @@ from jaxtyping import Float32, Int64, Shaped, UInt8
 from torch import Tensor
 from torch.utils.data import Dataset
 
-from sim.interface import CameraModel, ConfigError
-from stubborn.segmentation.dataset import LabelledView
+from sim.interface import MPCAT40, CameraModel, ConfigError
+from stubborn.segmentation.dataset import GOAL_IDS, LabelledView
 from stubborn.segmentation.inputs import INPUTS, InputKind
 from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
 
@@ -69,6 +69,8 @@ class Sampler:
     """Samples are windows of this width, see `random_window`; None: whole views."""
     whole_share: float = 0.0
     """Share of the windows that show the whole view, shrunk, as in the input of a network that works on such images."""
+    focus_share: float = 0.0
+    """Share of the windows that show some pixel of a goal category, each category in the view equally often."""
     second: InputKind = "depth"
     """Kind of the network's second input. It is computed from the whole view, before the window is cut out."""
 
@@ -79,7 +81,8 @@ class Sampler:
         channels = second.of(jitter_depth(shrink(view.depth_m, self.block_px), augmentation, rng), self.camera)
         if self.window_px is not None:
             height, width = semantic.shape
-            window = random_window(height, width, self.window_px, self.whole_share, rng)
+            shown = random_goal_pixel(semantic, rng) if rng.random() < self.focus_share else None
+            window = random_window(height, width, self.window_px, self.whole_share, rng, shown=shown)
             rgb, semantic = window.colour(rgb), window.labels(semantic)
             channels = second.zoomed(channels[window.cut], window.width_px, window.height_px)
         if augmentation.mirror and rng.random() < 0.5:
@@ -139,13 +142,34 @@ class Window:
         )
 
 
+def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
+    """Returns row and column of a pixel of a goal category, each category in the view equally often; None without one.
+
+    Categories and not pixels are drawn, so that windows show small objects as often as large ones.
+    """
+    present = np.flatnonzero(np.bincount(semantic.reshape(-1), minlength=len(MPCAT40)))
+    goals = np.intersect1d(present, GOAL_IDS)
+    if goals.size == 0:
+        return None
+    pixels = np.flatnonzero(semantic == rng.choice(goals))
+    row, col = divmod(int(rng.choice(pixels)), semantic.shape[1])
+    return row, col
+
+
 def random_window(
-    height_px: int, width_px: int, window_px: int, whole_share: float, rng: np.random.Generator
+    height_px: int,
+    width_px: int,
+    window_px: int,
+    whole_share: float,
+    rng: np.random.Generator,
+    *,
+    shown: tuple[int, int] | None = None,
 ) -> Window:
     """Returns a window at a random position and scale: fewer pixels per step, objects in several sizes.
 
     A window has the proportions of the view and is `window_px` wide. Its scale is between that of the whole view,
-    shrunk, and that of the view's own pixels. With a probability of `whole_share` it is the whole view.
+    shrunk, and that of the view's own pixels. With a probability of `whole_share` it is the whole view. If a pixel is
+    given as `shown`, row and column, the window contains it.
 
     Raises:
         ConfigError: the view is narrower than the window.
@@ -155,8 +179,17 @@ def random_window(
     smallest = 0.0 if rng.random() < whole_share else np.log(window_px / width_px)
     cols = round(width_px * float(np.exp(rng.uniform(smallest, 0.0))))
     rows, window_rows = round(height_px * cols / width_px), round(height_px * window_px / width_px)
-    top, left = int(rng.integers(0, height_px - rows + 1)), int(rng.integers(0, width_px - cols + 1))
+    row, col = (None, None) if shown is None else shown
+    top, left = _random_start(height_px, rows, row, rng), _random_start(width_px, cols, col, rng)
     return Window((slice(top, top + rows), slice(left, left + cols)), window_px, window_rows)
+
+
+def _random_start(size_px: int, length_px: int, shown: int | None, rng: np.random.Generator) -> int:
+    """Returns a random start of `length_px` of `size_px` pixels that contain pixel `shown`, if it is given."""
+    first, last = 0, size_px - length_px
+    if shown is not None:
+        first, last = max(first, shown - length_px + 1), min(last, shown)
+    return int(rng.integers(first, last + 1))
 
 
 def turn_hue(image: Float32[np.ndarray, "h w 3"], angle_rad: float) -> Float32[np.ndarray, "h w 3"]:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from sim.interface import CameraModel, ConfigError
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.samples import (
     IGNORED,
@@ -18,6 +18,7 @@ from stubborn.segmentation.samples import (
     jitter_colour,
     jitter_depth,
     labels,
+    random_goal_pixel,
     random_window,
     turn_hue,
 )
@@ -94,6 +95,38 @@ def test_a_share_of_the_windows_is_the_whole_view() -> None:
     windows = [random_window(60, 80, 40, 0.6, np.random.default_rng(seed)).labels(col) for seed in range(300)]
     whole = np.mean([window[0, 0] == 0 and window[0, -1] >= 78 for window in windows])
     assert whole == pytest.approx(0.6, abs=0.09)
+
+
+def test_windows_around_a_goal_show_it_and_small_goals_as_often_as_large_ones() -> None:
+    semantic = np.full((60, 80), MPCAT40_ID["wall"], np.uint8)
+    semantic[:, 50:] = MPCAT40_ID["bed"]
+    semantic[55:58, 2:5] = MPCAT40_ID["stool"]
+    shown_stools = 0
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        pixel = random_goal_pixel(semantic, rng)
+        assert pixel is not None
+        window = random_window(60, 80, 40, 0.0, rng, shown=pixel)
+        assert semantic[pixel] in semantic[window.cut]
+        rows, cols = window.cut
+        assert 0 <= rows.start <= pixel[0] < rows.stop <= 60
+        assert 0 <= cols.start <= pixel[1] < cols.stop <= 80
+        shown_stools += semantic[pixel] == MPCAT40_ID["stool"]
+    assert shown_stools == pytest.approx(150, abs=30)
+    assert random_goal_pixel(np.full((4, 4), MPCAT40_ID["wall"], np.uint8), np.random.default_rng(0)) is None
+
+
+def test_a_sampler_with_a_focus_shows_a_small_object_in_most_windows() -> None:
+    view = a_view()
+    semantic = np.full_like(view.semantic, MPCAT40_ID["wall"])
+    semantic[-3:, -3:] = MPCAT40_ID["stool"]
+    shares = []
+    for focus_share in (0.0, 1.0):
+        sampler = Sampler(CameraModel(), window_px=48, focus_share=focus_share, augmentation=NONE)
+        targets = [sampler(replace(view, semantic=semantic), np.random.default_rng(seed))[2] for seed in range(60)]
+        shares.append(np.mean([bool((target == MPCAT40_ID["stool"] - 1).any()) for target in targets]))
+    assert shares[0] < 0.4
+    assert shares[1] > 0.85  # shrinking may drop an object of which the window has one row
 
 
 def test_a_sampler_of_windows_pads_them_for_the_network() -> None:
