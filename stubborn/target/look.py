@@ -25,7 +25,7 @@ class LookConfig:
     """A track is looked at from this probability of the goal on."""
     accept: float = 0.6
     """It is accepted from this probability on, once it was seen well from two directions."""
-    decisive: float = 0.85
+    decisive: float = 0.92
     """From this probability on one direction is enough."""
     settle: float = 0.5
     """Where no further look is possible, it is accepted from this probability on."""
@@ -78,10 +78,14 @@ class Verdicts:
             if track in self.accepted:
                 if p < c.drop:
                     self._reject(track)
-            elif p >= c.accept and (self.exact or views >= 2 or (views == 1 and p >= c.decisive)):
-                if track not in self.rejected or p >= c.recover:
+            elif track in self.rejected:
+                if p >= c.recover:
                     self._accept(track)
-            elif views >= 2 or self.looks.get(track, 0) >= c.most_looks:
+            elif p >= c.accept and (self.exact or views >= 2 or (views == 1 and p >= c.decisive)):
+                self._accept(track)
+            elif self.looks.get(track, 0) >= c.most_looks:
+                self.settle(track, p)
+            elif views >= 2:
                 self._reject(track)
 
     def looked(self, track: int) -> None:
