@@ -119,14 +119,14 @@ def test_windows_around_a_goal_show_it_and_small_goals_as_often_as_large_ones() 
 def test_a_sampler_with_a_focus_shows_a_small_object_in_most_windows() -> None:
     view = a_view()
     semantic = np.full_like(view.semantic, MPCAT40_ID["wall"])
-    semantic[-3:, -3:] = MPCAT40_ID["stool"]
+    semantic[-9:, -9:] = MPCAT40_ID["stool"]
     shares = []
     for focus_share in (0.0, 1.0):
-        sampler = Sampler(CameraModel(), window_px=48, focus_share=focus_share, augmentation=NONE)
+        sampler = Sampler(CameraModel(), window_px=32, focus_share=focus_share, augmentation=NONE)
         targets = [sampler(replace(view, semantic=semantic), np.random.default_rng(seed))[2] for seed in range(60)]
         shares.append(np.mean([bool((target == MPCAT40_ID["stool"] - 1).any()) for target in targets]))
-    assert shares[0] < 0.4
-    assert shares[1] > 0.85  # shrinking may drop an object of which the window has one row
+    assert shares[0] < 0.6
+    assert shares[1] > 0.85  # shrinking may drop the edge of an object of which the window has a row
 
 
 def test_a_sampler_of_windows_pads_them_for_the_network() -> None:
