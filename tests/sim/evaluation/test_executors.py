@@ -5,8 +5,10 @@ from __future__ import annotations
 import importlib
 import json
 import os
+import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -209,6 +211,31 @@ def test_machines_with_other_code_are_refused(cluster: Any, monkeypatch: pytest.
     monkeypatch.setattr(executors_ray, "code_hash", lambda: "0ther")
     with pytest.raises(WorkersError, match=r"A machine of the Ray cluster has code .*, this one 0ther"):
         list(executor.run(SPEC, jobs(2), on_death=never))
+
+
+def test_workers_end_with_the_process_that_started_them_in_the_middle_of_an_item(tmp_path: Path) -> None:
+    markers = [tmp_path / "a", tmp_path / "b"]
+    code = f"""
+from pathlib import Path
+from sim.evaluation.parallel import ordered_map
+from tests.helpers.players import tell_and_sleep
+if __name__ == "__main__":
+    list(ordered_map(tell_and_sleep, [Path({str(markers[0])!r}), Path({str(markers[1])!r})], workers=2))
+"""
+    (tmp_path / "main.py").write_text(code)
+    path = os.pathsep.join([str(Path(__file__).parents[3]), os.environ.get("PYTHONPATH", "")])
+    parent = subprocess.Popen([sys.executable, str(tmp_path / "main.py")], env={**os.environ, "PYTHONPATH": path})
+    wait_for(lambda: all(marker.exists() and marker.read_text() for marker in markers), 60.0)
+    parent.kill()
+    parent.wait()
+    wait_for(lambda: not any(Path("/proc", marker.read_text(), "cmdline").exists() for marker in markers), 5.0)
+
+
+def wait_for(condition: Callable[[], bool], seconds: float) -> None:
+    until_s = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < until_s, "it did not happen"
+        time.sleep(0.02)
 
 
 def test_processes_are_an_executor_of_their_own_number() -> None:
