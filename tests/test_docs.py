@@ -73,6 +73,7 @@ FURNITURE_LAWS = [
 """Those that every style must keep."""
 NEED_MORE = {
     "rednet_semmap_mp3d_40.pth": "the published checkpoint",
+    "runs/plans": "plans that tools/export_plans.py writes",
 }
 """Words of blocks that cannot run here, and what they need."""
 

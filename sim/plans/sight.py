@@ -16,6 +16,7 @@ from sim.plans.plan import Plan
 from sim.plans.sight_kernels import cast_rays, enter_frame
 
 _MOST_ROWS = 128  # two words of 64 bits
+_NO_GOAL = -2
 
 
 class MapLayers(Protocol):
@@ -58,8 +59,10 @@ class SightConfig:
 class Look:
     """One frame."""
 
+    shares: NDArray[np.float64]
+    """(goals,) Share of the frame that each category of `GOAL_CATEGORIES` covers."""
     goal_share: float
-    """Share of the frame that the goal covers."""
+    """That of the goal; 0 without a goal."""
     new_floor_cells: int
     """Cells of the plan's floor that were never in view before."""
     target_rows: NDArray[np.int64]
@@ -122,7 +125,7 @@ class PlanCamera:
     def look(
         self,
         pose: Pose,
-        goal: str,
+        goal: str | None,
         layers: MapLayers,
         map_pose: Pose,
         step: int,
@@ -132,14 +135,16 @@ class PlanCamera:
 
         Args:
             pose: of the camera, in the world.
-            goal: the goal category.
+            goal: the goal category; None: there is none.
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.
             step: number of actions before this frame.
             goals_seen: (rows, cols) of the map; bit g is set where goal category g is in view.
         """
         frame, config, scratch = layers.frame, self.config, self._scratch_for(layers.frame)
-        count, pixels, new = cast_rays(
+        pixels = np.zeros(len(GOAL_CATEGORIES), np.int64)
+        number = _NO_GOAL if goal is None else GOAL_CATEGORIES.index(goal)
+        count, new = cast_rays(
             self.plan.span_start,
             self.plan.span_low_m,
             self.plan.span_high_m,
@@ -157,13 +162,14 @@ class PlanCamera:
                 config.score_max_height_m,
                 config.eye_level_halfwidth_m,
             ),
-            GOAL_CATEGORIES.index(goal),
+            number,
             _place(map_pose, frame),
             frame.cell_m,
             scratch.flags,
             scratch.touched,
             self.seen_floor,
             scratch.nothing if goals_seen is None else goals_seen,
+            pixels,
         )
         targets, row_0, row_1, col_0, col_1 = enter_frame(
             scratch.flags,
@@ -185,7 +191,8 @@ class PlanCamera:
         self._seen_cells += new
         rows, cols = np.divmod(targets.astype(np.int64), frame.shape[1])
         touched = None if row_1 < 0 else (slice(row_0, row_1 + 1), slice(col_0, col_1 + 1))
-        return Look(pixels / (self._left.size * self._up.size), new, rows, cols, touched)
+        shares = pixels / (self._left.size * self._up.size)
+        return Look(shares, 0.0 if goal is None else float(shares[number]), new, rows, cols, touched)
 
     def _scratch_for(self, frame: GridFrame) -> _Scratch:
         if self._scratch is None or self._scratch.flags.shape != frame.shape:

@@ -42,9 +42,9 @@ def _bits(first, last):
 @njit(cache=True, error_model="numpy")
 def cast_rays(
     span_start, span_low_m, span_high_m, span_goal, floor, ceiling_m, cell_m, place, left, up, camera, bands, goal,
-    map_pose, map_cell_m, flags, touched, seen_floor, goals_seen,
+    map_pose, map_cell_m, flags, touched, seen_floor, goals_seen, pixels,
 ):  # fmt: skip
-    """Looks once; returns the number of map cells in `touched`, of the goal's pixels and of newly seen floor cells.
+    """Looks once; returns the number of map cells in `touched`, and of newly seen floor cells.
 
     Args:
         span_start: (cells + 1,) see `sim.plans.plan.Plan`, as the next three.
@@ -60,13 +60,14 @@ def cast_rays(
         camera: height, least and largest depth of a distance, in metres.
         bands: heights in metres: lowest and highest of an obstacle, highest of a point in view, half width of the
             eye level.
-        goal: the goal category.
+        goal: the goal category; -2: none.
         map_pose: camera in the map: row and column with fractions, cosine and sine of the heading.
         map_cell_m: edge of a cell of the map.
         flags: (rows, cols) uint8 of the map; gets the flags of this module. It must be 0 everywhere.
         touched: (n,) int32, gets the row-major map cells whose flags are not 0.
         seen_floor: (rows, cols) bool of the plan; gets True where the floor is in view.
         goals_seen: (rows, cols) uint32 of the map; gets bit g where goal category g is in view.
+        pixels: (goals,) gets the number of pixels of each goal category added.
     """
     rows, cols = floor.shape
     map_rows, map_cols = flags.shape
@@ -80,7 +81,7 @@ def cast_rays(
     for at in range(image_rows):
         plane_m[at] = ((ceiling_m - height_m) if at < horizon else -height_m) / up[at]
     per_m = 1.0 / map_cell_m
-    count, pixels, new_floor = 0, 0, 0
+    count, new_floor = 0, 0
     for column in range(left.size):
         x_step = (place[2] - place[3] * left[column]) / cell_m
         y_step = (place[3] + place[2] * left[column]) / cell_m
@@ -129,8 +130,8 @@ def cast_rays(
                             continue
                         open_0, open_1 = open_0 & ~new_0, open_1 & ~new_1
                         category = span_goal[span]
-                        if category == goal:
-                            pixels += _ones(new_0) + _ones(new_1)
+                        if category >= 0:
+                            pixels[category] += _ones(new_0) + _ones(new_1)
                         if not near_m <= middle_m < far_m:
                             continue
                         map_row = int(map_pose[0] + middle_m * map_y_step)
@@ -193,7 +194,7 @@ def cast_rays(
             else:
                 y_next += y_every
                 row += d_row
-    return count, pixels, new_floor
+    return count, new_floor
 
 
 @njit(cache=True, error_model="numpy")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, CameraModel, Observation, RobotModel
+from sim.interface import GOAL_CATEGORIES, MAX_STEPS, CameraModel, Observation, RobotModel
 from sim.plans.episode import PlanEpisode
 from sim.plans.sight import Look, PlanCamera
 from stubborn.agent import AgentConfig, StubbornAgent
@@ -30,12 +30,12 @@ class TwinAgent(StubbornAgent):
     def begin(self, episode: PlanEpisode, seed: int) -> None:
         """Starts an episode."""
         self._episode = episode
-        self.reset(episode.goal, seed)
+        self.reset(episode.goal or GOAL_CATEGORIES[0], seed)
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the look from the present pose into the map, and returns the target points in it."""
         assert self._episode is not None
-        look = self._episode.camera.look(self._episode.robot.pose, self.goal, self.navmap, pose, self.step)
+        look = self._episode.camera.look(self._episode.robot.pose, self._episode.goal, self.navmap, pose, self.step)
         self._episode.see(look)
         return note_sighting(self, look, pose)
 
@@ -82,13 +82,28 @@ def play(
     return {**episode.metrics(), "end_reason": "stop" if episode.stopped else "max_steps"}
 
 
+def first_sights(
+    agent: TwinAgent, camera: PlanCamera, start: Pose, *, seed: int, max_steps: int = MAX_STEPS
+) -> tuple[dict[str, int], Mapping[str, Any]]:
+    """Lets an agent explore without a goal; returns the step of first sight of each goal category, and the metrics.
+
+    One episode measures an explorer on all categories of a house: it does not depend on the goal until that is seen.
+    """
+    episode = PlanEpisode(camera, None, start, max_steps=max_steps)
+    agent.begin(episode, seed)
+    while not episode.done and len(episode.first_sights) < len(camera.plan.goals()):
+        episode.act(agent.act(observation_of(episode)))
+    _look_once_more(agent, episode)
+    return episode.first_sights, episode.metrics()
+
+
 def observation_of(episode: PlanEpisode) -> Observation:
     """Returns the pose sensors and the goal; a plan has no images."""
     pose = episode.pose
     return {
         "gps": np.array([pose.x_m, pose.y_m], np.float32),
         "compass": np.array([pose.yaw_rad], np.float32),
-        "objectgoal": np.array([GOAL_CATEGORIES.index(episode.goal)], np.int64),
+        "objectgoal": np.array([GOAL_CATEGORIES.index(episode.goal or GOAL_CATEGORIES[0])], np.int64),
     }
 
 
