@@ -21,7 +21,7 @@ from stubborn.target.viewpoints import ViewpointFinder
 class LookConfig:
     """Probabilities at which a track is visited and accepted, and viewpoints. The values are reasoned, not fitted."""
 
-    visit: float = 0.25
+    visit: float = 0.35
     """A track is looked at from this probability of the goal on."""
     accept: float = 0.6
     """It is accepted from this probability on, once it was seen well from two directions."""

@@ -75,7 +75,8 @@ class TrackSeeker:
         if self.tracks is None:
             self.tracks = Tracks(self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame)
         self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
-        self.probability = self.tracks.probabilities(self.goal)
+        least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
+        self.probability = self.tracks.probabilities(self.goal, least_voxels)
         self.verdicts.update(self.probability, self.tracks.evidence)
         self.step = step
         self._chosen = self._to_approach(step)

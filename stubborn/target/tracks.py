@@ -40,6 +40,8 @@ class TrackConfig:
     """A pixel is labelled as the goal from this probability on, though another class may be more probable."""
     least_pixels: int = 12
     """Smaller regions of a frame are no detections."""
+    least_pixels_of_others: int = 40
+    """Smaller regions begin no track, unless they are of the goal: a network's frame has dozens of slivers."""
     depth_jump: float = 0.12
     """Neighbouring pixels are one surface if their depths differ by less than this share; 12 % is what the top of a
     table that is seen flat needs."""
@@ -50,7 +52,9 @@ class TrackConfig:
     part_share: float = 0.4
     """A region of the goal with less than this share of a track's pixels in the frame is an object on it, not the track
     itself; likewise a region of another class on a track of the goal."""
-    most_tracks: int = 512
+    least_voxels: int = 6
+    """With an imperfect detector a smaller track is no candidate: 6 voxels are 0.06 m2 of visible surface."""
+    most_tracks: int = 2048
     """Further objects are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
     """How views are fused."""
@@ -134,10 +138,10 @@ class Tracks:
             mean = sums[self.in_view] / pixels[self.in_view, None].astype(np.float32)
             self.evidence.add(self.in_view, mean, pixels[self.in_view], pose.x_m - x_m, pose.y_m - y_m)
 
-    def probabilities(self, goal: str) -> Float32[np.ndarray, " numbers"]:
-        """Returns the probability of the goal for each track; entry 0 is 0, as for a track that owns nothing."""
+    def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
+        """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""
         probability = self.evidence.probability[: self.count + 1, MPCAT40_ID[goal] - 1].copy()
-        probability[self._size[: self.count + 1] == 0] = 0.0
+        probability[self._size[: self.count + 1] < least_voxels] = 0.0
         probability[0] = 0.0
         return probability
 
@@ -196,7 +200,7 @@ class Tracks:
                 one_is_goal = (labels[region] == goal) != (int(np.argmax(self.evidence.probability[best])) == goal)
                 takes_over[region] = small and one_is_goal
                 track_of[region] = self._begin() if takes_over[region] else self._merged(overlap[region], best)
-            elif overlap[region, 0] >= c.least_pixels:
+            elif overlap[region, 0] >= (c.least_pixels if labels[region] == goal else c.least_pixels_of_others):
                 track_of[region] = self._begin()
         return track_of, takes_over
 

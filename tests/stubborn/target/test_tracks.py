@@ -21,7 +21,7 @@ FRAME = GridFrame.around_start(300, 0.05)
 
 
 def tracked() -> Tracks:
-    return Tracks(TrackConfig(), SMALL_CAMERA, 0.0, FRAME)
+    return Tracks(TrackConfig(least_pixels_of_others=12), SMALL_CAMERA, 0.0, FRAME)
 
 
 def look(
@@ -98,6 +98,7 @@ def test_a_tracks_probability_is_zero_where_it_lost_all_voxels_or_does_not_exist
     look(tracks, VIEWS[0], TABLE)
     assert tracks.probabilities("table")[0] == 0.0
     assert len(tracks.probabilities("table")) == tracks.count + 1
+    assert tracks.probabilities("table", least_voxels=1000).max() == 0.0
 
 
 CLASSES = len(MPCAT40) - 1

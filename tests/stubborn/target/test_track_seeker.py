@@ -1,0 +1,113 @@
+"""The seeker of stubborn-plus in a world of boxes with an imperfect detector."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sim.geometry.pose import Pose
+from sim.interface import MAX_STEPS, MPCAT40_ID, Action, Observation, RobotModel, Scores, SegmenterSpec
+from stubborn import agents
+from stubborn.agent import StubbornAgent
+from stubborn.plus import PlusConfig
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target.approach import Approach
+from stubborn.target.look import LookConfig
+from stubborn.target.track_seeker import TrackSeeker
+from stubborn.target.tracks import TrackConfig
+from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+
+ROOM = boxes_from_plan(
+    """
+####################
+#                  #
+#                  #
+#                  #
+#         tt       #
+#         tt       #
+#                  #
+#                  #
+####################
+""",
+    0.3,
+)
+START = (1.2, 1.3, 0.0)
+
+
+class Unsure:
+    """A detector that gives tables a probability of the goal, a bed; there is no bed."""
+
+    spec = SegmenterSpec(sensors=("semantic",))
+
+    def __init__(self, probability: float) -> None:
+        self.probability = probability
+
+    def posteriors(self, observation: Observation) -> np.ndarray:
+        posteriors = np.array(GroundTruthSegmenter().posteriors(observation))
+        bed, table = (MPCAT40_ID[name] - 1 for name in ("bed", "table"))
+        posteriors[bed] = self.probability * posteriors[table]
+        posteriors[table] *= 1.0 - self.probability
+        return posteriors
+
+    def scores(self, observation: Observation, goal: str) -> Scores:
+        posteriors = self.posteriors(observation)
+        target = posteriors[MPCAT40_ID[goal] - 1]
+        return Scores(target, posteriors.max(axis=0))
+
+
+def agent_with(probability: float, look: LookConfig | None = None) -> tuple[StubbornAgent, TrackSeeker]:
+    config = agents.SPECS["stubborn-plus"].config
+    assert isinstance(config, PlusConfig)
+    seeker = replace(config.seeker, tracks=TrackConfig(least_pixels_of_others=12), look=look or LookConfig())
+    agent = agents.make(
+        "stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=Unsure(probability), seeker=seeker
+    )
+    assert isinstance(agent, StubbornAgent)
+    assert isinstance(agent.seeker, TrackSeeker)
+    return agent, agent.seeker
+
+
+def test_a_doubtful_object_is_looked_at_from_two_sides_and_left():
+    agent, seeker = agent_with(0.45)
+    trace = run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=90)
+    assert not trace.stopped
+    assert seeker.verdicts.rejected
+    assert not seeker.verdicts.accepted
+    assert seeker.tracks is not None
+    assert max(seeker.tracks.evidence.near_sectors(track).sum() for track in seeker.verdicts.rejected) >= 2
+
+
+def test_near_the_end_the_best_rejected_object_is_tried():
+    agent, _ = agent_with(0.45, LookConfig(last_tries=((MAX_STEPS - 70, 0.3),)))
+    world = GridWorld(ROOM, START, camera=SMALL_CAMERA)
+    trace = run_episode(world, agent, "bed", max_steps=130)
+    assert trace.stopped
+    assert len(trace.actions) > 70
+    assert world.distance_to("table") < 1.0
+
+
+def test_a_sure_object_is_driven_to():
+    agent, seeker = agent_with(0.97)
+    world = GridWorld(ROOM, START, camera=SMALL_CAMERA)
+    trace = run_episode(world, agent, "bed", max_steps=120)
+    assert trace.stopped
+    assert trace.actions[-1] == Action.STOP
+    assert seeker.verdicts.accepted
+    assert world.distance_to("table") < 0.8
+
+
+def test_before_a_stop_that_would_be_short_it_goes_one_forward_nearer_where_nothing_is_in_the_way():
+    agent, seeker = agent_with(0.97)
+    here = Pose(0.0, 0.0, 0.0)
+
+    def nearer(gap_m: float) -> bool:
+        cell = agent.navmap.frame.cell(gap_m, 0.0)
+        return seeker.one_more_forward(agent.navmap, Approach(None, 0.0, cell), here)
+
+    assert not nearer(0.5)  # near enough
+    agent.navmap.seen_obstacle[agent.navmap.frame.cell(0.35, 0.1)] = True
+    assert not nearer(0.85)
+    agent.navmap.seen_obstacle[:] = False
+    assert nearer(0.85)
+    assert not nearer(0.85)  # once
