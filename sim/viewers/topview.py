@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
-from sim.houses.hazards import steepest_path
 from sim.task.ground_truth import Target
 from sim.viewers.viewer import Colour
 from sim.world.freespace import FreeSpace
@@ -24,6 +23,8 @@ SHORTEST: Colour = (240, 140, 20)
 STOPPED: Colour = (204, 65, 37)
 ROBOT: Colour = (20, 20, 20)
 _MARGIN_CELLS = 8
+_STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
+"""Length of a step to each neighbour of a cell; the cell itself is none."""
 
 
 class TopView:
@@ -114,16 +115,40 @@ def shortest_path_m(space: FreeSpace, target: Target, start_m: tuple[float, floa
     inside = 0 <= row < space.frame.shape[0] and 0 <= col < space.frame.shape[1]
     if not inside or not np.isfinite(target.distance_m[row, col]):
         return np.array([start_m])
-    cells = steepest_path(target.distance_m, (row, col))
+    cells = _descended(target.distance_m, row, col)
     x_m, y_m = space.frame.centres(cells[:, 0], cells[:, 1])
-    return np.vstack([start_m, _smooth(np.stack([x_m, y_m], axis=1))])
+    return _pulled_taut(np.vstack([start_m, np.stack([x_m, y_m], axis=1)]), space)
 
 
-def _smooth(points_m: NDArray[np.float64], reach: int = 6) -> NDArray[np.float64]:
-    """Returns the means over neighbouring points, which removes the steps of the cells; both ends stay."""
-    if len(points_m) <= 2 * reach:
-        return points_m
-    padded = np.vstack([np.repeat(points_m[:1], reach, axis=0), points_m, np.repeat(points_m[-1:], reach, axis=0)])
-    total = np.cumsum(np.vstack([np.zeros((1, 2)), padded]), axis=0)
-    width = 2 * reach + 1
-    return (total[width:] - total[:-width]) / width
+def _descended(field_m: NDArray[np.float32], row: int, col: int) -> NDArray[np.int64]:
+    """Returns the cells (n, 2) from one cell down a field of distances, always in the steepest of eight directions."""
+    padded = np.pad(field_m, 1, constant_values=np.inf)
+    cells = [(row, col)]
+    while True:
+        drop = (field_m[row, col] - padded[row : row + 3, col : col + 3]) / _STEP_CELLS
+        down, right = np.unravel_index(int(np.argmax(drop)), (3, 3))
+        if drop[down, right] <= 0.0:
+            return np.array(cells)
+        row, col = row + int(down) - 1, col + int(right) - 1
+        cells.append((row, col))
+
+
+def _pulled_taut(points_m: NDArray[np.float64], space: FreeSpace) -> NDArray[np.float64]:
+    """Returns those points of a path that are needed, because the straight line past them leaves the free space."""
+    kept, here = [0], 0
+    while here < len(points_m) - 1:
+        near, far = here + 1, len(points_m) - 1
+        while near < far:  # the farthest point in a straight line, by halving
+            middle = (near + far + 1) // 2
+            near, far = (middle, far) if _is_free(space, points_m[here], points_m[middle]) else (near, middle - 1)
+        kept.append(near)
+        here = near
+    return points_m[kept]
+
+
+def _is_free(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
+    """Returns whether the robot can drive straight from one point to another."""
+    samples = max(2, math.ceil(float(np.hypot(*(end_m - begin_m))) / space.frame.cell_m) * 2)
+    along = np.linspace(0.0, 1.0, samples)[1:, None]  # the start itself may lie beside the free cells
+    cells = space.frame.to_cells(begin_m + along * (end_m - begin_m))
+    return bool(space.free[cells[:, 0], cells[:, 1]].all())

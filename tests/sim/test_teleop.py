@@ -85,6 +85,7 @@ def test_a_drive_is_recorded_like_an_agents_episode_and_the_next_start_takes_the
     assert lines_of(tmp_path) == [line]
     teleop.drive(args, Script(["x"]))
     assert [line["episode_id"] for line in lines_of(tmp_path)] == ["e0", "e1"]
+    assert lines_of(tmp_path)[1]["failure"] == "misc"  # a person's STOP is no false detection
     assert json.loads((tmp_path / "summary.json").read_text())["episodes"] == 2
     with pytest.raises(ConfigError, match="another folder"):
         teleop.drive(args, Script(["x"]))

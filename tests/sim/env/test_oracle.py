@@ -87,3 +87,24 @@ def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
     result = task.metrics()
     assert result["success"] == 1.0
     assert result["collisions"] > 0
+
+
+def test_the_oracle_goes_on_after_other_actions_than_its_own_were_carried_out():
+    world = World(maze())
+    task = Task(world)
+    start = Pose(-3.0, -2.0, 0.0)
+    world.reset(start)
+    task.begin("bed", start)
+    oracle = Oracle(RunningEpisode(world, task))
+    oracle.reset("bed", seed=0)
+    for driven in [Action.TURN_LEFT] * 3 + [Action.MOVE_FORWARD] * 3:
+        oracle.act({})
+        oracle.overridden(driven)
+        task.observe(driven, world.move(driven))
+    left_m = task.metrics()["distance_to_goal"]
+    while not task.done:
+        action = oracle.act({})
+        task.observe(action, world.move(action))
+    result = task.metrics()
+    assert result["success"] == 1.0
+    assert result["path_length"] == pytest.approx(0.75 + left_m, rel=0.1)
