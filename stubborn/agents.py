@@ -17,6 +17,7 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.thorough import ThoroughConfig
+from stubborn.exploration.tour import TourConfig
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.target.verification import Verifier
 
@@ -44,7 +45,7 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
 )
 
 EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
-    {"corners": CornerConfig(), "thorough": ThoroughConfig(), "frontier": FrontierConfig()}
+    {"corners": CornerConfig(), "thorough": ThoroughConfig(), "frontier": FrontierConfig(), "tour": TourConfig()}
 )
 """The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
 

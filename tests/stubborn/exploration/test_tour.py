@@ -1,0 +1,133 @@
+"""The tour: its order, its stops, and an apartment."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from sim.geometry.grid import GridFrame, Window
+from sim.geometry.pose import Pose
+from sim.interface import ConfigError, RobotModel
+from stubborn import agents
+from stubborn.agent import StubbornAgent
+from stubborn.exploration.glance import GlanceConfig
+from stubborn.exploration.tour import TourConfig, TourExplorer, first_of_best_order
+from stubborn.navmap import NavMap
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+from tests.helpers.ground import ground, route_of
+
+NO_GLANCE = GlanceConfig(gain_per_turn_m2=math.inf)
+
+
+def explorer(**options: float) -> TourExplorer:
+    return TourConfig(glance=NO_GLANCE, turn_m=0.0, **options).make(SMALL_CAMERA)  # type: ignore[arg-type]
+
+
+def rectangle(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float], *, wall: bool = False) -> None:
+    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(x_m[0], y_m[0]), navmap.frame.cell(x_m[1], y_m[1])
+    cells = slice(row_0, row_1 + 1), slice(col_0, col_1 + 1)
+    navmap.frames_in_view[cells] = 1
+    navmap.seen_obstacle[cells] |= wall
+    navmap.grow_known(*cells)
+
+
+def corridor() -> NavMap:
+    """Ground from x = -4 to 4 m between walls, open at both ends, the robot's trail in its middle."""
+    navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
+    rectangle(navmap, (-4.0, 4.0), (-1.0, 1.0))
+    for y_m in ((-1.1, -1.0), (1.0, 1.1)):
+        rectangle(navmap, (-4.0, 4.0), y_m, wall=True)
+    navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
+    return navmap
+
+
+def goal_x_m(explore: TourExplorer, navmap: NavMap, pose: Pose) -> float:
+    window: Window = navmap.frame.window_at(0.0, 0.0, 300)
+    route = route_of(explore, ground(navmap, pose, window))
+    x_m, _ = route.frame.centres(*np.nonzero(route.goal.cells))
+    return float(x_m.mean())
+
+
+def test_the_best_order_has_the_least_weighted_latency():
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        places_m, weight = rng.uniform(-5, 5, (5, 2)), rng.uniform(0.1, 4.0, 5)
+        to_m = np.hypot(*places_m.T)
+        between_m = np.hypot(*(places_m[:, None] - places_m[None]).transpose(2, 0, 1))
+
+        def latency_m2(order: tuple[int, ...], to_m=to_m, between_m=between_m, weight=weight) -> float:
+            length_m, total = 0.0, 0.0
+            for number, stop in enumerate(order):
+                length_m += 0.5 + (to_m[stop] if number == 0 else between_m[order[number - 1], stop])
+                total += weight[stop] * length_m
+            return total
+
+        best = min(itertools.permutations(range(5)), key=latency_m2)
+        assert first_of_best_order(weight, to_m, between_m, 0.5) == best[0]
+
+
+def test_a_large_opening_comes_before_a_small_pocket_that_is_nearer():
+    navmap = corridor()
+    assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) > 3.0  # the nearer of two equal ones
+    rectangle(navmap, (4.4, 4.5), (-1.1, 1.1), wall=True)  # leaves 40 cm of unknown ground in the east
+    for y_m in ((-1.1, -1.0), (1.0, 1.1)):
+        rectangle(navmap, (4.0, 4.5), y_m, wall=True)
+    assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) < -3.0
+
+
+def test_ground_seen_from_afar_only_is_visited_when_nothing_is_unknown():
+    navmap = corridor()
+    for x_m in ((-4.1, -4.0), (4.0, 4.1)):
+        rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
+    pose = Pose(-1.5, 0.0, 0.0)
+    navmap.trail[navmap.frame.cell(-1.5, 0.0)] = True
+    assert goal_x_m(explorer(near_m=2.5), navmap, pose) == pytest.approx(2.5, abs=0.5)
+
+
+def test_a_stop_is_kept_for_some_steps_and_reset_forgets_it():
+    navmap, explore = corridor(), explorer(near_m=0.0)
+    first = goal_x_m(explore, navmap, Pose(0.3, 0.0, 0.0))
+    assert first > 3.0
+    assert goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) == pytest.approx(first)
+    explore.reset()
+    assert goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) < -3.0
+
+
+def test_the_agent_finds_a_bed_two_rooms_away_by_a_tour():
+    apartment = boxes_from_plan(
+        """
+################################
+#          #         #         #
+#          #         #    bbb  #
+#                         bbb  #
+#                              #
+#                              #
+#          #         #         #
+####   #########################
+#                              #
+#                              #
+#                              #
+#                              #
+################################
+""",
+        0.3,
+    )
+    agent = agents.make(
+        "stubborn", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), explorer=TourConfig()
+    )
+    assert isinstance(agent, StubbornAgent)
+    world = GridWorld(apartment, (8.0, 0.9, 0.2), camera=SMALL_CAMERA)
+    trace = run_episode(world, agent, "bed", max_steps=250)
+    assert trace.stopped
+    assert trace.goal_distance_m < 1.0
+
+
+def test_options_that_make_no_sense_are_refused():
+    with pytest.raises(ConfigError, match="most_stops must be 1 to 8, got 9"):
+        TourConfig(most_stops=9)
+    with pytest.raises(ConfigError, match=r"0 < arrived_m <= spent_m, got 0\.5 and 0\.1"):
+        TourConfig(arrived_m=0.5, spent_m=0.1)
