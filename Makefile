@@ -18,8 +18,8 @@ system-libraries:
 	@sh tools/system_libraries.sh
 
 run: setup
-	@echo "== five episodes, filmed: the Stubborn agent looks for objects in apartments that ship with this repository"
-	$(BIN)/python -m sim.run --video --workers 2
+	@echo "== five episodes, filmed: stubborn-plus looks for objects in apartments that ship with this repository"
+	$(BIN)/python -m sim.run --agent stubborn-plus --video --workers 2
 
 test: setup
 	@echo "== the tests; where all cases would be too many, a sample that changes with each commit (all: make test-all)"

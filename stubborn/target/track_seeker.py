@@ -77,7 +77,10 @@ class TrackSeeker:
         self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels)
+        rejected = set(self.verdicts.rejected)
         self.verdicts.update(self.probability, self.tracks.evidence)
+        if rejected != self.verdicts.rejected:
+            navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
         self.step = step
         self._chosen = self._to_approach(step)
 
