@@ -98,12 +98,6 @@ class Oracle:
         action, self._expected = self._plan.popleft()
         return action
 
-    def overridden(self, action: Action) -> None:
-        """Forgets the plan, because another action is carried out; see `sim.interface.Overridable`."""
-        del action
-        self._plan.clear()
-        self._expected = None
-
     def _here(self) -> Node:
         pose = self._env.scene.task.world.pose
         turned = (pose.yaw_rad - self._env.scene.task.start.yaw_rad) / TURN_RAD

@@ -87,21 +87,3 @@ def test_the_oracle_finds_another_path_around_an_unexpected_obstacle():
     result = task.metrics()
     assert result["success"] == 1.0
     assert result["collisions"] > 0
-
-
-def test_the_oracle_goes_straight_on_after_another_driver_has_turned_once_around():
-    house = with_box(room(10, 4), "bed_00", centre_m=(4.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
-    world, start = World(house), Pose(-3.0, 0.0, 0.0)
-    task = Task(world)
-    world.reset(start)
-    task.begin("bed", start)
-    oracle = Oracle(RunningEpisode(world, task))
-    oracle.reset("bed", seed=0)
-    for _ in range(12):  # else each heading would count as blocked
-        oracle.act({})
-        oracle.overridden(Action.TURN_LEFT)
-        task.observe(Action.TURN_LEFT, world.move(Action.TURN_LEFT))
-    while not task.done:
-        action = oracle.act({})
-        task.observe(action, world.move(action))
-    assert task.metrics()["num_steps"] == 12 + math.ceil(task.metrics()["shortest_path"] / 0.25) + 1
