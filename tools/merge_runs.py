@@ -11,7 +11,6 @@ options and this --out runs the missing episodes.
 from __future__ import annotations
 
 import json
-import shutil
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,6 +25,7 @@ from sim.analysis.comparison import Line, Run, read_run
 from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.results import NOT_COMPARED, RunDirectory
 from sim.evaluation.rollout import TIMES
+from sim.files import write_atomically
 from sim.interface import ConfigError
 
 SHARDS = "shard_*_of_*"
@@ -134,10 +134,7 @@ def copy_files(folder: Path, out: Path) -> None:
         for file in sorted((folder / name).glob("*")):
             target = out / name / file.name
             if file.is_file() and not target.exists():
-                target.parent.mkdir(parents=True, exist_ok=True)
-                part = target.with_name(f".{target.name}.part")
-                shutil.copy2(file, part)
-                part.replace(target)
+                write_atomically(target, file.read_bytes())
 
 
 def _conflict(episode_id: str, path: Path, line: Line) -> ConfigError:

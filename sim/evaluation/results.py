@@ -91,8 +91,8 @@ class SplitIdentity(msgspec.Struct):
     """What identifies the source of a run's episodes."""
 
     name: Name
-    version: str
-    sha256: str
+    version: str = ""
+    sha256: str = ""
 
 
 class RunRecord(msgspec.Struct):

@@ -10,10 +10,13 @@ from __future__ import annotations
 import io
 import json
 import zipfile
+import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +25,7 @@ from sim.files import write_atomically
 from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
+from sim.reading import Metres, Name, parse_json, reason_of, require_small_zip
 
 CELL_M = 0.05
 """Edge of a cell of a plan."""
@@ -29,6 +33,8 @@ FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
 HEIGHT_UNIT_M = 0.0125
 """Unit of the heights in a file, one byte each: up to 3.19 m above the floor."""
+MAX_FILE_BYTES = 512 << 20
+"""Largest plan in memory; that of a house of 800 m2 has 5 MB."""
 _ARRAYS = ("slack_m", "floor", "room", "succeeds", "span_start", "span_low_m", "span_high_m", "span_instance")
 
 
@@ -144,27 +150,66 @@ def read_plan(path: Path) -> Plan:
         HouseError: there is no such file, or it is no plan of this format.
     """
     try:
+        require_small_zip(path, what="the file", most=MAX_FILE_BYTES, error=HouseError)
         with np.load(path, allow_pickle=False) as file:
-            about = json.loads(str(file["about"]))
-            if about["format"] != FORMAT:
-                raise HouseError(f"Plan '{path}' has format {about['format']}, this version reads {FORMAT}.")
-            arrays = {name: file[name] for name in (*_ARRAYS, "categories")}
-    except (OSError, KeyError, ValueError, zipfile.BadZipFile) as error:
-        raise HouseError(f"'{path}' is no house plan (tools/export_plans.py writes them): {error}.") from None
+            about = parse_json(str(file["about"]), _About, where="its header 'about'", error=HouseError)
+            arrays = {name: np.asarray(file[name]) for name in (*_ARRAYS, "categories")}
+        if about.format != FORMAT:
+            raise ValueError(f"its format is {about.format}, this version reads {FORMAT}")
+        _check(about, arrays)
+    except (
+        OSError, LookupError, ValueError, TypeError, EOFError, SyntaxError, MemoryError, RuntimeError, zlib.error,
+        zipfile.BadZipFile,
+    ) as error:  # fmt: skip
+        told = reason_of(error)
+        raise HouseError(f"'{path}' is no house plan (tools/export_plans.py writes them): {told}.") from None
     for name in ("span_low_m", "span_high_m"):
         arrays[name] = arrays[name].astype(np.float32) * np.float32(HEIGHT_UNIT_M)
     arrays["slack_m"] = arrays["slack_m"].astype(np.float32)
-    frame = GridFrame(
-        origin_xy_m=tuple(about["origin_xy_m"]), shape=arrays["floor"].shape, cell_m=float(about["cell_m"])
-    )
     return Plan(
-        name=about["name"],
-        frame=frame,
-        floor_z_m=about["floor_z_m"],
-        ceiling_m=about["ceiling_m"],
-        radius_m=about["radius_m"],
-        rooms=tuple(about["rooms"]),
-        instances=tuple(about["instances"]),
-        source=about["source"],
+        name=about.name,
+        frame=GridFrame(origin_xy_m=about.origin_xy_m, shape=arrays["floor"].shape, cell_m=about.cell_m),
+        floor_z_m=about.floor_z_m,
+        ceiling_m=about.ceiling_m,
+        radius_m=about.radius_m,
+        rooms=about.rooms,
+        instances=about.instances,
+        source=about.source,
         **arrays,
     )
+
+
+class _About(msgspec.Struct):
+    """The JSON in `about`."""
+
+    format: int
+    name: Name
+    origin_xy_m: tuple[Metres, Metres]
+    cell_m: Annotated[float, msgspec.Meta(ge=0.001, le=1.0)]
+    floor_z_m: Metres
+    ceiling_m: Metres
+    radius_m: Annotated[float, msgspec.Meta(gt=0.0, le=10.0)]
+    rooms: tuple[Name, ...]
+    instances: tuple[Name, ...]
+    source: dict[str, Any]
+
+
+def _check(about: _About, arrays: Mapping[str, NDArray]) -> None:
+    """Raises ValueError where arrays do not fit each other: compiled functions index them without a check."""
+    floor, start, spans = arrays["floor"], arrays["span_start"], len(arrays["span_low_m"])
+    kinds = {"slack_m": "f", "floor": "b", "room": "i", "succeeds": "u", "span_start": "i", "span_low_m": "u",
+             "span_high_m": "u", "span_instance": "u", "categories": "u"}  # fmt: skip
+    for name, kind in kinds.items():
+        if arrays[name].dtype.kind != kind:
+            raise ValueError(f"{name} is of type {arrays[name].dtype}")
+    if floor.ndim != 2 or any(arrays[name].shape != floor.shape for name in ("slack_m", "room", "succeeds")):
+        raise ValueError("the arrays over the ground have different shapes")
+    if any(arrays[name].shape != (spans,) for name in ("span_low_m", "span_high_m", "span_instance")):
+        raise ValueError("the arrays of spans have different lengths")
+    if start.shape != (floor.size + 1,) or start[0] != 0 or start[-1] != spans or bool((np.diff(start) < 0).any()):
+        raise ValueError("span_start does not count the spans of the cells")
+    ends = (("span_instance", len(about.instances)), ("categories", len(MPCAT40)), ("room", len(about.rooms)))
+    if any(arrays[name].size and int(arrays[name].max()) >= end for name, end in ends):
+        raise ValueError("an index is out of range")
+    if arrays["categories"].shape != (len(about.instances),) or bool(np.isnan(arrays["slack_m"]).any()):
+        raise ValueError("categories or slack_m are not those of the instances and cells")

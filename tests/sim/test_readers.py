@@ -24,12 +24,14 @@ from sim.episodes import habitat
 from sim.episodes.splits import read_unreachable
 from sim.errors import ObjectNavError
 from sim.evaluation.results import read_record, read_result_lines
+from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.housegen.house_list import read_house_list, write_house_list
 from sim.housegen.imported.library import Model, read_index, read_shape
 from sim.housegen.split_recipes import train_recipe
 from sim.houses.load import load_house, read_rules
 from sim.houses.sidecar import Sidecar, read_sidecar, write_sidecar
+from sim.plans.plan import Plan, read_plan, write_plan
 from sim.robot.foreign import _read_sidecar
 from sim.task.trajectory import read_trajectory, write_trajectory
 from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
@@ -54,6 +56,25 @@ MODEL = Model(
     key="i01234567", ident="a", name="a", category="chair", uses=(), mount="floor", elevation_m=0.0,
     size_m=(1.0, 1.0, 1.0), author="", licence="", origin="", sha256="", split="train", triangles=1,
 )  # fmt: skip
+CELLS = np.zeros((2, 3))
+PLAN = Plan(
+    name="h",
+    frame=GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 3), cell_m=0.05),
+    floor_z_m=0.0,
+    ceiling_m=2.5,
+    radius_m=0.18,
+    slack_m=CELLS.astype(np.float32),
+    floor=CELLS.astype(np.bool_),
+    room=CELLS.astype(np.int8),
+    rooms=("room_bedroom_00",),
+    succeeds=CELLS.astype(np.uint32),
+    span_start=np.arange(7, dtype=np.int32),
+    span_low_m=np.zeros(6, np.float32),
+    span_high_m=np.ones(6, np.float32),
+    span_instance=np.zeros(6, np.uint16),
+    instances=("wall_00",),
+    categories=np.ones(1, np.uint8),
+)
 SHAPE = {
     "rgba": np.ones((1, 4)),
     "v0": np.ones((3, 3)),
@@ -146,6 +167,7 @@ READERS = (
     ),
     Reader("a.pth", written(lambda f: torch.save({"model_state": {"a": torch.zeros(3)}}, f), "b.pth"), read_checkpoint),
     Reader("a.tar", shard, lambda file: list(read_shard(file))),
+    Reader("plan.npz", written(lambda f: write_plan(f, PLAN), "p.npz"), read_plan),
     Reader("a.xml", lambda _: room(3, 3).spec.to_xml().encode(), load_house),
 )
 JUNK: tuple[Any, ...] = (

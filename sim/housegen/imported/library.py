@@ -155,8 +155,8 @@ def read_shape(folder: Path, model: Model) -> Shape:
         ConfigError: its file is missing or broken.
     """
     file = inside(folder / MESHES, f"{model.key}.npz", what="key of a model")
-    require_small_zip(file, what="The imported model", most=MAX_BYTES)
     try:
+        require_small_zip(file, what="the file", most=MAX_BYTES)
         with np.load(file, allow_pickle=False) as arrays:
             parts = tuple(
                 Part(arrays[f"v{n}"] * UNIT_M, arrays[f"f{n}"].astype(np.int32), tuple(map(float, rgba)))  # type: ignore[arg-type]

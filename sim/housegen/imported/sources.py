@@ -16,13 +16,17 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any, get_args
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
 from sim.housegen.furniture.item import Mount
 from sim.housegen.imported.labels import Label, Size, label_of, label_of_category
+from sim.reading import convert, read_bytes, reason_of
 
+MAX_NUMBER = 1000.0
+"""Largest number of an entry besides its size."""
 MAX_FILE_BYTES = 200_000_000
 """Larger files in a zip are refused: a small zip can hold a very large file."""
 SIZE_M = (0.02, 6.0)
@@ -106,6 +110,7 @@ def _sweet_home_entry(file: Path, archive: zipfile.ZipFile, given: Mapping[str, 
         width, depth, height = (float(given[key]) / 100.0 for key in ("width", "depth", "height"))
         elevation_m = float(given.get("elevation", 0.0)) / 100.0
         turn = np.array(given.get("modelRotation", "1 0 0 0 1 0 0 0 1").split(), dtype=float).reshape(3, 3)
+        _finite(elevation_m, *turn.ravel())
         size_m = _allowed((depth, width, height))
         model = given["model"].lstrip("/")
     except Skipped as reason:
@@ -150,16 +155,22 @@ def _unescaped(text: str) -> str:
 def _folder(folder: Path, table: Path) -> Iterator[Found]:
     try:
         rows = _rows(table)
-    except (OSError, ValueError, csv.Error) as error:
-        raise ConfigError(f"The table '{table}' cannot be read: {error}.") from None
+    except (OSError, ValueError, csv.Error, RecursionError) as error:
+        raise ConfigError(f"The table '{table}' cannot be read: {reason_of(error)}.") from None
     for row in rows:
         yield _row_entry(folder, row)
 
 
+class _Table(msgspec.Struct):
+    """A table in TOML."""
+
+    model: list[dict[str, Any]] = []
+
+
 def _rows(table: Path) -> list[dict[str, Any]]:
-    text = table.read_text(encoding="utf-8")
+    text = read_bytes(table, what="The table").decode("utf-8")
     if table.suffix == ".toml":
-        return list(tomllib.loads(text).get("model", ()))
+        return convert(tomllib.loads(text), _Table, where=f"'{table.name}'").model
     return list(csv.DictReader(text.splitlines()))
 
 
@@ -172,6 +183,7 @@ def _row_entry(folder: Path, row: Mapping[str, Any]) -> Found:
         size_m = _allowed((float(row["depth_m"]), float(row["width_m"]), float(row["height_m"])))
         front = math.radians(float(row.get("front_deg") or 0.0))
         elevation_m = float(row.get("elevation_m") or 0.0)
+        _finite(front, elevation_m)
     except Skipped as reason:
         return file, str(reason)
     except (TypeError, ValueError) as error:
@@ -201,6 +213,12 @@ def _read_file(folder: Path, path: str) -> bytes:
         return file.read_bytes()
     except OSError:
         raise Skipped(f"the folder has no '{path}'") from None
+
+
+def _finite(*numbers: float) -> None:
+    """Raises Skipped where a number is NaN or infinite, or a height that no house has."""
+    if not all(abs(number) <= MAX_NUMBER for number in numbers):
+        raise Skipped(f"a number is not finite or larger than {MAX_NUMBER:g}")
 
 
 def _allowed(size_m: Size) -> Size:

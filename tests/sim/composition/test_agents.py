@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -105,3 +106,36 @@ def test_every_agent_has_a_description_of_one_line() -> None:
     for name, spec in SPECS.items():
         assert 10 < len(spec.description) < 90, name
         assert "\n" not in spec.description
+
+
+@pytest.mark.parametrize(
+    ("module", "told"),
+    [
+        ("import nowhere_at_all", "no module 'nowhere_at_all' can be imported"),
+        ("def make(:", "cannot be imported: SyntaxError"),
+        ("raise SystemExit(3)", "cannot be imported: SystemExit: 3"),
+        ("def other(): ...", "has no 'make'"),
+        ("make = 7", "must be an AgentSpec or a factory, got int"),
+        ("def make(camera): ...", "its factory is called with the arguments camera, robot"),
+        ("def make(**_): return {}['sofa']", "cannot be built: KeyError: 'sofa'"),
+        ("def make(**_): exit(4)", "cannot be built: SystemExit: 4"),
+    ],
+)
+def test_an_agent_that_cannot_be_built_is_one_line_and_leaves_no_run_behind(
+    module: str,
+    told: str,
+    house: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "users_agent.py").write_text(module)
+    sys.modules.pop("users_agent", None)
+    options = ["--semantics", "gt", "--house", str(house), "--episodes", "1", "--out", str(tmp_path / "run")]
+    assert entry([*options, "--agent", "users_agent:make"]) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("error: ")
+    assert told in message
+    assert message.count("\n") == 1
+    assert not (tmp_path / "run").exists()
