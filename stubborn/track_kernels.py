@@ -1,4 +1,4 @@
-"""Compiled loops over the pixels of one frame, for `stubborn.target.tracks`: labels, regions, voxels, sums."""
+"""Compiled loops over the pixels of one frame, for `stubborn.target.tracks`: labels, regions, voxels, means."""
 
 from __future__ import annotations
 
@@ -21,21 +21,20 @@ def label_pixels(posteriors, is_object, goal, hot):
         hot: least probability of the goal at which a pixel gets its label.
     """
     classes, rows, cols = posteriors.shape
-    best = posteriors[0].copy()
-    label = np.zeros((rows, cols), np.int16)
+    flat = posteriors.reshape(classes, rows * cols)
+    best = flat[0].copy()
+    label = np.zeros(rows * cols, np.int32)
     for k in range(1, classes):
-        for r in range(rows):
-            for c in range(cols):
-                if posteriors[k, r, c] > best[r, c]:
-                    best[r, c] = posteriors[k, r, c]
-                    label[r, c] = k
-    for r in range(rows):
-        for c in range(cols):
-            if posteriors[goal, r, c] >= hot:
-                label[r, c] = goal
-            elif not is_object[label[r, c]]:
-                label[r, c] = NO_LABEL
-    return label
+        for i in range(rows * cols):  # without a branch, so that it is vectorised
+            higher = flat[k, i] > best[i]
+            best[i] = flat[k, i] if higher else best[i]
+            label[i] = k if higher else label[i]
+    for i in range(rows * cols):
+        if flat[goal, i] >= hot:
+            label[i] = goal
+        elif not is_object[label[i]]:
+            label[i] = NO_LABEL
+    return label.reshape(rows, cols)
 
 
 @njit(cache=True)
@@ -164,21 +163,31 @@ def claim(region, voxel, owner, track_of, takes_over, size, low, high, shape):
 
 
 @njit(cache=True)
-def sums_by_track(posteriors, voxel, owner, tracks):
-    """Returns the sum of the posteriors of the pixels of each track, (tracks, classes), and how many these are."""
+def means_by_track(posteriors, voxel, owner, tracks):
+    """Returns the mean posterior of the pixels of each track, (tracks, classes), and how many pixels it has.
+
+    Every second pixel enters the mean, as on a chessboard: neighbours say the same.
+    """
     classes, rows, cols = posteriors.shape
-    track = np.zeros((rows, cols), np.int16)
-    pixels = np.zeros(tracks, np.int32)
+    flat = posteriors.reshape(classes, rows * cols)
+    at = np.empty(rows * cols, np.int32)
+    track = np.empty(rows * cols, np.int32)
+    pixels, used = np.zeros(tracks, np.int32), np.zeros(tracks, np.int32)
+    count = 0
     for r in range(rows):
         for c in range(cols):
-            if voxel[r, c] >= 0:
-                track[r, c] = owner[voxel[r, c]]
-                pixels[track[r, c]] += 1
-    sums = np.zeros((tracks, classes), np.float32)
+            if voxel[r, c] < 0 or owner[voxel[r, c]] == 0:
+                continue
+            number = owner[voxel[r, c]]
+            pixels[number] += 1
+            if (r + c) % 2 == 0 or used[number] == 0:
+                at[count], track[count] = r * cols + c, number
+                used[number] += 1
+                count += 1
+    means = np.zeros((classes, tracks), np.float32)
     for k in range(classes):
-        for r in range(rows):
-            for c in range(cols):
-                if track[r, c] > 0:
-                    sums[track[r, c], k] += posteriors[k, r, c]
-    pixels[0] = 0
-    return sums, pixels
+        for j in range(count):
+            means[k, track[j]] += flat[k, at[j]]
+        for number in range(tracks):
+            means[k, number] /= max(used[number], 1)
+    return means.T.copy(), pixels

@@ -19,7 +19,7 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.mapping.projection import Rays
 from stubborn.target.evidence import Evidence, EvidenceConfig
-from stubborn.track_kernels import claim, label_pixels, overlaps_of, regions_of, sums_by_track, voxels_of
+from stubborn.track_kernels import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 
 STRUCTURE = (
     "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",
@@ -131,12 +131,12 @@ class Tracks:
         overlap, labels = overlaps_of(region, count, label, voxel, self._owner, self.count + 1)
         track_of, takes_over = self._associate(overlap, labels, MPCAT40_ID[goal] - 1)
         claim(region, voxel, self._owner, track_of, takes_over, self._size, self._low, self._high, self._shape)
-        sums, pixels = sums_by_track(posteriors, voxel, self._owner, self.count + 1)
+        means, pixels = means_by_track(posteriors, voxel, self._owner, self.count + 1)
         self.in_view = np.flatnonzero(pixels >= self.config.least_pixels)
         if self.in_view.size:
             x_m, y_m = self.middles(self.in_view)
-            mean = sums[self.in_view] / pixels[self.in_view, None].astype(np.float32)
-            self.evidence.add(self.in_view, mean, pixels[self.in_view], pose.x_m - x_m, pose.y_m - y_m)
+            seen = means[self.in_view], pixels[self.in_view]
+            self.evidence.add(self.in_view, *seen, pose.x_m - x_m, pose.y_m - y_m)
 
     def probabilities(self, goal: str, least_voxels: int = 1) -> Float32[np.ndarray, " numbers"]:
         """Returns the probability of the goal for each track; 0 for entry 0 and for tracks with fewer voxels."""
