@@ -166,9 +166,12 @@ def test_an_episode_that_breaks_leaves_its_video_too(env: ObjectNavEnv, tmp_path
 
 
 def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path: Path) -> None:
+    def interrupt(step: int, agent: object, info: dict) -> None:
+        raise KeyboardInterrupt
+
     recorder = VideoRecorder(tmp_path)
-    with pytest.raises(IndexError):  # the script is over before the episode
-        play_episode(env, Script(AHEAD), EPISODE, seed=0, viewers=[recorder])
+    with pytest.raises(KeyboardInterrupt):
+        play_episode(env, Script(AHEAD), EPISODE, seed=0, on_step=interrupt, viewers=[recorder])
     recorder.close()
     assert list((tmp_path / "videos").iterdir()) == []
 
