@@ -41,7 +41,7 @@ class TourConfig:
     own_known_m: float = 1.0
     """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
     gain_radius_m: float = 2.0
-    """Unknown ground in a square of twice this edge around a frontier is what the frontier would show."""
+    """Unknown ground within this path length behind a frontier is what the frontier would show."""
     near_m: float = 2.5
     """Ground that was in view within this distance counts as inspected; 0: all ground in view does."""
     far_weight: float = 0.3
@@ -189,14 +189,8 @@ class TourExplorer:
     def _stops(self, known: _Known) -> list[_Stop]:
         """Returns the stops that can be reached."""
         config, cell_m = self.config, known.free.frame.cell_m
-        edge = 2 * round(config.gain_radius_m / cell_m) + 1
-        open_unknown = (known.unknown & known.free.traversable).astype(np.float32)
-        shown = np.asarray(
-            cv2.boxFilter(open_unknown, -1, (edge, edge), normalize=False, borderType=cv2.BORDER_CONSTANT)
-        )
-        shown_m2 = shown * np.float32(cell_m**2)
         frontiers = [
-            _Stop(cells, float(shown_m2[cells].mean())) for cells in _parts(known.frontiers & ~known.spent, 1.0)
+            _Stop(cells, self._shown_m2(known, cells)) for cells in _parts(known.frontiers & ~known.spent, 1.0)
         ]
         long = [stop for stop in frontiers if np.count_nonzero(stop.cells) * cell_m >= config.least_length_m]
         far = [
@@ -204,6 +198,13 @@ class TourExplorer:
             for cells in _parts(known.far & ~known.spent, config.least_far_m2 / cell_m**2)
         ]
         return long + far or frontiers
+
+    def _shown_m2(self, known: _Known, frontier: Bool[np.ndarray, "rows cols"]) -> float:
+        """Returns the area of the unknown ground within some path length behind a frontier."""
+        cell_m, open_ground = known.free.frame.cell_m, known.unknown & known.free.reachable
+        speed = np.ones(frontier.shape, np.float32)
+        path_m = travel_times(frontier, open_ground | frontier, speed, cell_m, self.config.gain_radius_m)
+        return float(np.count_nonzero(np.isfinite(path_m) & open_ground)) * cell_m**2
 
     def _first(self, known: _Known, stops: list[_Stop], pose: Pose) -> int:
         """Returns the index of the stop with which the best tour begins."""

@@ -73,9 +73,9 @@ def test_the_best_order_has_the_least_weighted_latency():
 def test_a_large_opening_comes_before_a_small_pocket_that_is_nearer():
     navmap = corridor()
     assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) > 3.0  # the nearer of two equal ones
-    rectangle(navmap, (4.4, 4.5), (-1.1, 1.1), wall=True)  # leaves 40 cm of unknown ground in the east
+    rectangle(navmap, (5.0, 5.1), (-1.1, 1.1), wall=True)  # leaves a metre of unknown ground in the east
     for y_m in ((-1.1, -1.0), (1.0, 1.1)):
-        rectangle(navmap, (4.0, 4.5), y_m, wall=True)
+        rectangle(navmap, (4.0, 5.1), y_m, wall=True)
     assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) < -3.0
 
 
