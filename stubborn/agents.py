@@ -66,7 +66,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": _stubborn_spec(
-            "ours: tracks objects, looks before it goes to them, and visits what it has not seen; not in the paper",
+            "ours: tracks objects, looks before it goes, visits what it has not seen",
             PlusConfig(),
             plus_agent,
         ),
@@ -74,7 +74,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             "stubborn without verification (--verification none)", AgentConfig(), single_frame_agent
         ),
         "latest-frame": _stubborn_spec(
-            "stubborn without verification and without memory of scores: the latest frame decides",
+            "stubborn without verification and memory: the latest frame decides",
             AgentConfig(),
             latest_frame_agent,
         ),
