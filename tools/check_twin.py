@@ -165,7 +165,7 @@ def _report(title: str, first: Sequence[dict[str, Any]], second: Sequence[dict[s
     parts = []
     for key in MEASURES:
         a, b = (np.array([float(each[key]) for each in lines]) for lines in (first, second))
-        rank = float(np.asarray(spearmanr(a, b).statistic)) if len(a) > 2 else float("nan")
+        rank = float(np.asarray(spearmanr(a, b))[0]) if len(a) > 2 else float("nan")
         parts.append(f"{key} {rank:.3f} (medians {np.median(a):.1f}, {np.median(b):.1f})")
     print(f"{title}, {len(first)} episodes: {'; '.join(parts)}", flush=True)
 

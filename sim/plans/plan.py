@@ -75,7 +75,7 @@ class Plan:
     """(instances,) mpcat40 id of each instance."""
     source: dict[str, Any] = field(default_factory=dict)
     """Origin of the house: JSON types."""
-    _distance_m: dict[str, NDArray[np.float32]] = field(default_factory=dict, repr=False)
+    _distance_m: dict[str, NDArray[np.float32]] = field(default_factory=dict, repr=False, init=False)
 
     @property
     def free(self) -> NDArray[np.bool_]:
@@ -122,7 +122,7 @@ class Plan:
 
 def write_plan(path: Path, plan: Plan) -> None:
     """Writes a plan as a compressed npz file; heights are rounded to `HEIGHT_UNIT_M`."""
-    arrays = {name: getattr(plan, name) for name in _ARRAYS} | {"categories": plan.categories}
+    arrays: dict[str, Any] = {name: getattr(plan, name) for name in _ARRAYS} | {"categories": plan.categories}
     arrays["slack_m"] = plan.slack_m.astype(np.float16)
     for name in ("span_low_m", "span_high_m"):
         arrays[name] = np.clip(np.rint(arrays[name] / HEIGHT_UNIT_M), 0, 255).astype(np.uint8)

@@ -131,7 +131,7 @@ def cast_rays(
                         open_0, open_1 = open_0 & ~new_0, open_1 & ~new_1
                         category = span_goal[span]
                         if category >= 0:
-                            pixels[category] += _ones(new_0) + _ones(new_1)
+                            pixels[category] += _ones(new_0) + _ones(new_1)  # type: ignore[call-arg]
                         if not near_m <= middle_m < far_m:
                             continue
                         map_row = int(map_pose[0] + middle_m * map_y_step)

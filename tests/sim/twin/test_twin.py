@@ -69,7 +69,7 @@ def test_reward_is_the_progress_and_a_stop_at_the_goal_succeeds(plans):
 def test_a_goal_is_driven_to_around_a_wall_and_the_episode_ends_at_sight(plans):
     env = TwinEnv(plans, TwinConfig(actions="goal", ends_at_sight=True))
     env.reset(seed=0, options=START)
-    cos, sin, steps, terminated = np.cos(3.0), np.sin(3.0), 0, False
+    cos, sin, steps, terminated, info = np.cos(3.0), np.sin(3.0), 0, False, {}
     while not terminated and steps < 8:
         x_m, y_m = 5.0, -1.5  # south-east in the world; the window is 12 m wide and has the start's heading of 3 rad
         goal = 0.5 + np.array([cos * y_m - sin * x_m, cos * x_m + sin * y_m]) / 12.0
