@@ -147,7 +147,7 @@ def _check_value(name: str, value: Any, hint: Any) -> None:
     if isinstance(value, float) and not math.isfinite(value):
         raise ConfigError(f"{name} must be a finite number, got {value}.")
     for mark in _marks(hint):
-        if isinstance(mark, Written):
+        if isinstance(mark, Written) and isinstance(value, Path):
             require_writable(value, name=name, folder=mark.folder)
         elif isinstance(mark, Meta):
             _require_range(name, value, mark)

@@ -142,7 +142,8 @@ def parse_json(
     except RecursionError:
         raise error(f"{where} is nested too deeply.") from None
     except (msgspec.DecodeError, UnicodeError) as fault:
-        empty = not content.strip(b"\0 \n\r\t" if isinstance(content, bytes) else "\0 \n\r\t")
+        raw = content if isinstance(content, bytes) else content.encode(errors="replace")
+        empty = not raw.strip(b"\0 \n\r\t")
         raise error(f"{where} is {'empty' if empty else f'not JSON: {fault}'}.") from None
 
 
