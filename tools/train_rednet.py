@@ -88,6 +88,8 @@ class Args:
     Evaluation always uses whole views."""
     whole_share: cli.Share = 0.0
     """With --window-px: share of the samples that are the whole view, shrunk, as for a network that uses that width."""
+    focus_share: cli.Share = 0.0
+    """With --window-px: share of the windows that show a goal category, each in the view equally often."""
     val_block_px: cli.Count | None = None
     """Factor for evaluation; it is stored with the weights as their resolution. None: as --block-px."""
     steps: cli.Count = 20_000

@@ -95,9 +95,7 @@ def _stand_at(view: mujoco.MjvCamera, eye_m: NDArray, forward: NDArray) -> None:
     view.elevation = math.degrees(math.asin(max(-1.0, min(1.0, float(forward[2])))))
 
 
-def _aim(
-    scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, slopes: tuple[float, float], near_m: float
-) -> None:
+def _aim(scene: mujoco.MjvScene, eye_m: NDArray, axes: NDArray, slopes: tuple[float, float], near_m: float) -> None:
     """Sets the position, the axes and the frustum of the scene's cameras."""
     top = near_m * slopes[1]
     for gl_camera in scene.camera:  # left and right eye; without stereo MuJoCo renders their average

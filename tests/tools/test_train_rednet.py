@@ -79,6 +79,7 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
         "rate": 1e-9,
         "window_px": 32,
         "whole_share": 0.5,
+        "focus_share": 0.5,
         "val_block_px": 2,
         "steps": 1,
         "evaluate_every": 1,
@@ -109,6 +110,8 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path, window_px=16))
     with pytest.raises(ConfigError, match=r"--whole-share must be in \[0, 1\] and needs --window-px, got 0.5"):
         main(options(tmp_path, whole_share=0.5))
+    with pytest.raises(ConfigError, match=r"--focus-share needs --window-px, got 0.5 without it"):
+        main(options(tmp_path, focus_share=0.5))
     with pytest.raises(ConfigError, match="--val-block-px must be at least 1, got 0"):
         main(options(tmp_path, val_block_px=0))
     with pytest.raises(ConfigError, match="No shards"):
