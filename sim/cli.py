@@ -149,7 +149,7 @@ def _check_value(name: str, value: Any, hint: Any) -> None:
     for mark in _marks(hint):
         if isinstance(mark, Written) and isinstance(value, Path):
             require_writable(value, name=name, folder=mark.folder)
-        elif isinstance(mark, Meta):
+        elif isinstance(mark, Meta) and not isinstance(value, Path):
             _require_range(name, value, mark)
 
 

@@ -101,4 +101,6 @@ def test_a_picture_that_cannot_be_written_is_an_error_and_no_file(tmp_path: Path
     with pytest.raises(ConfigError, match=r"a\.xyz"):
         write_picture(tmp_path / "a.xyz", np.zeros((2, 2, 3), np.uint8))
     write_picture(tmp_path / "b.png", np.full((2, 2, 3), (255, 0, 0), np.uint8))
-    assert cv2.imread(str(tmp_path / "b.png"))[0, 0].tolist() == [0, 0, 255]
+    picture = cv2.imread(str(tmp_path / "b.png"))
+    assert picture is not None
+    assert picture[0, 0].tolist() == [0, 0, 255]

@@ -28,6 +28,7 @@ from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.classifiers import Features
+from stubborn.target.seeker import TargetSeeker
 from stubborn.target.verification import AcceptAll
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
@@ -180,6 +181,7 @@ def test_single_frame_is_stubborn_without_verification_and_latest_frame_has_no_m
     for name in ("single-frame", "latest-frame"):
         agent = unsure(name)
         assert isinstance(agent, StubbornAgent)
+        assert isinstance(agent.seeker, TargetSeeker)
         assert isinstance(agent.seeker.verifier, AcceptAll)
         layers.append(type(agent.mapper.layers))
     assert layers == [AllFrames, LatestFrame]
@@ -304,7 +306,7 @@ def test_importing_the_agents_imports_neither_mujoco_nor_the_rest_of_sim():
         "import sys, stubborn.agents, stubborn.agent, stubborn.draw, stubborn.segmentation.ground_truth\n"
         "import stubborn.target.verification, stubborn.exploration.frontier, stubborn.baselines.single_frame\n"
         "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL', 'sklearn')]\n"
-        "allowed = ('sim.interface', 'sim.errors', 'sim.geometry')\n"
+        "allowed = ('sim.interface', 'sim.errors', 'sim.geometry', 'sim.reading')\n"
         "ours = [m for m in sys.modules if m.startswith('sim.') and not m.startswith(allowed)]\n"
         "print(bad + ours)"
     )

@@ -60,7 +60,9 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
     assert "| number of views | 8 |" in text
     for picture in ("card_confusion.png", "card_curves.png"):
         assert f"({picture})" in text
-        assert cv2.imread(str(tmp_path / picture)).std() > 5.0
+        drawn = cv2.imread(str(tmp_path / picture))
+        assert drawn is not None
+        assert drawn.std() > 5.0
 
 
 def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_path: Path, weights: Path) -> None:

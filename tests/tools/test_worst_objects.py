@@ -25,9 +25,8 @@ def always_wall() -> RedNet:
     torch.manual_seed(0)
     model = RedNet(TINY)
     with torch.no_grad():
-        model.final_deconv_custom.weight.zero_()
-        model.final_deconv_custom.bias.zero_()
-        model.final_deconv_custom.bias[MPCAT40_ID["wall"] - 1] = 5.0
+        model.get_parameter("final_deconv_custom.weight").zero_()
+        model.get_parameter("final_deconv_custom.bias").zero_()[MPCAT40_ID["wall"] - 1] = 5.0
     return model
 
 
@@ -49,4 +48,6 @@ def test_the_sheet_has_the_worst_object_of_each_house(
     sheet = tmp_path / "worst.png"
     assert main(Args(views=tmp_path / "views", weights=tmp_path / "wall.safetensors", out=sheet, threads=1)) == 0
     assert "2 objects in" in capsys.readouterr().out
-    assert cv2.imread(str(sheet)).shape[0] == 2 * 400
+    drawn = cv2.imread(str(sheet))
+    assert drawn is not None
+    assert drawn.shape[0] == 2 * 400

@@ -78,11 +78,11 @@ def test_the_average_forgets_the_initial_weights_and_then_changes_slowly() -> No
     average = AveragedModel(network, multi_avg_fn=exponential_average(0.999), use_buffers=True)
     torch.nn.init.constant_(network.weight, 1.0)
     for _ in range(100):
-        network.batches += 1
+        network.get_buffer("batches").add_(1)
         average.update_parameters(network)
-    assert average.module.weight.item() == pytest.approx(1.0, abs=0.01)
-    assert average.module.batches.item() == 100
+    assert average.module.get_parameter("weight").item() == pytest.approx(1.0, abs=0.01)
+    assert average.module.get_buffer("batches").item() == 100
     average.n_averaged += 20000
     torch.nn.init.constant_(network.weight, 2.0)
     average.update_parameters(network)
-    assert average.module.weight.item() == pytest.approx(1.001, abs=0.01)
+    assert average.module.get_parameter("weight").item() == pytest.approx(1.001, abs=0.01)
