@@ -221,7 +221,12 @@ def test_any_content_gives_a_result_or_a_message(reader: Reader, tmp_path: Path)
 
     examples = 4 if reader.name == "a.safetensors" else 30  # it builds networks
 
-    @settings(max_examples=examples, deadline=None, database=None, suppress_health_check=[*HealthCheck])
+    @settings(
+        max_examples=examples,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck.__members__.values()),
+    )
     @given(broken=BROKEN)
     def check(broken: Callable[[bytes], bytes]) -> None:
         file.write_bytes(broken(content))
