@@ -136,7 +136,11 @@ def test_a_signal_ends_a_command_in_order(number: int, status: int, capsys: pyte
             ended.append(True)
         return 0
 
-    assert cli.run(Args, main, [], stopped="Resume it.") == status
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background commands ignore it
+    try:
+        assert cli.run(Args, main, [], stopped="Resume it.") == status
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert ended == [True]
     assert capsys.readouterr().err == "\nResume it.\n"
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL

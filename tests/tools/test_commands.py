@@ -126,6 +126,7 @@ def test_what_documented_commands_read_is_there_or_made_by_another() -> None:
     parsed = {command: _parse(command) for command in documented.commands()}
     made = {str(value) for args in parsed.values() for name, value in _paths(args) if name in OUTPUTS}
     made |= {shlex.split(command)[-1] for command in parsed if "my_furniture.py" in command}
+    made |= {str(parent) for value in made for parent in Path(value).parents if parent.name}
     for command, args in parsed.items():
         for name, path in _paths(args):
             whole = {str(path), *(str(parent) for parent in path.parents)}
