@@ -41,16 +41,16 @@ DEBUG_HELP = "Every command also takes --debug, which shows the traceback of an 
 
 @dataclasses.dataclass(frozen=True)
 class Written:
-    """Marks an option as the path of what the command writes."""
+    """Marks an option as the path that the command writes."""
 
     folder: bool
 
 
 Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Count = Annotated[int, Meta(ge=1, le=10_000_000)]
-"""A number of things, at least one."""
+"""A count, at least 1."""
 Amount = Annotated[int, Meta(ge=0, le=10_000_000)]
-"""A number of things, which may be none."""
+"""A count, at least 0."""
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]

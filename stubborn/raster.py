@@ -53,12 +53,20 @@ def connected(
     return np.asarray(parts) == parts[row, col]
 
 
+def numbered_parts(
+    mask: Bool[np.ndarray, "rows cols"],
+) -> tuple[Int[np.ndarray, "rows cols"], Int[np.ndarray, " parts"]]:
+    """Returns the number of each cell's 8-connected part, 0 outside the mask, and the number of cells of each part."""
+    _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
+    return np.asarray(parts, np.intp), np.asarray(stats)[:, cv2.CC_STAT_AREA].astype(np.intp)
+
+
 def large_parts(mask: Bool[np.ndarray, "rows cols"], least_cells: float) -> Bool[np.ndarray, "rows cols"]:
     """Returns the mask without its 8-connected parts of fewer cells."""
-    _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
-    large = np.asarray(stats)[:, cv2.CC_STAT_AREA] >= least_cells
+    parts, sizes = numbered_parts(mask)
+    large = sizes >= least_cells
     large[0] = False  # part 0 is the background
-    return large[np.asarray(parts, np.intp)]
+    return large[parts]
 
 
 def sight_is_clear(

@@ -110,7 +110,7 @@ def table(args: Args) -> str:
 
 
 class Evaluation(msgspec.Struct):
-    """A line of `val.csv`, as far as the table shows it."""
+    """The fields of a line of `val.csv` that the table shows."""
 
     step: ReadCount
     hours: Number

@@ -81,7 +81,7 @@ class EpisodeInfo(msgspec.Struct):
 
 
 class EpisodeEntry(msgspec.Struct):
-    """An episode of a file, as far as we read it."""
+    """The fields of an episode that are read from a file."""
 
     episode_id: Name | int
     scene_id: Name

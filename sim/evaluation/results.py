@@ -50,7 +50,7 @@ Measured = Number | bool | None
 
 
 class ResultLine(msgspec.Struct):
-    """A line of `results.jsonl`, as far as anything reads it; what older versions do not write has a default."""
+    """The fields of a line of `results.jsonl` that are read; fields that older versions do not write have a default."""
 
     episode_id: Name
     house: Name
@@ -96,7 +96,7 @@ class SplitIdentity(msgspec.Struct):
 
 
 class RunRecord(msgspec.Struct):
-    """The content of `config.json`, as far as anything reads it; a run of an older version may lack any part."""
+    """The parts of `config.json` that are read; a run of an older version may lack any of them."""
 
     agent: str | None = None
     semantics: str | None = None

@@ -1,4 +1,4 @@
-"""ObjectNav in a plan: starts, metrics and end of an episode, as far as a plan has them (docs/task.md)."""
+"""ObjectNav in a plan: starts, metrics and end of an episode that a plan can give (docs/task.md)."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ from sim.world.world import World
 _FAR_M = 0.6
 """Distances to obstacles are computed up to this."""
 _PADDING_M = 1000.0
-"""Added to distances, so that 0 stands for cells beyond the grid."""
+"""Added to distances, so that 0 means a cell beyond the grid."""
 _LEAST_CEILING_M = 1.5
 """A lower ceiling does not belong to the storey."""
 

@@ -52,7 +52,7 @@ class SightConfig:
     most: int = 10
     """Evidence does not grow beyond this."""
     obstacle_from: int = 2
-    """A cell with at least so much evidence is an obstacle."""
+    """A cell with at least this much evidence is an obstacle."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,7 +55,7 @@ def explain_end(
         goal: category that the episode asked for.
         rule: when a STOP succeeds.
         nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
-        detects: whether the agent stops because of what a segmentation shows. A person, or an agent without one, has
+        detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
             stopped too early where the goal is not; that is no false detection.
     """
     found, steps = bool(line["success"]), f"{line['num_steps']} step" + "s" * (line["num_steps"] != 1)

@@ -33,7 +33,7 @@ class Args:
     name: tuple[str, ...] = ()
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
     runs: Path = Path("runs")
-    """Folder whose runs can be looked at."""
+    """Folder of the runs that the page shows."""
 
 
 def main(args: Args) -> int:

@@ -10,11 +10,11 @@ aside where a turn shows much (`stubborn.exploration.glance`).
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from dataclasses import dataclass, field
 
-import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
@@ -27,7 +27,7 @@ from stubborn.exploration.frontier import frontier_cells
 from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.places import MapCells
 from stubborn.planning.planner import FreeSpace, Goal
-from stubborn.raster import distance_to
+from stubborn.raster import distance_to, numbered_parts
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,9 +53,9 @@ class TourConfig:
     turn_m: float = 0.15
     """Path length that a turn of 30 degrees towards the first stop costs."""
     most_stops: int = 6
-    """So many stops, those with most weight for their path, are put in order."""
+    """Largest number of stops that are put in order: those with most weight for their path."""
     replan_steps: int = 8
-    """The order is computed again after so many steps, and when a stop is done with."""
+    """The order is computed again after this many steps, and when a stop is done with."""
     arrived_m: float = 0.35
     """A stop is reached within this length of path."""
     spent_m: float = 0.60
@@ -269,18 +269,16 @@ def first_of_best_order(
     return int(orders[int(np.argmin(latency)), 0])
 
 
+@functools.cache
 def _orders(count: int) -> Int[np.ndarray, "orders n"]:
     """Returns all orders of some stops."""
     return np.array(list(itertools.permutations(range(count))), np.intp)
 
 
 def _parts(mask: Bool[np.ndarray, "rows cols"], least_cells: float) -> list[Bool[np.ndarray, "rows cols"]]:
-    """Returns the 8-connected parts of a mask with at least so many cells."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(
-        np.ascontiguousarray(mask).view(np.uint8), connectivity=8
-    )
-    sizes = np.asarray(stats)[:, cv2.CC_STAT_AREA]
-    return [np.asarray(labels) == part for part in range(1, count) if sizes[part] >= least_cells]
+    """Returns the 8-connected parts of a mask with at least this many cells."""
+    labels, sizes = numbered_parts(mask)
+    return [labels == part for part in range(1, len(sizes)) if sizes[part] >= least_cells]
 
 
 def _nearest_m(field_m: Float32[np.ndarray, "rows cols"], cells: Bool[np.ndarray, "rows cols"]) -> float:

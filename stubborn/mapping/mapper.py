@@ -61,6 +61,18 @@ class Sighting:
     distance_m: Float32[np.ndarray, " n"]
     """From the robot's centre, in plan."""
 
+    def is_within(self, range_m: float) -> bool:
+        """Returns whether a target point is within a distance."""
+        return bool((self.distance_m <= range_m).any())
+
+    def nearest(self, counts: Bool[np.ndarray, "rows cols"], range_m: float) -> tuple[int, int] | None:
+        """Returns the map cell of the nearest target point on the cells that count, within a distance; else None."""
+        distance_m = np.where(counts[self.rows, self.cols], self.distance_m, np.inf)
+        point = int(np.argmin(distance_m)) if distance_m.size else -1
+        if point < 0 or distance_m[point] > range_m:
+            return None
+        return int(self.rows[point]), int(self.cols[point])
+
 
 NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0, np.float32))
 """A frame without a target pixel."""

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from stubborn.navmap import NavMap
+from stubborn.raster import numbered_parts
 
 
 @dataclass(frozen=True)
@@ -34,8 +35,8 @@ class CandidateParts:
         left = shown & ~view.rejected
         if not left.any():
             return cls(np.zeros(shown.shape, np.intp), 0, np.zeros(1, np.bool_))
-        objects, _ = _numbered(_grown(shown))  # pieces of one outline, with gaps between them
-        parts, areas = _numbered(left)
+        objects, _ = numbered_parts(_grown(shown))  # pieces of one outline, with gaps between them
+        parts, areas = numbered_parts(left)
         rejected_cells = np.bincount(objects[shown & view.rejected], minlength=int(objects.max()) + 1)
         object_of = np.zeros(len(areas), np.intp)
         object_of[parts[left]] = objects[left]
@@ -49,12 +50,6 @@ class CandidateParts:
     def mask(self) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of all candidates."""
         return self.labels > 0
-
-
-def _numbered(mask: Bool[np.ndarray, "rows cols"]) -> tuple[Int[np.ndarray, "rows cols"], Int[np.ndarray, " parts"]]:
-    """Returns the number of each cell's 8-connected part, 0 outside the mask, and the cells of each part."""
-    _, parts, stats, _ = cv2.connectedComponentsWithStats(np.ascontiguousarray(mask).view(np.uint8), connectivity=8)
-    return np.asarray(parts, np.intp), np.asarray(stats)[:, cv2.CC_STAT_AREA].astype(np.intp)
 
 
 def _grown(mask: Bool[np.ndarray, "rows cols"]) -> Bool[np.ndarray, "rows cols"]:

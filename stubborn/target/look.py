@@ -60,7 +60,7 @@ class LookConfig:
 
 
 class Verdicts:
-    """What was decided on each track, and how often it was looked at."""
+    """The decision on each track, and the number of looks at it."""
 
     def __init__(self, config: LookConfig, *, exact: bool) -> None:
         """With `exact` posteriors nothing needs a look."""

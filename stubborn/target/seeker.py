@@ -117,7 +117,7 @@ class TargetSeeker:
 
     def candidates(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that are not set aside."""
-        return self._on_whole_map(navmap, self.parts(navmap).mask) & ~navmap.set_aside
+        return self._candidates(navmap, self.parts(navmap))
 
     def acceptable(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
@@ -125,8 +125,14 @@ class TargetSeeker:
         The candidate that is pursued as such stays one: else the goal could change with every frame. The rule that
         late candidates are not verified does not apply here.
         """
+        return self._acceptable(navmap, self.parts(navmap))
+
+    def _candidates(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
+        return self._on_whole_map(navmap, parts.mask) & ~navmap.set_aside
+
+    def _acceptable(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
         whole = self._known(navmap)
-        view, parts = navmap.view(whole), self.parts(navmap)
+        view = navmap.view(whole)
         best = [_seen_best(view, parts.labels == number) for number in range(1, parts.count + 1)]
         would = [self.verifier.would_accept(self.goal, features_of(view, flat)) for flat in best]
         accepted = np.array([False, *would])
@@ -138,24 +144,22 @@ class TargetSeeker:
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """Returns the map cell of the nearest candidate in this very frame when it is near enough to stop."""
-        if not (sighting.distance_m <= self.distances.in_view_m).any():
+        if not sighting.is_within(self.distances.in_view_m):
             return None
-        counts = self._on_whole_map(navmap, self.parts(navmap).mask)[sighting.rows, sighting.cols]
-        distance_m = np.where(counts, sighting.distance_m, np.inf)
-        point = int(np.argmin(distance_m))
-        if distance_m[point] > self.distances.in_view_m:
-            return None
-        return int(sighting.rows[point]), int(sighting.cols[point])
+        return sighting.nearest(self._on_whole_map(navmap, self.parts(navmap).mask), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """Returns the approach to the nearest acceptable candidate, else to any; None when none can be reached now."""
         whole = self._known(navmap)
         if step >= self._retry_step:
             navmap.view(whole).set_aside[:] = False
-        if not self.candidates(navmap).any():
+        parts = self.parts(navmap)
+        candidates = self._candidates(navmap, parts)
+        if not candidates.any():
             self._far, self._pursued = False, None
             return None
-        for choice in self._choices(navmap, window, whole, step):
+        acceptable = self._acceptable(navmap, parts) if self.verifier.may_refuse else None
+        for choice in self._choices(candidates, acceptable, window, whole, step):
             found = approach_on(navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort)
             if found is not None:
                 row, col = found.cell[0] + choice.part.rows.start, found.cell[1] + choice.part.cols.start
@@ -204,18 +208,23 @@ class TargetSeeker:
     def _known(self, navmap: NavMap) -> Window:
         return navmap.known_window(margin_cells=self.config.margin_cells)
 
-    def _choices(self, navmap: NavMap, window: Window, whole: Window, step: int) -> Iterator[_Choice]:
+    def _choices(
+        self,
+        candidates: Bool[np.ndarray, "rows cols"],
+        acceptable: Bool[np.ndarray, "rows cols"] | None,
+        window: Window,
+        whole: Window,
+        step: int,
+    ) -> Iterator[_Choice]:
         """Yields candidates in order of preference, first on the local window, then on the whole map.
 
         Acceptable candidates come first, but without a last resort: others that have a viewpoint come before that.
         """
         # An approach on the whole map is continued on the whole map: else each step could choose another candidate.
         parts = (whole,) if self._far else (window, whole)
-        if self.verifier.may_refuse:
-            acceptable = self.acceptable(navmap)
+        if acceptable is not None:
             for part in parts:
                 yield _Choice(part, acceptable[part.index], LastResort.NONE, acceptable=True)
-        candidates = self.candidates(navmap)
         for part in parts:
             last_resort = LastResort.VERIFY if part is whole and self.verifier.may_refuse else LastResort.NONE
             if step >= self.config.last_resort_step:

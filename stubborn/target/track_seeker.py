@@ -86,14 +86,9 @@ class TrackSeeker:
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""
-        if not self._chosen or not (sighting.distance_m <= self.distances.in_view_m).any():
+        if not self._chosen or not sighting.is_within(self.distances.in_view_m):
             return None
-        counts = self.cells_of(navmap, self._chosen)[sighting.rows, sighting.cols]
-        distance_m = np.where(counts, sighting.distance_m, np.inf)
-        point = int(np.argmin(distance_m))
-        if distance_m[point] > self.distances.in_view_m:
-            return None
-        return int(sighting.rows[point]), int(sighting.cols[point])
+        return sighting.nearest(self.cells_of(navmap, self._chosen), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then the best doubtful one."""

@@ -1,6 +1,6 @@
 """Turns the file of a model into few meshes of plain colour, in the frame of an item and in metres.
 
-Reading is by trimesh, of the extra `models`; `reduction` makes fewer triangles of what is read.
+Reading is by trimesh, of the extra `models`; `reduction` reduces the triangles of a model.
 """
 
 from __future__ import annotations
