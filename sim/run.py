@@ -118,7 +118,7 @@ def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequenc
 def report_house(options: RunOptions, console: Console) -> None:
     """Prints what was left out of a house with `--labels`, and what has no label."""
     if options.house is not None and options.labels is not None:
-        for note in load_house(options.house, labels_path=options.labels).notes:
+        for note in load_house(options.house, labels_path=options.labels, root=options.root).notes:
             console.print(f"House '{options.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
 
 

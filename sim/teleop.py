@@ -44,6 +44,8 @@ class Args:
     """One MJCF file in place of a split."""
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use besides those of its own folder."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None
@@ -131,6 +133,7 @@ def run_options(args: Args) -> RunOptions:
         split=args.split,
         house=args.house,
         labels=args.labels,
+        root=args.root,
         goal=args.goal,
         start_deg=args.start_deg,
         episodes=1,

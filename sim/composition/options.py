@@ -40,6 +40,8 @@ class RunOptions:
     """One MJCF file in place of a split."""
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use besides those of its own folder."""
     robot: Path | None = None
     """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
     goal: str | None = None
@@ -90,8 +92,8 @@ def check_options(options: RunOptions) -> None:
         value = getattr(options, name)
         if value < smallest:
             raise ConfigError(f"--{name} must be at least {smallest}, got {value}.")
-    if options.house is None and (options.labels is not None or options.start_deg is not None):
-        raise ConfigError("--labels and --start-deg need --house.")
+    if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
+        raise ConfigError("--labels, --root and --start-deg need --house.")
     selection.check(options)
     if options.shard is not None:
         Shard.parse(options.shard)

@@ -117,6 +117,7 @@ def make_env(
         split=options.split,
         house=options.house,
         labels=options.labels,
+        root=options.root,
         goal=options.goal if options.house is not None else None,
         start=start_pose(options.start_deg),
         sensors=sensors,

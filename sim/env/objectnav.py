@@ -58,6 +58,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         split: name of a shipped split, or a folder with the same layout.
         house: one MJCF file instead of a split; episodes are then drawn in it.
         labels: label rules for a house with other names.
+        root: folder whose files the house may use besides those of its own folder.
         goal: only episodes with this goal category.
         start: with `house`, the start pose of every episode.
         sensors: sensors in the observation: names of `sim.sensors.standard`, or objects with the interface
@@ -86,6 +87,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         split: str | Path = "val",
         house: str | Path | None = None,
         labels: str | Path | None = None,
+        root: str | Path | None = None,
         goal: str | None = None,
         start: Pose | None = None,
         sensors: Sequence[str | Sensor] = SENSORS,
@@ -100,11 +102,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         robot: RobotConfig | None = None,
     ) -> None:
         _check_options(goal, render_mode)
-        if house is None and (labels is not None or start is not None):
-            raise ConfigError("labels and start need house: the houses of a split have their own.")
+        if house is None and any(each is not None for each in (labels, root, start)):
+            raise ConfigError("labels, root and start need house: the houses of a split have their own.")
         if start is not None:
             require_start(start)
-        self.split: Split = load_split(split) if house is None else one_house(house, labels=labels)
+        self.split: Split = load_split(split) if house is None else one_house(house, labels=labels, root=root)
         self.goal, self.start = goal, start
         self.sensors = resolve_sensors(sensors)
         self.truth_images: dict[str, NDArray] = {}

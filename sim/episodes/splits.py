@@ -72,6 +72,8 @@ class Split:
     """File of each house; a listed house may not be generated yet (`house_file`)."""
     episodes: tuple[Episode, ...]
     labels_path: Path | None = None
+    root: Path | None = None
+    """Folder whose files the houses may use besides those of the split's folder."""
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
 
@@ -97,7 +99,7 @@ class Split:
         Raises:
             HouseError: there is no such house, it cannot be generated here, or it violates the house format.
         """
-        return load_house(self.house_file(name), labels_path=self.labels_path)
+        return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def sidecar(self, house: str) -> Sidecar:
         """Returns the settings that the sidecar of a house fixes; none without a sidecar, or if it holds label rules.
@@ -148,8 +150,13 @@ def load_split(name_or_path: str | Path) -> Split:
     return _read_split(folder)
 
 
-def one_house(path: str | Path, *, labels: str | Path | None = None) -> Split:
+def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:
     """Returns a split of one house file, without episodes.
+
+    Args:
+        path: the file.
+        labels: its label rules.
+        root: folder whose files it may use besides those of its own folder.
 
     Raises:
         HouseError: there is no such file.
@@ -161,7 +168,8 @@ def one_house(path: str | Path, *, labels: str | Path | None = None) -> Split:
     digest = hashlib.sha256(path.read_bytes() + _sidecar_bytes(path))
     if labels_path is not None and labels_path.is_file():
         digest.update(labels_path.read_bytes())
-    return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path)
+    allowed = None if root is None else Path(root)
+    return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path, allowed)
 
 
 def write_split(

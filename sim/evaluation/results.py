@@ -103,6 +103,7 @@ class RunRecord(msgspec.Struct):
     split: str | None = None
     house: str | None = None
     labels: str | None = None
+    root: str | None = None
     robot: str | None = None
     weights: str | None = None
     goal: str | None = None

@@ -206,5 +206,5 @@ def _unlabelled(model: mujoco.MjModel, geom: int, names: tuple[str, ...]) -> str
             return f"{where} is visible and named '{name}', but '{category}' is not a category. {suggest(category)}"
     return (
         f"{where} is visible and has no label: name it, its body or an ancestor <category>_<number>, for example "
-        "chair_03, or give rules with --labels."
+        "chair_03."
     )

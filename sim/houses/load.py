@@ -13,11 +13,13 @@ from sim.houses.foreign import remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.mjcf import read_spec, require_sizes
+from sim.houses.references import require_root
 from sim.interface import MPCAT40_ID
 from sim.reading import read_json, reason_of
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
+HINT = "A scene from elsewhere needs --labels: tools/label_house.py proposes the rules."
 _NOT_CONVEX = {
     int(mujoco.mjtGeom.mjGEOM_HFIELD): "height field",
     int(mujoco.mjtGeom.mjGEOM_SDF): "signed distance field",
@@ -25,13 +27,14 @@ _NOT_CONVEX = {
 _FLOOR_SHAPES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_BOX))
 
 
-def load_house(path: Path, *, labels_path: Path | None = None) -> House:
+def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None = None) -> House:
     """Returns the house of one MJCF file; paths of textures and meshes are relative to it.
 
     Args:
         path: the MJCF file.
         labels_path: a JSON file of label rules, `{"regex over names": "category"}`, for a third-party scene. Elements
             that a house may not contain are then removed and reported in the house's `notes`.
+        root: a folder whose files the house may use besides those of its own folder (`sim.houses.references`).
 
     Raises:
         HouseError: the file is missing, is not MJCF, or breaks a rule of the house format; the message names file, geom
@@ -41,13 +44,14 @@ def load_house(path: Path, *, labels_path: Path | None = None) -> House:
     rules = None if labels_path is None else read_rules(Path(labels_path))
     if not path.is_file():
         raise HouseError(f"House '{path}': there is no such file.")
+    require_root(root)
     try:
-        spec = read_spec(path)
+        spec = read_spec(path, root=root)
         notes = () if rules is None else remove_unsupported(spec)
         model = _compiled(spec)
         require_sizes(model)
         house = House(path.stem, spec, rules, path)
-        labels = validate_house(house, model)
+        labels = _validated(house, model)
     except HouseError as error:
         raise HouseError(f"House '{path}': {error}") from None
     return replace(house, notes=(*notes, *void_notes(model, labels)))
@@ -65,6 +69,14 @@ def read_rules(path: Path) -> dict[str, str]:
         return read_json(path, dict[str, str], what="Label rules", error=HouseError)
     except HouseError as error:
         raise HouseError(f'{error} They must be one JSON object {{"regex over names": "category"}}.') from None
+
+
+def _validated(house: House, model: mujoco.MjModel) -> Labels:
+    """Returns the labels of a compiled house; the refusal of a house without rules says how to give some."""
+    try:
+        return validate_house(house, model)
+    except HouseError as error:
+        raise HouseError(str(error) if house.rules is not None else f"{error} {HINT}") from None
 
 
 def validate_house(house: House, model: mujoco.MjModel) -> Labels:

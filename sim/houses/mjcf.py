@@ -1,12 +1,14 @@
 """Reads MJCF files from anywhere: what a file asks for is counted before MuJoCo builds it.
 
 A few lines of MJCF can ask for any amount of memory: `replicate` in `replicate`, a texture of 60,000 x 60,000 pixels, a
-custom array of a given size. `read_spec` refuses such files, and numbers that are not finite, by name.
+custom array of a given size. `read_spec` refuses such files, and numbers that are not finite, by name. Files that it
+includes, meshes and textures must lie in the folders of `sim.houses.references`.
 """
 
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,6 +19,7 @@ import numpy as np
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
+from sim.houses.references import Allowed, Reference, asset_path, asset_references
 from sim.reading import image_size_px, printable, read_bytes, reason_of
 
 MAX_ELEMENTS = 100_000
@@ -54,24 +57,29 @@ _NAMES = frozenset((
 _NOT_FINITE = frozenset(("nan", "inf", "infinity"))
 
 
-def read_spec(path: Path, *, error: type[ObjectNavError] = HouseError) -> mujoco.MjSpec:
+def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavError] = HouseError) -> mujoco.MjSpec:
     """Returns the specification of an MJCF file.
 
     Args:
         path: the file.
+        root: a folder whose files it may use besides those of its own folder.
         error: class of the error.
 
     Raises:
-        ObjectNavError: of class `error`; the file cannot be read, is not MJCF, asks for too much, or has a number that
-            is not finite. The message names element and attribute but not the file.
+        ObjectNavError: of class `error`; the file cannot be read, is not MJCF, asks for too much, uses a file of
+            another folder, or has a number that is not finite. The message names element and attribute but not the
+            file.
     """
     path = path.resolve()
-    _Scan(error).count(path)
+    allowed = Allowed(path, root, error)
+    _Scan(allowed).count(path)
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, OSError, RecursionError) as fault:
         raise error(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)}") from None
     spec.memory = spec.nconmax = spec.njmax = spec.nstack = -1  # as much as the model needs
+    for reference in asset_references(spec, path.parent):
+        allowed.require(reference)
     _require_small_assets(spec, path.parent, error)
     return spec
 
@@ -92,8 +100,9 @@ def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseE
 class _Scan:
     """Counts what the elements of a file and of the files that it includes ask for."""
 
-    def __init__(self, error: type[ObjectNavError]) -> None:
-        self._error = error
+    def __init__(self, allowed: Allowed) -> None:
+        self._allowed = allowed
+        self._error = allowed.error
         self._files = 0
         self._elements = 0.0
         self._factors = [1.0]
@@ -129,10 +138,21 @@ class _Scan:
         self._factors.append(factor)
         if self._elements > MAX_ELEMENTS:
             self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
-        if tag in ("include", "model") and values.get("file"):
-            self.count(path.parent / values["file"])
+        if tag in ("include", "model", "flexcomp") and values.get("file"):
+            self._follow(path, values["file"], count=tag != "flexcomp")
+        if tag == "robot" and len(self._factors) == 2:
+            self._refuse("it is a URDF file, not MJCF: MuJoCo's `compile` program converts it.")
         if tag == "attach":
             self._refuse("attach: a house is one file; other files are put into it by include.")
+
+    def _follow(self, path: Path, name: str, *, count: bool) -> None:
+        """Checks a file that a file names; MuJoCo looks beside the first file, then beside the one that names it."""
+        for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
+            file = folder / name
+            if os.path.lexists(file) or folder == path.parent:
+                self._allowed.require(Reference(name, file))
+                if count:
+                    self.count(file)
 
     def _require_small_arrays(self, where: str, tag: str, values: Mapping[str, str]) -> None:
         """Refuses an element whose array MuJoCo would allocate while it reads the file."""
@@ -155,22 +175,22 @@ class _Scan:
 
 def _require_small_assets(spec: mujoco.MjSpec, folder: Path, error: type[ObjectNavError]) -> None:
     """Raises an error where the textures or the files of meshes of a specification are too large."""
-    size = sum(_texture_bytes(texture, folder / (spec.texturedir or ""), error) for texture in spec.textures)
+    size = sum(_texture_bytes(spec, texture, folder) for texture in spec.textures)
     if size > MAX_TEXTURE_BYTES:
         raise error(f"its textures have {size >> 20} MB; at most {MAX_TEXTURE_BYTES >> 20} MB are allowed.")
     assets = (*spec.meshes, *spec.hfields, *spec.skins)
-    files = [folder / (spec.meshdir or "") / each.file for each in assets if each.file]
+    files = [asset_path(spec, folder, each.file) for each in assets if each.file]
     size = sum(file.stat().st_size for file in files if file.is_file())
     if size > MAX_ASSET_BYTES:
         raise error(f"its meshes have {size >> 20} MB; at most {MAX_ASSET_BYTES >> 20} MB are allowed.")
 
 
-def _texture_bytes(texture: mujoco.MjsTexture, folder: Path, error: type[ObjectNavError]) -> int:
-    """Returns the bytes of a texture in memory; raises an error where a file is unreadable."""
+def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path) -> int:
+    """Returns the bytes of a texture in memory."""
     channels = max(1, int(texture.nchannel))
     size = max(0, texture.width) * max(0, texture.height) * channels * (6 if texture.type else 1)
     for name in (texture.file, *texture.cubefiles):
-        file = folder / name
+        file = asset_path(spec, folder, name, texture=True)
         if not name or not file.is_file():
             continue  # MuJoCo names a missing file
         with file.open("rb") as stream:

@@ -26,8 +26,8 @@ from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS
 
 NO_DEFAULT = (
-    "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "robot", "goal", "start_deg",
-    "episodes",
+    "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
+    "start_deg", "episodes",
 )  # fmt: skip
 """Options of `sim.run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, Any] = {

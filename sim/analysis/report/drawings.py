@@ -39,8 +39,9 @@ def split_of(run: Run) -> Split:
         HouseError: the one house does not exist.
     """
     config = run.config
+    house = config.get("house")
     split = (
-        one_house(config["house"], labels=config.get("labels")) if config.get("house") else load_split(config["split"])
+        one_house(house, labels=config.get("labels"), root=config.get("root")) if house else load_split(config["split"])
     )
     if split.sha256 != config["split_identity"]["sha256"]:
         raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than the present one.")

@@ -229,8 +229,8 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
 @pytest.mark.parametrize(
     ("make", "told"),
     [
-        (lambda: ObjectNavEnv(labels="rules.json"), "labels and start need house"),
-        (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels and start need house"),
+        (lambda: ObjectNavEnv(labels="rules.json"), "labels, root and start need house"),
+        (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels, root and start need house"),
         (lambda: CameraModel(hfov_rad=math.nan), "hfov_rad must be a finite number"),
         (lambda: CameraModel(height_m=math.inf), "height_m must be a finite number"),
         (lambda: CameraModel(width_px=10**6), "1 to 4096 pixels"),

@@ -1,0 +1,106 @@
+"""Checks which other files an MJCF file may read: those of its own folder, and of folders that the user allows.
+
+MuJoCo opens whatever path a file names: of an included file, a mesh, a texture. A file from elsewhere is data, so that
+it must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
+symbolic link. Textures may lie in `../textures` as well, which the houses of a split share. The user allows more with
+`--root FOLDER`, for packages whose files lie in folders beside each other.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from sim.errors import HouseError, ObjectNavError
+from sim.gl import mujoco
+from sim.reading import printable
+
+SHARED_TEXTURES = "textures"
+"""Name of the folder, beside a split's folder, that all its houses may use."""
+MOST_LEVELS_UP = 3
+"""A folder that a refusal proposes for `--root` is at most this many levels above the file."""
+
+
+@dataclass(frozen=True)
+class Reference:
+    """One path that a file of a house names."""
+
+    name: str
+    """As it is written in the file."""
+    path: Path
+    """Where MuJoCo looks for it."""
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """The folders whose files one MJCF file may read."""
+
+    file: Path
+    """The MJCF file, resolved."""
+    root: Path | None
+    """The folder that the user allows besides; None: no other."""
+    error: type[ObjectNavError]
+    """Class of the error: a HouseError is about a house, for which there is `--root`."""
+
+    def require(self, reference: Reference) -> None:
+        """Raises an error where another file must not be read.
+
+        Args:
+            reference: the other file; it need not exist.
+
+        Raises:
+            ObjectNavError: of class `error`; the path leads out of the allowed folders or is no regular file.
+        """
+        name = printable(reference.name)
+        try:
+            target = reference.path.resolve()
+            is_special = target.exists() and not target.is_file()
+        except (OSError, ValueError, RuntimeError):
+            raise self.error(f"it uses '{name}', which is no name of a file.") from None
+        folder = self.file.parent
+        allowed = [folder, folder.parent / SHARED_TEXTURES, *([] if self.root is None else [self.root.resolve()])]
+        if not any(target.is_relative_to(each) for each in allowed):
+            where = "its folder" if self.root is None else f"its folder and '{self.root}'"
+            raise self.error(f"it uses '{name}', which is outside of {where}. {self._remedy(target)}")
+        if is_special:
+            raise self.error(f"it uses '{name}', which is not a regular file.")
+
+    def _remedy(self, target: Path) -> str:
+        """Returns how the user can allow a file that is near the house file; for others the rule."""
+        if not issubclass(self.error, HouseError):
+            return "Copy all files of a robot into one folder."
+        common = Path(os.path.commonpath((target, self.file)))
+        levels = len(self.file.parent.relative_to(common).parts)
+        if levels <= MOST_LEVELS_UP and len(common.parts) > 1:
+            return f"If you trust this file, allow the folder of both: --root '{common}'."
+        return "A house may use files of its own folder, and those of the folder given with --root."
+
+
+def asset_references(spec: mujoco.MjSpec, folder: Path) -> Iterator[Reference]:
+    """Yields the files of meshes, height fields, skins and textures of a specification.
+
+    Args:
+        spec: of a file in `folder`.
+        folder: paths are relative to it.
+    """
+    for asset in (*spec.meshes, *spec.hfields, *spec.skins):
+        if asset.file:
+            yield Reference(asset.file, asset_path(spec, folder, asset.file))
+    for texture in spec.textures:
+        for name in (texture.file, *texture.cubefiles):
+            if name:
+                yield Reference(name, asset_path(spec, folder, name, texture=True))
+
+
+def asset_path(spec: mujoco.MjSpec, folder: Path, name: str, *, texture: bool = False) -> Path:
+    """Returns where MuJoCo looks for the file of a mesh or of a texture."""
+    name = os.path.basename(name) if spec.strippath else name
+    return folder / ((spec.texturedir if texture else spec.meshdir) or "") / name
+
+
+def require_root(root: Path | None) -> None:
+    """Raises a HouseError where the folder of `--root` does not exist."""
+    if root is not None and not root.is_dir():
+        raise HouseError(f"--root '{root}': there is no such folder.")

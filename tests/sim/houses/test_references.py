@@ -1,0 +1,127 @@
+"""A house file reads only files of its own folder, the textures that a split shares, and what `--root` allows."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from sim import run
+from sim.errors import ConfigError, HouseError
+from sim.houses.load import load_house
+from sim.robot.foreign import load_robot
+from tests.helpers.foreign import CUBE, ROBOT, write_robot
+
+FLOOR = '<geom name="floor_00" type="plane" size="3 3 1"/>'
+MESH = '<asset><mesh name="cube" file="{file}"/></asset>'
+TEXTURE = '<asset><texture name="wood" type="{kind}" {file}/></asset>'
+SOFA = '<mujoco><worldbody><geom name="sofa_00" size="0.2" pos="1 1 0.2"/></worldbody></mujoco>'
+
+
+def write(folder: Path, more: str = "", *, world: str = "") -> Path:
+    """A package's scene: `package/scenes/house.xml`, with the folders `package/common` and `package/textures`."""
+    for name in ("scenes", "common", "textures", "scenes/parts"):
+        (folder / "package" / name).mkdir(parents=True, exist_ok=True)
+    (folder / "package" / "common" / "sofa.xml").write_text(SOFA)
+    (folder / "package" / "common" / "cube.obj").write_text(CUBE)
+    (folder / "package" / "scenes" / "parts" / "cube.obj").write_text(CUBE)
+    for name in ("textures", "common"):
+        cv2.imwrite(str(folder / "package" / name / "wood.png"), np.zeros((4, 4, 3), np.uint8))
+    file = folder / "package" / "scenes" / "house.xml"
+    file.write_text(f"<mujoco>{more}<worldbody>{FLOOR}{world}</worldbody></mujoco>")
+    return file
+
+
+OUTSIDE = {
+    "an included file beside the folder": '<include file="../common/sofa.xml"/>',
+    "an included system file": '<include file="/etc/passwd"/>',
+    "a file that an included file includes": '<include file="parts/more.xml"/>',
+    "a mesh": MESH.format(file="../common/cube.obj"),
+    "a mesh by its whole path": MESH.format(file="/etc/passwd"),
+    "a folder of meshes": '<compiler meshdir="../common"/>' + MESH.format(file="cube.obj"),
+    "a folder of all assets": '<compiler assetdir="/etc"/>' + MESH.format(file="passwd"),
+    "a texture": TEXTURE.format(kind="2d", file='file="../common/wood.png"'),
+    "a side of a cube": TEXTURE.format(kind="cube", file='fileright="../common/wood.png"'),
+    "a symbolic link": '<include file="parts/link.xml"/>',
+    "a model": '<asset><model name="m" file="../common/sofa.xml"/></asset>',
+    "a flexible body": '<worldbody><flexcomp name="f" type="mesh" file="../common/cube.obj"/></worldbody>',
+    "a height field": '<asset><hfield name="h" size="1 1 1 1" file="../common/wood.png"/></asset>',
+}
+
+
+@pytest.mark.parametrize("more", OUTSIDE.values(), ids=OUTSIDE)
+def test_a_file_outside_of_the_folder_of_the_house_is_refused(more: str, tmp_path: Path) -> None:
+    file = write(tmp_path, more)
+    (file.parent / "parts" / "more.xml").write_text('<mujoco><include file="../../common/sofa.xml"/></mujoco>')
+    os.symlink(file.parent.parent / "common" / "sofa.xml", file.parent / "parts" / "link.xml")
+    with pytest.raises(HouseError, match="which is outside of its folder") as refused:
+        load_house(file)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_refusal_proposes_the_folder_that_holds_both_files_but_none_for_system_files(tmp_path: Path) -> None:
+    with pytest.raises(HouseError, match=rf"--root '{tmp_path / 'package'}'\.$"):
+        load_house(write(tmp_path, OUTSIDE["an included file beside the folder"]))
+    with pytest.raises(HouseError, match=r"those of the folder given with --root\.$"):
+        load_house(write(tmp_path, OUTSIDE["an included system file"]))
+
+
+def test_files_of_the_root_may_be_used_and_no_others(tmp_path: Path) -> None:
+    file = write(tmp_path, '<include file="../common/sofa.xml"/>')
+    house = load_house(file, root=tmp_path / "package")
+    assert [geom.name for geom in house.spec.geoms] == ["sofa_00", "floor_00"]
+    with pytest.raises(HouseError, match=r"outside of its folder and '.*package'"):
+        load_house(write(tmp_path, OUTSIDE["an included system file"]), root=tmp_path / "package")
+    with pytest.raises(HouseError, match=r"--root '.*nowhere': there is no such folder"):
+        load_house(file, root=tmp_path / "nowhere")
+
+
+INSIDE = {
+    "a mesh folder": '<compiler meshdir="parts"/>' + MESH.format(file="cube.obj"),
+    "an asset folder": '<compiler assetdir="parts"/>' + MESH.format(file="cube.obj"),
+    "a relative path": MESH.format(file="parts/../parts/cube.obj"),
+    "a path that is stripped": '<compiler meshdir="parts" strippath="true"/>' + MESH.format(file="../../x/cube.obj"),
+    "a texture that the split shares": TEXTURE.format(kind="2d", file='file="../textures/wood.png"'),
+    "a file beside the included file": '<include file="parts/outer.xml"/>',
+    "a file beside the house, from a folder": '<include file="parts/upward.xml"/>',
+}
+
+
+@pytest.mark.parametrize("more", INSIDE.values(), ids=INSIDE)
+def test_includes_and_asset_folders_of_the_house_are_read(more: str, tmp_path: Path) -> None:
+    use = '<geom name="chair_00" type="mesh" mesh="cube" pos="2 2 1"/>' if "cube" in more else ""
+    file = write(tmp_path, more, world=use)
+    (file.parent / "parts" / "inner.xml").write_text(SOFA)
+    (file.parent / "parts" / "outer.xml").write_text('<mujoco><include file="inner.xml"/></mujoco>')
+    (file.parent / "beside.xml").write_text(SOFA)
+    (file.parent / "parts" / "upward.xml").write_text('<mujoco><include file="../beside.xml"/></mujoco>')
+    assert load_house(file).spec.compile().ngeom == 1 + ("cube" in more) + ("include" in more)
+
+
+def test_a_pipe_is_not_read(tmp_path: Path) -> None:
+    file = write(tmp_path, '<include file="parts/pipe.xml"/>')
+    os.mkfifo(file.parent / "parts" / "pipe.xml")
+    with pytest.raises(HouseError, match="not a regular file"):
+        load_house(file)
+
+
+def test_a_robot_reads_no_file_outside_of_its_folder(tmp_path: Path) -> None:
+    file = write_robot(tmp_path / "r", robot=ROBOT.replace('file="cube.obj"', 'file="../../cube.obj"'))
+    (tmp_path / "cube.obj").write_text(CUBE)
+    with pytest.raises(ConfigError, match=r"uses '../../cube.obj', which is outside of its folder. Copy all files"):
+        load_robot(file)
+
+
+def test_a_run_with_a_root_plays_and_one_without_says_what_to_give(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    house = ["--house", str(write(tmp_path, '<include file="../common/sofa.xml"/>')), "--agent", "oracle"]
+    few = ["--episodes", "1", "--out", str(tmp_path / "run")]
+    assert run.entry([*house, *few]) == 2
+    assert f"--root '{tmp_path / 'package'}'" in capsys.readouterr().err
+    assert run.entry([*house, *few, "--root", str(tmp_path / "package")]) == 0
+    assert run.entry(["--root", str(tmp_path), *few]) == 2
+    assert "--root and --start-deg need --house" in capsys.readouterr().err
