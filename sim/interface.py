@@ -26,7 +26,7 @@ from sim.geometry.pose import wrap_angle
 __all__ = [
     "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS", "TURN_RAD",
     "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation", "RobotModel", "Scores",
-    "Segmenter", "SegmenterSpec", "SuccessRule", "wrap_angle",
+    "Segmenter", "SegmenterSpec", "StatesConfidence", "SuccessRule", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -246,6 +246,15 @@ class Overridable(Protocol):
 
     def overridden(self, action: Action) -> None:
         """Called after `act`, before the next observation, with the action that is carried out instead."""
+        ...
+
+
+@runtime_checkable
+class StatesConfidence(Protocol):
+    """An agent that tells how sure it is that the object for which it stops is the goal; the report compares it."""
+
+    def stop_confidence(self) -> float | None:
+        """Returns a probability or score in [0, 1]; None: it has none. Called after `act` has returned STOP."""
         ...
 
 

@@ -24,6 +24,7 @@ from sim.composition.runner import identity_of, make_env, plan_episodes
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError
+from sim.evaluation.last_view import write_last_view
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import episode_seed, play_episode, record_episode
 from sim.viewers.terminal import Terminal
@@ -192,6 +193,7 @@ def play(options: RunOptions, episode: Episode, cockpit: Cockpit, content: dict[
         line = identity_of(options, HUMAN, episode) | metrics
         about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
         record_episode(env, options.out, line, about | {"versions": content["versions"]})
+        write_last_view(env, options.out, line["episode_id"])
         return line
     finally:
         for viewer in viewers:

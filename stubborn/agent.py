@@ -154,6 +154,10 @@ class StubbornAgent:
         """Learns that another action than its own is carried out; see `sim.interface.Overridable`."""
         self.last_action = action
 
+    def stop_confidence(self) -> float | None:
+        """Returns the confidence in the candidate that was accepted last; see `sim.interface.StatesConfidence`."""
+        return self.seeker.confidence
+
     def _learn_from_last_action(self, before: Pose, pose: Pose) -> None:
         """Marks the ground that was driven over, and a collision where the last forward failed."""
         config, moved_m = self.config.collisions, pose.distance_to(before)

@@ -29,7 +29,7 @@ from sim.files import write_atomically
 from sim.interface import ConfigError
 
 SHARDS = "shard_*_of_*"
-COPIED = ("trajectories", "videos", "rerun")
+COPIED = ("trajectories", "pictures", "videos", "rerun")
 """Folders of a run with files of single episodes."""
 
 

@@ -71,7 +71,7 @@ class RunOptions:
     out: cli.OutFolder | None = None
     """Folder of the results (runs/<time>); an existing run there is resumed."""
     record: bool = False
-    """Write a compact trajectory file of each episode, for `sim.task.trajectory.read_trajectory`."""
+    """Write a compact trajectory of each episode (`sim.task.trajectory.read_trajectory`) and its last picture."""
     video: bool = False
     """Write an MP4 of each episode to <out>/videos."""
     view: bool = False

@@ -15,6 +15,7 @@ from sim.composition.segmenters import NoSegmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, ObjectNavError, RenderError, debug
+from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.interface import Agent, AgentSpec, Segmenter
 from sim.sensors.sensor import Sensor
@@ -82,6 +83,9 @@ class EpisodeRunner:
         line = identity_of(self._options, self._spec, episode) | metrics
         if self._options.record and self._options.out is not None:
             record_episode(self._env, self._options.out, line, self._about)
+        filmed = self._options.record or self._options.video
+        if filmed and self._options.out is not None and line["end_reason"] != "error":
+            write_last_view(self._env, self._options.out, line["episode_id"])
         return line
 
     def _broken(self, episode: Episode, error: Exception) -> dict[str, Any]:

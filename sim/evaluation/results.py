@@ -75,6 +75,7 @@ class ResultLine(msgspec.Struct):
     area_seen_m2: Measured = None
     area_per_metre: float | None = None  # code of before November 2026 divided by paths of nothing
     trapped: Measured = None
+    stop_confidence: Measured = None
     wall_time_s: Measured = None
     steps_per_s: Measured = None
 

@@ -17,7 +17,7 @@ import numpy as np
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
-from sim.interface import Action, Agent, Observation
+from sim.interface import Action, Agent, Observation, StatesConfidence
 from sim.task.trajectory import trajectory_file, write_trajectory
 from sim.viewers.viewer import Moment, Viewer
 
@@ -66,10 +66,12 @@ def play_episode(
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    steps, error, done = 0, None, False
+    steps, error, done, confidence = 0, None, False, None
     while not done:
         try:
             action = next_action(agent, observation, f"Agent '{name}', step {steps + 1}")
+            if action is Action.STOP:
+                confidence = confidence_of(agent, f"Agent '{name}', step {steps + 1}")
         except AgentError as failure:
             error = str(failure)
             break
@@ -90,6 +92,7 @@ def play_episode(
     wall_time_s = time.perf_counter() - began_s
     line = {key: _plain(value) for key, value in info.items() if key != "collided"}
     line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
+    line["stop_confidence"] = confidence
     if error is not None:
         line |= broken_metrics(error)
     for viewer in viewers:
@@ -124,6 +127,24 @@ def next_action(agent: Agent, observation: Observation, where: str) -> Action:
     except (ValueError, TypeError):
         actions = ", ".join(f"{action.value} {action.name}" for action in Action)
         raise AgentError(f"{where}: act() returned {reprlib.repr(given)}; an action is one of {actions}.") from None
+
+
+def confidence_of(agent: Agent, where: str) -> float | None:
+    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None where it does not tell.
+
+    Raises:
+        AgentError: `stop_confidence` failed, or returned something else; the message begins with `where`.
+    """
+    if not isinstance(agent, StatesConfidence):
+        return None
+    given = ask(where, agent.stop_confidence)
+    if given is None:
+        return None
+    if not isinstance(given, (int, float, np.number)) or not 0.0 <= given <= 1.0:
+        raise AgentError(
+            f"{where}: stop_confidence() returned {reprlib.repr(given)}; it is a number in [0, 1], or None."
+        )
+    return round(float(given), 6)
 
 
 def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about: Mapping[str, Any]) -> None:

@@ -20,12 +20,15 @@ from stubborn.target.approach import Approach, approach_on
 from stubborn.target.candidates import CandidateParts
 from stubborn.target.classifiers import Features
 from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.verification import Verifier
+from stubborn.target.verification import RatesCandidates, Verifier
 from stubborn.target.viewpoints import LastResort, ViewpointFinder
 
 
 class Seeker(Protocol):
     """Decides on candidates of the goal: where to go for them, and when to stop."""
+
+    confidence: float | None
+    """Probability or score in [0, 1] of the candidate that `judge` accepted last; None: it has accepted none."""
 
     def reset(self, goal: str) -> None:
         """Forgets the last episode."""
@@ -101,6 +104,8 @@ class TargetSeeker:
         self.goal = goal
         self._retry_step = 0
         self._wait_steps = self.config.retry_after_steps
+        self.confidence: float | None = None
+        """See `Seeker`: the verifier's probability, or the candidate's highest score if it has none."""
         self._far = False  # whether the candidate pursued needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
 
@@ -192,10 +197,16 @@ class TargetSeeker:
         features = features_of(view, _seen_best(view, instance))
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
         if (found_late and not parts.touches_rejected[number]) or self.verifier.accepts(self.goal, features):
+            self.confidence = self._rated(features)
             return True
         margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
         view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True
         return False
+
+    def _rated(self, features: Features) -> float:
+        """Returns the probability of a candidate by the verifier, else its highest score."""
+        verifier = self.verifier
+        return verifier.probability(self.goal, features) if isinstance(verifier, RatesCandidates) else features.maximum
 
     def _on_whole_map(
         self, navmap: NavMap, mask: Bool[np.ndarray, "known_rows known_cols"]

@@ -65,6 +65,8 @@ class TrackSeeker:
         """Of the goal, for each track."""
         self.pursued: int | None = None
         """The doubtful track that is looked at."""
+        self.confidence: float | None = None
+        """See `Seeker`: the probability of the track."""
         self._chosen: list[int] = []  # tracks that are approached as accepted
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
@@ -114,6 +116,8 @@ class TrackSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
         if self._chosen:
+            at_cell = [t for t in self._chosen if self.cells_of(navmap, [t])[cell]]
+            self.confidence = float(self.probability[at_cell or self._chosen].max())
             return True
         if self.pursued is not None:
             self.verdicts.looked(self.pursued)

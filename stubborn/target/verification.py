@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any, Protocol, runtime_checkable
 
 import msgspec
 
@@ -76,6 +76,15 @@ class Verifier(Protocol):
 
     def would_accept(self, goal: str, features: Features) -> bool:
         """Returns the expected answer for a candidate that is seen from afar; it is asked at every step."""
+        ...
+
+
+@runtime_checkable
+class RatesCandidates(Protocol):
+    """A verifier that estimates probabilities."""
+
+    def probability(self, goal: str, features: Features) -> float:
+        """Returns the probability in [0, 1] that a candidate for this goal is true."""
         ...
 
 

@@ -10,9 +10,11 @@ import sys
 import time
 from pathlib import Path
 
+import cv2
 import pytest
 
 from sim.episodes.splits import Episode, write_split
+from sim.evaluation.last_view import picture_file
 from sim.evaluation.results import SUMMARY_METRICS
 from sim.geometry.pose import Pose
 from sim.paths import code_hash
@@ -107,7 +109,7 @@ def test_a_killed_run_goes_on_and_no_line_is_lost_or_doubled(house: Path, tmp_pa
 def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "random", "--house", house)
     run(*options, "--episodes", 2, "--out", tmp_path / "plain")
-    assert not (tmp_path / "plain" / "trajectories").exists()
+    assert not any((tmp_path / "plain" / name).exists() for name in ("trajectories", "pictures"))
     run(*options, "--episodes", 1, "--out", tmp_path / "recorded", "--record")
     done = run(*options, "--episodes", 2, "--workers", 2, "--out", tmp_path / "recorded", "--record")
     assert done.returncode == 0, done.stderr
@@ -115,6 +117,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
     for line in lines_of(tmp_path / "plain"):
         trajectory = read_trajectory(trajectory_file(tmp_path / "recorded", line["episode_id"]))
         assert trajectory.about["scores"] == line
+        assert cv2.imread(str(picture_file(tmp_path / "recorded", line["episode_id"]))).shape == (480, 640, 3)
         assert trajectory.num_steps == line["num_steps"]
         assert trajectory.moved_m.sum() == pytest.approx(line["path_length"], abs=1e-4)
         assert int(trajectory.collided.sum()) == line["collisions"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -52,6 +53,37 @@ def test_a_finished_episode_is_a_line_that_json_can_hold(env: ObjectNavEnv) -> N
     assert json.loads(json.dumps(line, allow_nan=False)) == line
     assert (line["end_reason"], line["num_steps"], line["success"]) == ("stop", 2, 0.0)
     assert line["path_length"] == pytest.approx(0.25, abs=0.01)
+
+
+class Sure(Script):
+    """A script that tells a confidence."""
+
+    def __init__(self, actions: list[Action], confidence: Any) -> None:
+        super().__init__(actions)
+        self.confidence = confidence
+
+    def stop_confidence(self) -> Any:
+        return self.confidence
+
+
+@pytest.mark.parametrize(
+    ("agent", "recorded"),
+    [
+        (Sure([Action.TURN_LEFT, Action.STOP], 0.25), 0.25),
+        (Sure([Action.STOP], np.float32(1.0)), 1.0),
+        (Sure([Action.STOP], None), None),
+        (Script([Action.STOP]), None),
+    ],
+)
+def test_a_line_records_how_sure_the_agent_was_when_it_stopped(env: ObjectNavEnv, agent: Any, recorded: Any) -> None:
+    assert play_episode(env, agent, EPISODE, seed=0)["stop_confidence"] == recorded
+
+
+@pytest.mark.parametrize("given", [1.5, -0.1, math.nan, "high"])
+def test_a_confidence_that_is_no_share_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
+    line = play_episode(env, Sure([Action.STOP], given), EPISODE, seed=0, name="x:mine")
+    assert line["end_reason"] == "error"
+    assert "'x:mine', step 1: stop_confidence() returned" in line["error"]
 
 
 def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_house_and_step(env: ObjectNavEnv) -> None:

@@ -508,3 +508,22 @@ def test_the_known_window_holds_all_that_was_seen_and_a_margin():
     navmap.grow_known(slice(60, 61), slice(28, 91))
     window = navmap.known_window(5)
     assert (window.rows, window.cols) == (slice(15, 66), slice(23, 96))
+
+
+class Rated(Doubtful):
+    """A verifier that also tells a probability."""
+
+    def probability(self, goal: str, features: Features) -> float:
+        return 0.9 if self.accepts(goal, features) else 0.2
+
+
+def test_the_confidence_is_the_verifiers_probability_of_what_it_accepted_last_else_the_highest_score():
+    for verifier, told in ((Rated(), 0.9), (AcceptAll(), 0.8), (RefuseAll(), None)):
+        navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
+        navmap.score_sum[30, 60], navmap.score_max[30, 60] = 0.8, 0.8
+        seek = seeker(verifier)
+        assert seek.confidence is None
+        assert seek.judge(navmap, (30, 60)) == (told is not None)
+        assert seek.confidence == (None if told is None else pytest.approx(told))
+        seek.reset("bed")
+        assert seek.confidence is None

@@ -94,6 +94,7 @@ def test_a_sure_object_is_driven_to():
     assert trace.stopped
     assert trace.actions[-1] == Action.STOP
     assert seeker.verdicts.accepted
+    assert seeker.confidence == max(seeker.probability[list(seeker.verdicts.accepted)])
     assert world.distance_to("table") < 0.8
 
 
