@@ -1,18 +1,9 @@
 """Writes one MP4 per episode: `python -m sim.run --video` writes `<out>/videos/<episode_id>.mp4`.
 
-The codec is VP9 in an MP4 container, written by the FFmpeg inside `opencv-python-headless`, which the project needs
-anyway. It was chosen among these wheels (Linux x86-64, November 2026):
-
-====================================  =============  ==============================================================
-wheel                                 adds           bundled software
-====================================  =============  ==============================================================
-opencv-python-headless 5.0.0          nothing        FFmpeg "LGPL version 2.1 or later" and libvpx (BSD): VP9
-av 18.1 (PyAV)                        36 MB          FFmpeg with the libraries of x264 and x265, which are GPL
-imageio-ffmpeg 0.8.1                  68 MB          an FFmpeg program configured with `--enable-gpl`
-====================================  =============  ==============================================================
-
-VP9 needs no patent licence, and Chrome, Firefox, Edge and Safari (14 and newer) play it in an MP4. It is slow: OpenCV
-passes no options to the encoder, so that it runs at libvpx's default speed, in a thread of its own.
+The codec is H.264, which browsers, desktop players and slides show, encoded by x264 through PyAV; a PyAV whose FFmpeg lacks
+x264 writes VP9. PyAV's wheel (36 MB) bundles an FFmpeg with x264 and x265, which are GPL; nothing of it is distributed here.
+The FFmpeg inside OpenCV would add nothing, but it takes no options for its encoder: VP9 at libvpx's default speed took 580 ms of
+processor time for a frame that x264 encodes in 25.
 """
 
 from __future__ import annotations
@@ -21,11 +12,12 @@ import contextlib
 import queue
 import threading
 import urllib.parse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import cv2
+import av
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,6 +37,11 @@ FRAMES_PER_S = 5.0
 """An action takes 0.2 s, so that 500 of them are 100 s."""
 END_FRAMES = 12
 """Number of frames that hold the last moment, with an explanation of the outcome: 2.4 s."""
+CODECS = {
+    "libx264": {"preset": "superfast", "crf": "23"},
+    "libvpx-vp9": {"deadline": "realtime", "cpu-used": "8", "crf": "32", "b": "0"},
+}
+"""Encoders with their options; the first that PyAV has is used."""
 _WAITING_FRAMES = 8
 """Largest number of frames that wait for the encoder: 22 MB."""
 
@@ -66,43 +63,35 @@ class VideoWriter:
             frames_per_s: playback speed.
 
         Raises:
-            ConfigError: the folder is not writable, or this OpenCV has no VP9.
+            ConfigError: the folder is not writable, or this PyAV has none of the codecs.
         """
+        codec = next((name for name in CODECS if name in av.codecs_available), None)
+        if codec is None:
+            raise ConfigError(f"--video: this build of PyAV has no encoder {' or '.join(CODECS)}; the wheels of `av` have.")
         self.file = file
         self._part = part_file(file, what="video")
-        fourcc = cv2.VideoWriter.fourcc(*"vp09")
-        self._encoder = cv2.VideoWriter(str(self._part), cv2.CAP_FFMPEG, fourcc, frames_per_s, size_px)
-        if not self._encoder.isOpened():
-            self._part.unlink()
-            raise ConfigError(
-                "--video: this build of OpenCV cannot write VP9; the wheels of opencv-python-headless can."
-            )
+        self._size_px, self._frames_per_s, self._codec = size_px, frames_per_s, codec
         self._frames: queue.Queue[NDArray[np.uint8] | None] = queue.Queue(maxsize=_WAITING_FRAMES)
-        self._written = 0
+        self._failure: Exception | None = None
         self._thread = threading.Thread(target=self._encode, daemon=True, name="video")
         self._thread.start()
 
     def write(self, frame: NDArray[np.uint8]) -> None:
         """Adds a frame, uint8 RGB (height, width, 3); it must not be changed afterwards."""
         self._frames.put(frame)
-        self._written += 1
 
     def finish(self) -> None:
         """Waits until all frames are encoded, and gives the file its name.
 
         Raises:
-            ConfigError: the file does not hold all frames, because the disk is full; it is removed.
+            ConfigError: a frame could not be encoded or written, for example because the disk is full; the file is removed.
         """
         self._stop()
-        whole = cv2.VideoCapture(str(self._part))  # FFmpeg does not report a write that failed
-        frames = int(whole.get(cv2.CAP_PROP_FRAME_COUNT)) if whole.isOpened() else 0
-        whole.release()
-        if frames != self._written:
+        if self._failure is not None:
             self._part.unlink(missing_ok=True)
             raise ConfigError(
-                f"Cannot write the video '{self.file}': only {frames} of {self._written} frames are on the disk, which "
-                "is probably full. The same command films this episode again."
-            )
+                f"Cannot write the video '{self.file}': {self._failure}. The same command films this episode again."
+            ) from self._failure
         self._part.replace(self.file)
 
     def discard(self) -> None:
@@ -114,11 +103,31 @@ class VideoWriter:
     def _stop(self) -> None:
         self._frames.put(None)
         self._thread.join()
-        self._encoder.release()
 
     def _encode(self) -> None:
+        frames = self._until_the_end()
+        try:
+            self._encode_all(frames)
+        except (OSError, ValueError) as error:  # each error of FFmpeg is one of the two
+            self._failure = error
+            for _ in frames:  # the caller must not wait for room in the queue
+                pass
+
+    def _until_the_end(self) -> Iterator[NDArray[np.uint8]]:
         while (frame := self._frames.get()) is not None:
-            self._encoder.write(cv2.cvtColor(frame, cv2.COLOR_RGB2BGR))
+            yield frame
+
+    def _encode_all(self, frames: Iterator[NDArray[np.uint8]]) -> None:
+        width, height = self._size_px
+        rate = Fraction(self._frames_per_s).limit_denominator(1000)
+        with av.open(str(self._part), "w", format="mp4", options={"movflags": "+faststart"}) as container:
+            stream = container.add_stream(self._codec, rate=rate, options=CODECS[self._codec])
+            assert isinstance(stream, av.VideoStream)
+            stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
+            stream.codec_context.thread_count = 1
+            for frame in frames:
+                container.mux(stream.encode(av.VideoFrame.from_ndarray(frame, format="rgb24")))
+            container.mux(stream.encode(None))
 
 
 class VideoRecorder:
