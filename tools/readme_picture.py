@@ -1,74 +1,92 @@
-"""Makes the picture of the README: the robot's view, its segmentation, and the agent's map with path and goal.
+"""Makes the animated picture of the README from the video of an episode.
 
-python tools/readme_picture.py --episode-id <id> --step 60 --out docs/images/episode.png
+python -m sim.run --agent stubborn-plus --semantics gt --episodes 1 --video --out runs/filmed
+python tools/readme_picture.py runs/filmed/videos/<episode_id>.mp4 --out docs/images/episode.webp
 """
 
 from __future__ import annotations
 
+import io
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import av
 import cv2
 import numpy as np
+import tyro
 from numpy.typing import NDArray
 
 from sim import cli
-from sim.env.objectnav import ObjectNavEnv
-from sim.evaluation.rollout import episode_seed
-from sim.files import write_picture
-from sim.viewers.palette import with_legend
-from stubborn import draw
-from stubborn.agent import StubbornAgent
-from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from sim.errors import ConfigError
+from sim.files import write_atomically
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Run an episode up to a step and draw camera, segmentation and map."""
+    """Turn a video into an animated WebP picture, which browsers and GitHub show in a page without a player."""
 
-    split: str = "val"
-    """Split of the episode."""
-    episode_id: str | None = None
-    """Id of the episode; the first of the split if not given."""
-    step: cli.Amount = 40
-    """Number of actions before the picture; fewer if the episode ends earlier."""
-    profile: str = "good"
-    """Rendering quality of the picture."""
-    out: cli.OutFile = Path("docs/images/episode.png")
-    """The PNG file."""
+    video: tyro.conf.Positional[Path]
+    """The MP4 file of an episode (`sim.run --video`)."""
+    width_px: cli.Count = 800
+    """Width of the picture."""
+    frames: cli.Count = 80
+    """Largest number of frames; a longer video is thinned out evenly, its last frame stays."""
+    frames_per_s: cli.Count = 6
+    """Playback speed."""
+    quality: cli.Count = 60
+    """Quality of the WebP, 1 to 100."""
+    out: cli.OutFile = Path("docs/images/episode.webp")
+    """The WebP file."""
 
 
 def main(args: Args) -> int:
     """Writes the picture; returns the exit status."""
-    env = ObjectNavEnv(split=args.split, sensors=("rgb", "depth", "semantic"), profile=args.profile)
-    try:
-        picture = np.hstack(panels(env, args))
-    finally:
-        env.close()
-    write_picture(args.out, picture)
-    print(f"{args.out}: {picture.shape[1]} x {picture.shape[0]} pixels")
+    frames = thinned(frames_of(args.video), args.frames)
+    size_px = args.width_px, round(args.width_px * frames[0].shape[0] / frames[0].shape[1])
+    small = [np.asarray(cv2.resize(frame, size_px, interpolation=cv2.INTER_AREA), np.uint8) for frame in frames]
+    content = animation(small, frames_per_s=args.frames_per_s, quality=args.quality)
+    write_atomically(args.out, content)
+    print(f"{args.out}: {len(small)} frames of {size_px[0]} x {size_px[1]} pixels, {len(content) / 1e6:.2f} MB")
     return 0
 
 
-def panels(env: ObjectNavEnv, args: Args) -> list[NDArray[np.uint8]]:
-    """Returns camera image, segmentation and map at the same height, uint8 (h, w, 3) each."""
-    episode = env.split.episode(args.episode_id) if args.episode_id else env.split.episodes[0]
-    observation, _ = env.reset(options={"episode": episode})
-    agent = StubbornAgent(camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
-    agent.reset(episode.goal, episode_seed(0, episode.episode_id))
-    action, done, steps = agent.act(observation), False, 0
-    while not done and steps < args.step:
-        observation, _, terminated, truncated, _ = env.step(action)
-        steps, done = steps + 1, terminated or truncated
-        if not done:
-            action = agent.act(observation)
-    print(f"{episode.episode_id}: looking for {episode.goal}, {steps} steps")
-    height = observation["rgb"].shape[0]
-    belief = draw.draw_map(agent)
-    width = round(belief.shape[1] * height / belief.shape[0])
-    belief = np.asarray(cv2.resize(belief, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
-    return [observation["rgb"], with_legend(observation["semantic"]), belief]
+def frames_of(file: Path) -> list[NDArray[np.uint8]]:
+    """Returns the frames of a video, uint8 RGB (height, width, 3) each.
+
+    Raises:
+        ConfigError: the file does not exist or holds no video.
+    """
+    try:
+        with av.open(str(file)) as container:
+            frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    except (OSError, ValueError, IndexError) as error:  # each error of FFmpeg is one of the first two
+        raise ConfigError(f"'{file}' cannot be read as a video: {error}.") from None
+    if not frames:
+        raise ConfigError(f"The video '{file}' has no frames.")
+    return frames
+
+
+def thinned(frames: Sequence[NDArray[np.uint8]], largest: int) -> list[NDArray[np.uint8]]:
+    """Returns at most that many frames, evenly spaced; first and last stay."""
+    if len(frames) <= largest:
+        return list(frames)
+    return [frames[i] for i in np.linspace(0, len(frames) - 1, largest).round().astype(int)]
+
+
+def animation(frames: Sequence[NDArray[np.uint8]], *, frames_per_s: int, quality: int) -> bytes:
+    """Returns an animated WebP that repeats without end; frames are uint8 RGB of one size."""
+    content = io.BytesIO()
+    with av.open(content, "w", format="webp", options={"loop": "0"}) as container:
+        stream = container.add_stream("libwebp_anim", rate=frames_per_s, options={"quality": str(quality)})
+        assert isinstance(stream, av.VideoStream)
+        stream.height, stream.width = frames[0].shape[:2]
+        stream.pix_fmt = "yuv420p"
+        for frame in frames:
+            container.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(frame), format="rgb24")))
+        container.mux(stream.encode(None))
+    return content.getvalue()
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """Writes one MP4 per episode: `python -m sim.run --video` writes `<out>/videos/<episode_id>.mp4`.
 
-The codec is H.264, which browsers, desktop players and slides show, encoded by x264 through PyAV; a PyAV whose FFmpeg lacks
-x264 writes VP9. PyAV's wheel (36 MB) bundles an FFmpeg with x264 and x265, which are GPL; nothing of it is distributed here.
-The FFmpeg inside OpenCV would add nothing, but it takes no options for its encoder: VP9 at libvpx's default speed took 580 ms of
-processor time for a frame that x264 encodes in 25.
+The codec is H.264, which browsers, desktop players and slides show, encoded by x264 through PyAV; a PyAV whose FFmpeg
+lacks x264 writes VP9. PyAV's wheel (36 MB) bundles an FFmpeg with x264 and x265, which are GPL; nothing of it is
+distributed here. The FFmpeg inside OpenCV would add nothing, but it takes no options for its encoder: VP9 at libvpx's
+default speed took 580 ms of processor time for a frame that x264 encodes in 25 ms.
 """
 
 from __future__ import annotations
@@ -67,7 +67,9 @@ class VideoWriter:
         """
         codec = next((name for name in CODECS if name in av.codecs_available), None)
         if codec is None:
-            raise ConfigError(f"--video: this build of PyAV has no encoder {' or '.join(CODECS)}; the wheels of `av` have.")
+            raise ConfigError(
+                f"--video: this build of PyAV has no encoder {' or '.join(CODECS)}; the wheel of `av` has."
+            )
         self.file = file
         self._part = part_file(file, what="video")
         self._size_px, self._frames_per_s, self._codec = size_px, frames_per_s, codec
@@ -84,7 +86,7 @@ class VideoWriter:
         """Waits until all frames are encoded, and gives the file its name.
 
         Raises:
-            ConfigError: a frame could not be encoded or written, for example because the disk is full; the file is removed.
+            ConfigError: a frame could not be written, for example because the disk is full; the file is removed.
         """
         self._stop()
         if self._failure is not None:

@@ -133,8 +133,8 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "tools.make_episodes": [("--split nowhere", "0 houses"), ("--split nowhere --recipe cake", "0 houses|cake")],
     "tools.merge_runs": [("nowhere", "Give one folder"), ("nowhere nowhere --out OUT", "is no run")],
     "tools.readme_picture": [
-        ("--split nowhere --out OUT", "Unknown split"),
-        ("--episode-id nowhere --out OUT", "no episode 'nowhere'"),
+        ("nowhere.mp4 --out OUT", "'nowhere.mp4' cannot be read as a video"),
+        ("README.md --out OUT", "'README.md' cannot be read as a video"),
     ],
     "tools.reproduce": [("dinner --out OUT", "dinner"), ("ablation --split nowhere --out OUT", "Unknown split")],
     "tools.show_mistakes": [
