@@ -60,7 +60,7 @@ def frames_of(file: Path) -> list[NDArray[np.uint8]]:
     """
     try:
         with av.open(str(file)) as container:
-            frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+            frames = [np.asarray(frame.to_ndarray(format="rgb24"), np.uint8) for frame in container.decode(video=0)]
     except (OSError, ValueError, IndexError) as error:  # each error of FFmpeg is one of the first two
         raise ConfigError(f"'{file}' cannot be read as a video: {error}.") from None
     if not frames:
