@@ -10,6 +10,7 @@ import dataclasses
 import difflib
 import json
 import math
+import reprlib
 import tomllib
 import typing
 from collections.abc import Iterable, Mapping
@@ -67,6 +68,28 @@ def with_fields(tree: TreeT, values: Mapping[str, Any]) -> TreeT:
     for path, value in values.items():
         _put(nested, path.split("."), value, path)
     return _replaced(tree, nested, "")
+
+
+def as_settings(given: TreeT | Mapping[str, Any] | None, default: TreeT, *, name: str) -> TreeT:
+    """Returns a configuration that a caller gave as an object, as a dict of some of its fields, or not at all.
+
+    Args:
+        given: the configuration; fields that a dict lacks keep their default, and None is the default.
+        default: a frozen dataclass.
+        name: name of the argument for the error message.
+
+    Raises:
+        ConfigError: it is of another type, or the dict holds an unknown field or a value that is not allowed.
+    """
+    if given is None or isinstance(given, type(default)):
+        return default if given is None else given
+    if not isinstance(given, Mapping):
+        kind = type(default).__name__
+        raise ConfigError(f"{name} must be a {kind} or a dict of its fields, got {reprlib.repr(given)}.")
+    try:
+        return with_fields(default, given)
+    except ConfigError as error:
+        raise ConfigError(f"{name}: {error}") from None
 
 
 def parse_assignments(assignments: Iterable[str]) -> dict[str, Any]:

@@ -1,9 +1,13 @@
 """Registers the environment with Gymnasium, on import.
 
-    env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", split="val")
+    import sim.gym
+    env = gymnasium.make("stubborn/ObjectNav-v0", split="val")
+    env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", split="val")  # the same, without the import
 
-Gymnasium 1.0 has no entry points any more: the part of an id before the colon is the module that `make` and `make_vec`
-(in its worker processes too) import. After `import sim.gym` the id without that part is sufficient.
+Gymnasium 1.0 has no entry points any more. An id that is not registered raises `NamespaceNotFound: Namespace stubborn
+not found. Have you installed the proper package for stubborn?`, although the package is installed: the module has to be
+imported first, or to be named before the colon of the id; `make` and `make_vec` (in its worker processes too) then
+import it.
 
     envs = gymnasium.make_vec(
         "sim.gym:stubborn/ObjectNav-v0", num_envs=2, vectorization_mode="async", vector_kwargs={"context": "spawn"}
@@ -19,6 +23,10 @@ wrapper of `max_episode_steps=` truncates from outside and leaves them None.
 from __future__ import annotations
 
 import gymnasium
+
+from sim.env.progress import ProgressReward
+
+__all__ = ["ENV_ID", "ProgressReward"]
 
 ENV_ID = "stubborn/ObjectNav-v0"
 

@@ -13,6 +13,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from sim.configuration import as_settings
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
 from sim.episodes.splits import Episode, Split, load_split, one_house, require_start
@@ -68,14 +69,15 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, or a `NoiseConfig`. The metrics
             are never noisy. A house whose sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
         render_mode: `rgb_array` or None.
-        task: when a STOP succeeds, and the number of actions.
+        task: when a STOP succeeds, and the number of actions. This and the other configurations, `success`, `camera`
+            and `robot`, may also be a dict of some of their fields: `camera={"width_px": 128, "height_px": 96}`.
         success: replaces `task.success`.
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
         robot: body and drive.
 
     Raises:
-        ConfigError: an unknown split, goal, sensor, profile or noise.
+        ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.
         HouseError: a house that violates the house format.
     """
 
@@ -95,11 +97,11 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         profile: str | RenderProfile = "fast",
         noise: str | NoiseConfig = "none",
         render_mode: str | None = None,
-        task: TaskConfig | None = None,
-        success: SuccessRule | None = None,
+        task: TaskConfig | Mapping[str, Any] | None = None,
+        success: SuccessRule | Mapping[str, Any] | None = None,
         max_steps: int | None = None,
-        camera: CameraModel | None = None,
-        robot: RobotConfig | None = None,
+        camera: CameraModel | Mapping[str, Any] | None = None,
+        robot: RobotConfig | Mapping[str, Any] | None = None,
     ) -> None:
         _check_options(goal, render_mode)
         if house is None and any(each is not None for each in (labels, root, start)):
@@ -113,10 +115,10 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         """Images that were rendered last, without noise: at least those of `truth`."""
         self._truth = tuple(truth)
         self.render_mode = render_mode
-        self.camera_model = camera or CameraModel()
-        self.task_config = _with_changes(task or TaskConfig(), success, max_steps)
+        self.camera_model = as_settings(camera, CameraModel(), name="camera")
+        self.task_config = _with_changes(as_settings(task, TaskConfig(), name="task"), success, max_steps)
         self._profile = profile if isinstance(profile, RenderProfile) else get_profile(profile)
-        self._robot = robot or RobotConfig()
+        self._robot = as_settings(robot, RobotConfig(), name="robot")
         self._default_noise = self._make_noise(noise if isinstance(noise, NoiseConfig) else get_noise(noise))
         self._noise = self._default_noise
         self.observation_space = spaces.Dict({each.name: each.space(self.camera_model) for each in self.sensors})
@@ -294,10 +296,12 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         }
 
 
-def _with_changes(task: TaskConfig, success: SuccessRule | None, max_steps: int | None) -> TaskConfig:
+def _with_changes(
+    task: TaskConfig, success: SuccessRule | Mapping[str, Any] | None, max_steps: int | None
+) -> TaskConfig:
     """Returns the configuration of the task with the fields that are not None replaced."""
     if success is not None:
-        task = replace(task, success=success)
+        task = replace(task, success=as_settings(success, task.success, name="success"))
     return task if max_steps is None else replace(task, max_steps=max_steps)
 
 

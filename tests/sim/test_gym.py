@@ -15,9 +15,9 @@ import pytest
 from gymnasium import wrappers
 from gymnasium.utils.env_checker import check_env
 
-import sim.gym  # noqa: F401 - registers
+import sim.gym
 from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel
+from sim.interface import Action, CameraModel, ConfigError
 from tests.helpers.worlds import ledge, room, with_box
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -51,6 +51,46 @@ def test_gymnasiums_checker_accepts_a_shipped_house() -> None:
     env = gymnasium.make(ENV_ID, split="traps", camera=SMALL)
     check_env(env.unwrapped)
     env.close()
+
+
+def test_the_checker_of_stable_baselines_accepts_it(options: dict[str, Any]) -> None:
+    checker = pytest.importorskip("stable_baselines3.common.env_checker", reason="the extra [train] is not installed")
+    env = gymnasium.make(ENV_ID, **options)
+    checker.check_env(env.unwrapped, warn=False)
+    checker.check_env(sim.gym.ProgressReward(env), warn=False)
+    env.close()
+
+
+def test_frames_are_stacked_by_gymnasiums_wrapper(env: gymnasium.Env) -> None:
+    stacked = wrappers.FrameStackObservation(env, 3)
+    first, _ = stacked.reset(seed=0)
+    second, *_ = stacked.step(Action.TURN_LEFT)
+    assert first["depth"].shape == (3, 48, 64)
+    np.testing.assert_array_equal(first["depth"][1:], second["depth"][:2])
+    assert stacked.observation_space.contains(second)
+
+
+def test_a_configuration_may_be_a_dict_of_its_fields(house: Path) -> None:
+    sizes = {"width_px": 32, "height_px": 24}
+    env = gymnasium.make(ENV_ID, house=house, goal="sofa", camera=sizes, success={"distance_m": 0.5}, max_steps=9)
+    observation, _ = env.reset(seed=0)
+    assert observation["depth"].shape == (24, 32)
+    assert env.unwrapped.task_config.success.distance_m == 0.5  # pyright: ignore[reportAttributeAccessIssue]
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"camera": {"width": 32}}, "camera: There is no field 'width'. Did you mean 'width_px'?"),
+        ({"camera": {"width_px": "wide"}}, "camera: 'width_px' cannot be 'wide'"),
+        ({"camera": (64, 48)}, r"camera must be a CameraModel or a dict of its fields, got \(64, 48\)"),
+        ({"robot": "robot.xml"}, "robot must be a RobotConfig or a dict of its fields, got 'robot.xml'"),
+    ],
+)
+def test_a_configuration_that_is_none_is_refused_with_what_is_allowed(options: dict[str, Any], told: str) -> None:
+    with pytest.raises(ConfigError, match=told):
+        gymnasium.make(ENV_ID, **options)
 
 
 @pytest.mark.parametrize("vectorization_mode", ["sync", "async"])
@@ -187,6 +227,35 @@ def test_the_example_runs_both_agents_in_one_episode() -> None:
     ends = [play(name, max_steps=4) for name in ("random", "stubborn")]
     assert ends[0]["episode_id"] == ends[1]["episode_id"]
     assert [end["num_steps"] for end in ends] == [end["episode"]["l"] for end in ends] == [4, 4]
+
+
+def test_the_example_of_ppo_trains_and_tries_its_policy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("stable_baselines3", reason="the extra [train] is not installed")
+    from examples import train_ppo
+
+    monkeypatch.setattr(train_ppo, "STEPS_PER_UPDATE", 16)
+    assert train_ppo.main(train_ppo.Args(steps=17, envs=1, max_steps=5, trials=1, out=tmp_path)) == 0
+    rows = (tmp_path / "progress.csv").read_text().splitlines()
+    assert rows[0].startswith("steps,minutes,steps_per_s,episodes,success")
+    assert [row.split(",")[0] for row in rows[1:]] == ["16", "32"]
+    assert (tmp_path / "policy.zip").stat().st_size > 0
+    assert "success without exploration: " in capsys.readouterr().out
+
+
+def test_the_example_of_ppo_sees_the_goal_from_the_robot_and_walls_as_near() -> None:
+    pytest.importorskip("stable_baselines3", reason="the extra [train] is not installed")
+    from examples import train_ppo
+
+    start = Pose(3.0, 2.5, -np.pi / 2)  # the sofa is 2.4 m to the left, the wall 2.5 m ahead
+    env = train_ppo.make_env(9, start=start)
+    observation, _ = env.reset(seed=0)
+    bumper, goal, scan = np.split(observation, [1, 4])  # by the names of the sensors
+    np.testing.assert_allclose(goal, [2.4 / 5.0, 1.0, 0.0], atol=0.02)
+    assert scan[7] == pytest.approx(2.5 / 5.0, abs=0.03)
+    assert bumper == 0.0
+    env.close()
 
 
 def test_a_fall_terminates_the_episode(tmp_path: Path) -> None:

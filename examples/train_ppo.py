@@ -1,0 +1,210 @@
+"""Trains an agent with PPO to drive to the sofa of a room and to call STOP there (needs `pip install '.[train]'`).
+
+python examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo
+
+The agent sees the direction of the goal, the depth in sixteen directions and whether it bumped into something; its
+reward is `sim.gym.ProgressReward`. Every 1,024 steps a row of `progress.csv` is written and printed: success and return
+of the last 100 episodes, and steps per second. At the end `policy.zip` is tried in new episodes, without exploration.
+"""
+
+import csv
+import io
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+import gymnasium
+import numpy as np
+import torch
+from gymnasium import spaces
+from gymnasium.wrappers import FilterObservation, FlattenObservation
+from numpy.typing import NDArray
+
+import sim.gym
+from sim import cli
+from sim.files import write_atomically
+from sim.geometry.pose import Pose
+from sim.interface import Action, CameraModel, ConfigError
+from sim.sensors.sensor import SensorContext
+
+try:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.callbacks import BaseCallback
+    from stable_baselines3.common.monitor import Monitor
+    from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecEnv
+except ImportError as error:
+    raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
+
+HOUSE = Path(__file__).with_name("my_house.xml")
+GOAL, GOAL_XY_M = "sofa", (5.4, 2.5)
+CAMERA = CameraModel(width_px=64, height_px=48, min_depth_m=0.0)
+RAYS = 16
+STEPS_PER_UPDATE = 1024
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Trains an agent with PPO to drive to the sofa of a room."""
+
+    minutes: cli.Positive = 30.0
+    """Time of the training."""
+    steps: cli.Count = 10_000_000
+    """Most steps of the training, all environments together."""
+    envs: cli.Count = 2
+    """Number of environments, each in a process of its own; 1: in this process."""
+    max_steps: cli.Count = 60
+    """Actions after which an episode is truncated."""
+    trials: cli.Amount = 50
+    """Number of episodes to try the policy in at the end."""
+    seed: cli.Seed = 0
+    """Seed of the starts, of the network and of its exploration."""
+    out: cli.OutFolder = Path("runs/ppo")
+    """Folder of the curve and the policy."""
+
+
+class GoalVector:
+    """Distance to the goal in units of 5 m, and the sine and cosine of its direction, from the robot."""
+
+    name, images, noise = "goal_vector", (), None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 vectors (3,)."""
+        return spaces.Box(-10.0, 10.0, (3,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the vector to the middle of the sofa."""
+        x_m, y_m = GOAL_XY_M[0] - context.pose.x_m, GOAL_XY_M[1] - context.pose.y_m
+        direction_rad = np.arctan2(y_m, x_m) - context.pose.yaw_rad
+        return np.array([np.hypot(x_m, y_m) / 5.0, np.sin(direction_rad), np.cos(direction_rad)], np.float32)
+
+
+class Scan:
+    """Smallest depth in each of some columns of the image's middle rows, in units of its largest value."""
+
+    name, images, noise = "scan", ("depth",), None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of float32 scans (RAYS,)."""
+        return spaces.Box(0.0, 1.0, (RAYS,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the scan from left to right."""
+        depth_m = context.images["depth"]
+        middle = depth_m[len(depth_m) // 4 : 3 * len(depth_m) // 4]
+        return np.stack([part.min() for part in np.array_split(middle, RAYS, axis=1)]) / np.float32(CAMERA.max_depth_m)
+
+
+class Bumper:
+    """1 after an action that a contact stopped, else 0."""
+
+    name, images, noise = "bumper", (), None
+
+    def space(self, camera: CameraModel) -> spaces.Box:
+        """Returns the space of one float32."""
+        return spaces.Box(0.0, 1.0, (1,), np.float32)
+
+    def read(self, context: SensorContext) -> NDArray:
+        """Returns the reading."""
+        return np.array([context.motion is not None and context.motion.collided], np.float32)
+
+
+def make_env(max_steps: int, start: Pose | None = None) -> gymnasium.Env[NDArray[np.float32], Any]:
+    """Returns the room with a flat observation (20,) and the dense reward; starts are random unless one is given."""
+    sensors = (GoalVector(), Scan(), Bumper())
+    env = gymnasium.make(
+        sim.gym.ENV_ID, house=HOUSE, goal=GOAL, sensors=sensors, camera=CAMERA, max_steps=max_steps, start=start
+    )
+    env = sim.gym.ProgressReward(env, per_step=0.01, per_collision=0.05)
+    return FlattenObservation(FilterObservation(env, [sensor.name for sensor in sensors]))
+
+
+def make_vec(args: Args) -> VecEnv:
+    """Returns the environments, with the statistics of their episodes; processes are spawned, never forked."""
+    makers: list[Callable[[], gymnasium.Env]] = [_Maker(args.max_steps)] * args.envs
+    envs = DummyVecEnv(makers) if args.envs == 1 else SubprocVecEnv(makers, start_method="spawn")
+    envs.seed(args.seed)
+    return envs
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """Makes one environment in a process of its own."""
+
+    max_steps: int
+
+    def __call__(self) -> gymnasium.Env:
+        return Monitor(make_env(self.max_steps), info_keywords=("success",))
+
+
+class Progress(BaseCallback):
+    """Writes and prints a row for each update of the policy, and stops when the time is up."""
+
+    def __init__(self, file: Path, minutes: float) -> None:
+        super().__init__()
+        self._file, self._minutes = file, minutes
+        self._rows: list[dict[str, Any]] = []
+        self._began_s = self._last_s = time.perf_counter()
+        self._last_steps = 0
+
+    def _on_step(self) -> bool:
+        return time.perf_counter() - self._began_s < 60.0 * self._minutes
+
+    def _on_rollout_end(self) -> None:
+        now_s, last = time.perf_counter(), list(self.model.ep_info_buffer or [])
+        rate = (self.num_timesteps - self._last_steps) / (now_s - self._last_s)
+        self._last_s, self._last_steps = now_s, self.num_timesteps
+        row = {"steps": self.num_timesteps, "minutes": round((now_s - self._began_s) / 60.0, 2)}
+        row |= {"steps_per_s": round(rate, 1), "episodes": len(last)}
+        for name, key in (("success", "success"), ("mean_return", "r"), ("mean_length", "l")):
+            row[name] = round(float(np.mean([episode[key] for episode in last])), 3) if last else float("nan")
+        self._rows.append(row)
+        print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+        text = io.StringIO()
+        table = csv.DictWriter(text, list(row))
+        table.writeheader()
+        table.writerows(self._rows)
+        write_atomically(self._file, text.getvalue())
+
+
+def success_of(policy: PPO, episodes: int, args: Args) -> float:
+    """Returns the share of new episodes in which the policy, without exploration, succeeds."""
+    env, succeeded = make_env(args.max_steps), 0.0
+    for number in range(episodes):
+        observation, info = env.reset(seed=args.seed + 1_000_000 + number)
+        done = False
+        while not done:
+            action, _ = policy.predict(observation, deterministic=True)
+            observation, _, terminated, truncated, info = env.step(action)
+            done = terminated or truncated
+        succeeded += info["success"]
+    env.close()
+    return succeeded / episodes
+
+
+def main(args: Args) -> int:
+    """Trains, saves the policy and tries it; returns the exit status."""
+    if STEPS_PER_UPDATE % args.envs:
+        raise ConfigError(f"--envs must divide {STEPS_PER_UPDATE}, got {args.envs}.")
+    torch.set_num_threads(1)  # the network is small; the cores are for the environments
+    envs = make_vec(args)
+    policy = PPO(
+        "MlpPolicy", envs, n_steps=STEPS_PER_UPDATE // args.envs, batch_size=STEPS_PER_UPDATE // 8, n_epochs=10,
+        learning_rate=1e-3, gamma=0.98, ent_coef=0.01, seed=args.seed, device="cpu",
+    )  # fmt: skip
+    with torch.no_grad():  # an untrained policy would call STOP in one of four steps
+        cast(torch.Tensor, policy.policy.action_net.bias)[Action.STOP] = -3.0
+    policy.learn(args.steps, callback=Progress(args.out / "progress.csv", args.minutes))
+    envs.close()
+    content = io.BytesIO()
+    policy.save(content)
+    write_atomically(args.out / "policy.zip", content.getvalue())
+    if args.trials:
+        print(f"success without exploration: {success_of(policy, args.trials, args):.2f} of {args.trials} new episodes")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
