@@ -2,6 +2,7 @@
 
 python tools/bench.py                                             # all parts, half an hour at most
 python tools/bench.py --parts a,b,d                               # rendering, the agent's step
+python tools/bench.py --parts j                                   # steps per second by image size, sensors and number
 python tools/bench.py --out runs/bench.json --markdown docs/performance.md
 python tools/bench.py --quick                                     # does everything run? the figures mean nothing
 
@@ -27,7 +28,7 @@ from sim import cli
 from sim.analysis import display
 from sim.files import write_atomically
 from sim.interface import ConfigError
-from tools.benchmarks import growth, making, rendering, report, scaling, stepping
+from tools.benchmarks import growth, learning, making, rendering, report, scaling, stepping
 from tools.benchmarks.calibration import Calibration, Calibrator
 from tools.benchmarks.figures import Figure
 from tools.benchmarks.stages import QUICK, Amount, Setting
@@ -42,6 +43,7 @@ PARTS: Mapping[str, Callable[[Setting], list[Figure]]] = {
     "g": making.new_houses,
     "h": scaling.two_workers,
     "i": growth.growth,
+    "j": learning.steps_of_training,
 }
 MAX_DRIFT = 1.15
 """A calibration that changes by a larger factor between two parts gives a warning."""
@@ -53,7 +55,7 @@ class Args:
 
     parts: str = ",".join(PARTS)
     """Letters with commas between: a, b rendering; c the environment's step; d the agent's; e episodes; f views;
-    g houses; h workers; i growth."""
+    g houses; h workers; i growth; j steps of a training."""
     quick: bool = False
     """Measure as little as possible, to test that everything runs."""
     out: cli.OutFile | None = None

@@ -45,11 +45,15 @@ class Amount:
     growth_steps: int = 80
     """At each size."""
     memory_episodes: int = 50
+    training_steps: int = 200
+    """Random steps of each size, set of sensors and vector of environments."""
+    image_sizes: int = 4
+    vectors: int = 5
 
 
 QUICK = Amount(
     houses=1, poses=2, repeats=1, steps=6, episodes=1, views=2, made_houses=1, pieces=4, piece_steps=3, growth_steps=4,
-    memory_episodes=2,
+    memory_episodes=2, training_steps=5, image_sizes=1, vectors=1,
 )  # fmt: skip
 """Enough to test that everything runs; the figures mean nothing."""
 
