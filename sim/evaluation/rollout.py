@@ -8,7 +8,7 @@ import time
 import traceback
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -66,38 +66,71 @@ def play_episode(
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
-    steps, error, done, confidence = 0, None, False, None
-    while not done:
-        try:
-            action = next_action(agent, observation, f"Agent '{name}', step {steps + 1}")
-            if action is Action.STOP:
-                confidence = confidence_of(agent, f"Agent '{name}', step {steps + 1}")
-        except AgentError as failure:
-            error = str(failure)
-            break
-        moment = Moment(step=steps + 1, observation=observation, images=env.truth_images, action=action)
-        for viewer in viewers:
-            viewer.decided(moment)
-        try:
-            observation, _, terminated, truncated, info = env.step(action)
-        except PhysicsError as failure:
-            error = f"Step {steps + 1}: {failure}"
-            break
-        steps += 1
-        done = terminated or truncated
-        if on_step is not None:
-            on_step(steps, agent, info)
-        for viewer in viewers:
-            viewer.moved(info)
+    played = _Played(env, agent, name, on_step, viewers, observation, info)
+    while not played.done:
+        played.step()
     wall_time_s = time.perf_counter() - began_s
-    line = {key: _plain(value) for key, value in info.items() if key != "collided"}
-    line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
-    line["stop_confidence"] = confidence
-    if error is not None:
-        line |= broken_metrics(error)
+    line = played.line()
     for viewer in viewers:
         viewer.end(line)
-    return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(steps / wall_time_s, 2) if steps else 0.0}
+    rate = played.steps / wall_time_s if played.steps else 0.0
+    return line | {"wall_time_s": round(wall_time_s, 3), "steps_per_s": round(rate, 2)}
+
+
+@dataclass
+class _Played:
+    """An episode as far as it has been played."""
+
+    env: ObjectNavEnv
+    agent: Agent
+    name: str
+    on_step: OnStep | None
+    viewers: Sequence[Viewer]
+    observation: Observation
+    info: dict[str, Any]
+    steps: int = 0
+    done: bool = False
+    error: str | None = None
+    """Why the episode broke; None: it did not."""
+    confidence: float | None = None
+    """The agent's confidence at its STOP."""
+
+    def step(self) -> None:
+        """Asks the agent for an action and carries it out; what fails ends the episode."""
+        try:
+            action = self._decide()
+            self._carry_out(action)
+        except AgentError as failure:
+            self.error, self.done = str(failure), True
+        except PhysicsError as failure:
+            self.error, self.done = f"Step {self.steps + 1}: {failure}", True
+
+    def _decide(self) -> Action:
+        where = f"Agent '{self.name}', step {self.steps + 1}"
+        action = next_action(self.agent, self.observation, where)
+        if action is Action.STOP:
+            self.confidence = confidence_of(self.agent, where)
+        images = self.env.truth_images
+        moment = Moment(step=self.steps + 1, observation=self.observation, images=images, action=action)
+        for viewer in self.viewers:
+            viewer.decided(moment)
+        return action
+
+    def _carry_out(self, action: Action) -> None:
+        self.observation, _, terminated, truncated, self.info = self.env.step(action)
+        self.steps += 1
+        self.done = terminated or truncated
+        if self.on_step is not None:
+            self.on_step(self.steps, self.agent, self.info)
+        for viewer in self.viewers:
+            viewer.moved(self.info)
+
+    def line(self) -> dict[str, Any]:
+        """Returns the result line without times."""
+        line = {key: _plain(value) for key, value in self.info.items() if key != "collided"}
+        line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
+        line["stop_confidence"] = self.confidence
+        return line if self.error is None else line | broken_metrics(self.error)
 
 
 def ask(where: str, call: Callable[[], Any]) -> Any:
