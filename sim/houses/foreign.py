@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from sim.gl import mujoco
-from sim.houses.labels import Labels, rendered_geoms
+from sim.houses.labels import Labels, names_of_geom, rendered_geoms
 
 MAX_NAMES = 8
 """Most names that a sentence lists."""
@@ -21,13 +21,14 @@ MAX_NAMES = 8
 
 def remove_unsupported(spec: mujoco.MjSpec) -> tuple[str, ...]:
     """Removes the elements that a house may not contain; returns a sentence for each kind of change."""
+    spec.compiler.discardvisual = False  # visual geoms belong to the house, and geoms keep their numbers
     removed = [
         _remove(spec, kind, elements)
         for kind, elements in (  # an element goes before those that it refers to
             ("keyframe", spec.keys),
             ("sensor", spec.sensors),
             ("actuator", spec.actuators),
-            ("equality", spec.equalities),
+            ("equality constraint", spec.equalities),
             ("tendon", spec.tendons),
             ("camera", spec.cameras),
         )
@@ -53,15 +54,8 @@ def void_notes(model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:
 
 
 def _first_name(model: mujoco.MjModel, geom: int) -> str:
-    """Returns the first name among a geom, its body and the body's ancestors; "(unnamed)" when there is none."""
-    if name := model.geom(geom).name:
-        return name
-    body = int(model.geom_bodyid[geom])
-    while body != 0:
-        if name := model.body(body).name:
-            return name
-        body = int(model.body_parentid[body])
-    return "(unnamed)"
+    """Returns the first name among a geom, its body and the body's ancestors; "#<number>" when there is none."""
+    return next(name for name in names_of_geom(model, geom) if name)
 
 
 def _remove(spec: mujoco.MjSpec, kind: str, elements: Iterable[Any]) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 import re
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,7 +82,7 @@ def read_labels(
     visible = rendered_geoms(model)
     ignored = geoms_of(model, ignore_prefix) if ignore_prefix else np.zeros(model.ngeom, dtype=np.bool_)
     for geom in np.flatnonzero(~ignored).tolist():
-        names = tuple(_names(model, geom))
+        names = names_of_geom(model, geom)
         owner, category = _first_label(names, compiled_rules, until_s)
         if category == VOID:
             if visible[geom]:
@@ -141,6 +141,19 @@ def describe_geom(model: mujoco.MjModel, geom: int) -> str:
     return f"the unnamed {shape} number {geom} at ({x:.2f}, {y:.2f}, {z:.2f}) in body '{body}'"
 
 
+def names_of_geom(model: mujoco.MjModel, geom: int) -> tuple[str, ...]:
+    """Returns the names of a geom, its body and the body's ancestors below the world; "" for unnamed ones.
+
+    A geom that is unnamed with all its bodies is called `#<number>`, so that label rules can name it as well.
+    """
+    names = [model.geom(geom).name]
+    body = int(model.geom_bodyid[geom])
+    while body != 0:
+        names.append(model.body(body).name)
+        body = int(model.body_parentid[body])
+    return tuple(names) if any(names) else (*names, f"#{geom}")
+
+
 def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
     """Returns the rendered opacity (ngeom,): that of a geom's own colour, else of its material."""
     alpha = model.geom_rgba[:, 3].copy()
@@ -148,15 +161,6 @@ def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
     by_material = default & (model.geom_matid >= 0)
     alpha[by_material] = model.mat_rgba[model.geom_matid[by_material], 3]
     return alpha
-
-
-def _names(model: mujoco.MjModel, geom: int) -> Iterator[str]:
-    """Yields the names of a geom, its body and the body's ancestors below the world; "" for unnamed ones."""
-    yield model.geom(geom).name
-    body = int(model.geom_bodyid[geom])
-    while body != 0:
-        yield model.body(body).name
-        body = int(model.body_parentid[body])
 
 
 def _first_label(

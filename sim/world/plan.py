@@ -21,6 +21,10 @@ WALL_REACH_M = 0.25
 """Margin around a room's box that still counts as the house: doorways lie inside walls."""
 OPEN_FLOOR_M = 10.0
 """Margin around the obstacles, or around the origin, that is searched on an unbounded floor without walls."""
+BESIDE_M = 1.0
+"""A wall stands along a side of the rectangle around all walls if it is at most this far inside of it."""
+WALLED_SHARE = 0.25
+"""Walls enclose a house without rooms if they stand along at least this share of each side."""
 
 
 def polygons_between(
@@ -35,14 +39,19 @@ def polygons_between(
 def floor_polygons(
     model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, floor_z_m: float
 ) -> list[ConvexPolygon] | None:
-    """Returns the plan projections of the floors of a storey; None when a plane makes it unbounded."""
+    """Returns the plan projections of the floors of a storey; None when an infinite plane makes it unbounded.
+
+    A plane with a size carries the robot where it is rendered (`sim.world.support`).
+    """
     polygons: list[ConvexPolygon] = []
     for geom in np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model)):
         body = geom_polytope(model, data, int(geom))
         if abs(float(body.vertices_m[:, 2].max()) - floor_z_m) > FLOOR_STEP_M:
             continue
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
-            return None
+            if not (model.geom_size[geom, :2] > 0.0).all():
+                return None
+            body = geom_polytope(model, data, int(geom), rendered=True)
         polygon = plan_polygon(body)
         if polygon is not None:
             polygons.append(polygon)
@@ -60,17 +69,21 @@ def house_extent(
     """Returns polygons that cover a storey: its rooms and their walls.
 
     Without rooms it is the bounding rectangle of the walls, else of the floors, else of the obstacles with a margin.
+    Walls count only if they stand along all four sides: one or two walls enclose nothing.
     """
     if rooms:
         return [rectangle for room in rooms for rectangle in room_rectangles(room, WALL_REACH_M)]
     walls = np.flatnonzero(labels.geom_category == MPCAT40_ID["wall"])
-    enclosing = polygons_between(model, data, walls, (-math.inf, math.inf)) or floors or obstacles
-    bounds = np.array([polygon.bounds_m for polygon in enclosing]).reshape(-1, 4)
-    bounds = bounds[np.abs(bounds).max(axis=1, initial=0.0) < UNBOUNDED_M]
-    if len(bounds) == 0:
-        return [_rectangle(-OPEN_FLOOR_M, -OPEN_FLOOR_M, OPEN_FLOOR_M, OPEN_FLOOR_M)]
-    margin = 0.0 if enclosing is not obstacles else OPEN_FLOOR_M
-    return [_rectangle(*(bounds[:, :2].min(axis=0) - margin), *(bounds[:, 2:].max(axis=0) + margin))]
+    walled = polygons_between(model, data, walls, (-math.inf, math.inf))
+    enclosed = _bounding_rectangle(walled)
+    if enclosed is not None and _encloses(walled, enclosed):
+        return [enclosed]
+    around = (
+        _bounding_rectangle(floors or [])
+        or _bounding_rectangle(obstacles, margin_m=OPEN_FLOOR_M)
+        or _rectangle(-OPEN_FLOOR_M, -OPEN_FLOOR_M, OPEN_FLOOR_M, OPEN_FLOOR_M)
+    )
+    return [around]
 
 
 def room_rectangles(room: Room, margin_m: float = 0.0) -> list[ConvexPolygon]:
@@ -83,6 +96,27 @@ def room_rectangles(room: Room, margin_m: float = 0.0) -> list[ConvexPolygon]:
         _rectangle(x - hx - margin_m, y - hy - margin_m, x + hx + margin_m, y + hy + margin_m)
         for (x, y, _), (hx, hy, _) in room.boxes
     ]
+
+
+def _bounding_rectangle(polygons: list[ConvexPolygon], *, margin_m: float = 0.0) -> ConvexPolygon | None:
+    """Returns the rectangle around the bounded polygons; None where there is none."""
+    bounds = np.array([polygon.bounds_m for polygon in polygons]).reshape(-1, 4)
+    bounds = bounds[np.abs(bounds).max(axis=1, initial=0.0) < UNBOUNDED_M]
+    if len(bounds) == 0:
+        return None
+    return _rectangle(*(bounds[:, :2].min(axis=0) - margin_m), *(bounds[:, 2:].max(axis=0) + margin_m))
+
+
+def _encloses(walls: list[ConvexPolygon], rectangle: ConvexPolygon) -> bool:
+    """Returns whether walls stand along all four sides of the rectangle around them."""
+    bounds = np.array([wall.bounds_m for wall in walls])  # (n, 4) smallest x and y, largest x and y
+    for side in range(4):
+        along = 1 - side % 2
+        near = np.abs(bounds[:, side] - rectangle.bounds_m[side]) <= BESIDE_M
+        length_m = (bounds[near, along + 2] - bounds[near, along]).sum()
+        if length_m < WALLED_SHARE * (rectangle.bounds_m[along + 2] - rectangle.bounds_m[along]):
+            return False
+    return True
 
 
 def _rectangle(x0: float, y0: float, x1: float, y1: float) -> ConvexPolygon:

@@ -1,0 +1,218 @@
+"""Proposes label rules for a scene from elsewhere, from the names and the sizes of its geoms (tools/label_house.py).
+
+A rule is proposed for each name with a word of `WORDS` in it (`Couch.001`, `wall_left_visual`, `hingecabinet`), unless
+an enclosing body already has that category: a sofa with a named leg stays one instance. Visible geoms without such a
+name are judged by their size: large flat ones at z = 0 are floor, large thin upright ones are wall. What is left
+becomes `void`, with a rule of its own for the user to edit. Names that differ only in their numbers share a rule.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.houses.labels import VOID, collidable_geoms, names_of_geom, rendered_geoms
+from sim.interface import MPCAT40
+
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "wall": ("backwall", "partition", "perimeter"),
+    "floor": ("ground", "carpet", "rug", "terrain", "pitch", "parquet"),
+    "ceiling": ("roof",),
+    "chair": ("armchair", "seat"),
+    "table": ("desk", "workbench"),
+    "door": ("gate", "doorway"),
+    "picture": ("painting", "poster", "photo"),
+    "cabinet": ("cupboard", "wardrobe", "closet", "sideboard", "locker"),
+    "cushion": ("pillow",),
+    "sofa": ("couch", "settee", "loveseat"),
+    "bed": ("bunk", "mattress"),
+    "curtain": ("drape",),
+    "chest_of_drawers": ("dresser", "commode", "drawers", "nightstand"),
+    "plant": ("tree", "bush", "flower", "vase", "flowerpot"),
+    "sink": ("basin", "washbasin"),
+    "stairs": ("stair", "stairway", "steps"),
+    "toilet": ("wc",),
+    "stool": ("barstool", "ottoman", "pouf"),
+    "tv_monitor": ("tv", "television", "monitor", "screen"),
+    "bathtub": ("tub", "bath"),
+    "counter": ("worktop", "countertop", "kitchenette"),
+    "column": ("pillar", "pole"),
+    "lighting": ("lamp", "chandelier", "bulb"),
+    "railing": ("banister", "handrail", "fence"),
+    "shelving": ("shelf", "bookcase", "rack", "bookshelf"),
+    "gym_equipment": ("treadmill", "dumbbell", "barbell", "goalpost", "gym"),
+    "seating": ("bench", "pew"),
+    "board_panel": ("whiteboard", "blackboard", "panel"),
+    "appliances": (
+        "oven", "fridge", "refrigerator", "microwave", "dishwasher", "stove", "cooker", "hood", "freezer", "washer",
+    ),
+    "clothes": ("coat", "jacket", "shirt"),
+    "objects": (
+        "ball", "book", "bottle", "box", "bread", "can", "cereal", "cup", "kettle", "laptop", "lemon", "milk", "mug",
+        "plate", "pot", "basket", "bin", "crate", "bag", "lid", "toy",
+    ),
+}  # fmt: skip
+"""For each category, words that name it besides the category's own name."""
+LEAST_ENDING = 4
+"""A word with at least this many letters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
+FLAT_M = 0.3
+"""Largest thickness of a wall, a floor or a ceiling that is recognized by its size."""
+LARGE_M = 1.5
+"""Least length of such a wall, and least sides of such a floor."""
+TALL_M = 1.5
+"""Least height of such a wall."""
+AT_FLOOR_M = 0.05
+"""Largest distance of a floor's top from z = 0."""
+CEILING_FROM_M = 2.0
+LARGEST_M: Mapping[str, float] = {
+    "chair": 1.6, "table": 4.0, "picture": 3.0, "cushion": 1.2, "sofa": 4.5, "bed": 3.0, "chest_of_drawers": 3.0,
+    "plant": 4.0, "sink": 2.5, "toilet": 1.5, "stool": 1.2, "towel": 2.0, "tv_monitor": 3.0, "bathtub": 2.5,
+}  # fmt: skip
+"""Largest plausible side of an instance; a larger one is marked in the table."""
+SMALLEST_M = 0.1
+"""Smallest plausible longest side of an instance of these categories."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A label for the geoms with one name."""
+
+    name: str
+    """That of the geom or of a body around it; `#12` is the unnamed geom number 12."""
+    category: str
+    reason: str
+    """`name`, `size` or `unknown`."""
+
+
+def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
+    """Returns a proposal for each name that needs a rule, in the order of the model's geoms.
+
+    Args:
+        model: a scene without its robot, compiled; `sim.houses.foreign.remove_unsupported` has been applied.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    visible, collides = rendered_geoms(model), collidable_geoms(model)
+    found: dict[str, Proposal] = {}
+    for geom in range(model.ngeom):
+        if not (visible[geom] or collides[geom]):
+            continue
+        names = [name for name in names_of_geom(model, geom) if name]
+        proposals = list(_by_name(names))
+        if not proposals and visible[geom]:
+            by_size = category_by_size(*geom_box(model, data, geom), movable=_is_movable(model, geom))
+            proposals = [
+                Proposal(names[0] if by_size else names[-1], by_size or VOID, "size" if by_size else "unknown")
+            ]
+        for proposal in proposals:
+            if proposal.name not in found or found[proposal.name].category == VOID:
+                found[proposal.name] = proposal
+    return tuple(found.values())
+
+
+def rules_of(proposals: tuple[Proposal, ...]) -> dict[str, str]:
+    """Returns label rules: a regular expression for each name, names that differ only in their numbers together."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for proposal in proposals:
+        groups.setdefault((re.sub(r"\d+", "0", proposal.name), proposal.category), []).append(proposal.name)
+    stems = [stem for stem, _ in groups]
+    rules = {}
+    for (stem, category), names in groups.items():
+        alone = len(names) == 1 or stems.count(stem) > 1  # the same stem has names of another category
+        for pattern in [_exact(name) for name in names] if alone else [_any_number(stem)]:
+            rules[pattern] = category
+    return rules
+
+
+def category_of_name(name: str) -> str | None:
+    """Returns the category that a name says, by its last word of `WORDS`; None when there is none."""
+    words = [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
+    joined = "_".join(words)
+    for category in MPCAT40:
+        if "_" in category and category in joined:
+            return category
+    for word in reversed(words):
+        if category := _category_of_word(word):
+            return category
+    return None
+
+
+def category_by_size(low_m: NDArray[np.float64], high_m: NDArray[np.float64], *, movable: bool = False) -> str | None:
+    """Returns floor, wall or ceiling for a box (3,), (3,) around a geom that has the size of one; else None."""
+    x, y, z = (high_m - low_m).tolist()
+    if movable:
+        return None
+    if z <= FLAT_M and min(x, y) >= LARGE_M:
+        if abs(high_m[2]) <= AT_FLOOR_M:
+            return "floor"
+        return "ceiling" if low_m[2] >= CEILING_FROM_M else None
+    if z >= TALL_M and min(x, y) <= FLAT_M and max(x, y) >= LARGE_M:
+        return "wall"
+    return None
+
+
+def size_doubt(category: str, size_m: NDArray[np.float64]) -> str:
+    """Returns "too large" or "too small" for an instance (3,) whose size its category hardly has; else ""."""
+    if category not in LARGEST_M:
+        return ""
+    longest = float(size_m.max())
+    return "too large" if longest > LARGEST_M[category] else "too small" if longest < SMALLEST_M else ""
+
+
+def geom_box(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corner (3,) of the box around a geom in the world, metres."""
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE:
+        half = np.array([*np.where(model.geom_size[geom, :2] > 0.0, model.geom_size[geom, :2], 100.0), 0.0])
+        centre = np.zeros(3)
+    else:
+        centre, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:]
+    rotation = data.geom_xmat[geom].reshape(3, 3)
+    middle, reach = data.geom_xpos[geom] + rotation @ centre, np.abs(rotation) @ half
+    return middle - reach, middle + reach
+
+
+def _by_name(names: list[str]) -> Iterator[Proposal]:
+    """Yields a proposal for each name that says a category, from outside; a repeated category is the same object."""
+    around = None
+    for name in reversed(names):
+        category = category_of_name(name)
+        if category is not None and category != around:
+            yield Proposal(name, category, "name")
+            around = category
+
+
+def _category_of_word(word: str) -> str | None:
+    for candidate in (word, word.removesuffix("s"), word.removesuffix("es")):
+        if candidate in _CATEGORY_OF:
+            return _CATEGORY_OF[candidate]
+    for known in sorted(_CATEGORY_OF, key=len, reverse=True):
+        if len(known) >= LEAST_ENDING and (word.endswith(known) or word.removesuffix("s").endswith(known)):
+            return _CATEGORY_OF[known]
+    return None
+
+
+_CATEGORY_OF = {
+    category: category for category in MPCAT40 if category not in (VOID, "misc") and "_" not in category
+} | {word: category for category, words in WORDS.items() for word in words}
+
+
+def _is_movable(model: mujoco.MjModel, geom: int) -> bool:
+    return bool(model.body_weldid[model.geom_bodyid[geom]] != 0)
+
+
+def _exact(name: str) -> str:
+    return f"^{_escape(name)}$"
+
+
+def _any_number(stem: str) -> str:
+    return "^" + r"\d+".join(_escape(part) for part in stem.split("0")) + "$"
+
+
+def _escape(text: str) -> str:
+    """Returns a regular expression for a text, in which only signs with a meaning are escaped, for readers."""
+    return re.sub(r"([\\.^$*+?{}\[\]|()])", r"\\\1", text)

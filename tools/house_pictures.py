@@ -1,0 +1,281 @@
+"""Pictures of a house: from above without its ceilings, and what the robot sees in it."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.gl import mujoco
+from sim.houses.house import House, Room, read_rooms
+from sim.houses.labels import Instance, Labels, read_labels, rendered_geoms
+from sim.houses.proposals import geom_box
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
+from sim.world.freespace import FreeSpace
+
+Picture = NDArray[np.uint8]
+ViewPose = tuple[float, float, float, float]
+"""x, y, height of the floor (metres) and yaw (degrees)."""
+VIEW_PX = (640, 480)
+TOP_PX = (1400, 1100)
+TOP_FOVY_DEG = 30.0
+STOREY_GAP_M = 0.3
+"""Height below an upper floor from which everything belongs to the upper storey: its slabs, the edges of its well."""
+BACKDROP = (0.86, 0.90, 0.95)
+"""Colour of the background."""
+FAN_DEG = np.arange(0, 360, 10)
+"""Directions of the rays that measure how far a view reaches."""
+MOST_VIEWS = 9
+"""Most views of a house without rooms."""
+MOST_PLACES = 400
+"""Free places of which one is chosen for such a view."""
+NEAREST_LOOK_M = 1.0
+LOOK_SIZES = 1.2
+"""The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
+HIDDEN_GROUP = 3
+CEILING_M = 2.5
+"""Height of a storey without rooms."""
+_STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
+
+
+def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Picture:
+    """Renders a house from above, without ceilings and ceiling lamps, (h, w, 3) RGB.
+
+    Args:
+        house: it is not changed.
+        colours: uint8 (41, 3), a colour for each mpcat40 id in place of the materials; the instances are then named.
+    """
+    open_top = house.spec.copy()
+    floors_m = {room.floor_z_m for room in read_rooms(house.spec.compile())}
+    add_backdrop(open_top)
+    for body in list(open_top.worldbody.bodies) if house.rules is None else ():
+        height_m = body.pos[2] - max((floor_m for floor_m in floors_m if floor_m <= body.pos[2]), default=0.0)
+        if body.name.startswith("ceiling_") or (body.name.startswith("lighting_") and height_m > 1.8):
+            open_top.delete(body)
+    model = open_top.compile()
+    labels = read_labels(model, rules=house.rules, ignore_prefix="")
+    model.geom_group[labels.geom_category == MPCAT40_ID["ceiling"]] = HIDDEN_GROUP
+    low, high = _extent(model, labels)
+    width, height = TOP_PX
+    camera = camera_at((low + high) / 2, azimuth_deg=90.0, elevation_deg=-89.9)
+    reach = max((high[1] - low[1] + 1.0) / 2, (high[0] - low[0] + 1.0) / 2 * height / width)
+    camera.distance = reach / math.tan(math.radians(TOP_FOVY_DEG / 2)) + 1.5
+    if colours is None:
+        return render(model, camera, TOP_PX, fovy_deg=TOP_FOVY_DEG)
+    model.geom_matid[:] = -1
+    model.geom_rgba[:, :3] = colours[labels.geom_category] / 255.0
+    model.geom_rgba[:, 3] = np.where(rendered_geoms(model), 1.0, 0.0)
+    picture = np.ascontiguousarray(render(model, camera, TOP_PX, fovy_deg=TOP_FOVY_DEG))
+    _write_names(picture, model, labels, np.array(camera.lookat), float(camera.distance))
+    return picture
+
+
+def _write_names(
+    picture: Picture, model: mujoco.MjModel, labels: Labels, lookat: NDArray[np.float64], distance_m: float
+) -> None:
+    """Writes the name and the category of each instance onto a picture from above; walls and floors are not named."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    height, width = picture.shape[:2]
+    focal_px = 0.5 * height / math.tan(math.radians(TOP_FOVY_DEG / 2))
+    for instance in labels.instances:
+        if MPCAT40_ID[instance.category] in _STRUCTURE:
+            continue
+        x, y, z = data.geom_xpos[list(instance.geom_ids)].mean(axis=0)
+        scale = focal_px / (lookat[2] + distance_m - z)
+        corner = (round(width / 2 + (x - lookat[0]) * scale) - 40, round(height / 2 - (y - lookat[1]) * scale))
+        text = f"{instance.name}: {instance.category}"
+        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.45, (255, 255, 255), 4, cv2.LINE_AA)
+        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.45, (20, 20, 20), 1, cv2.LINE_AA)
+
+
+def storeys(house: House) -> list[House]:
+    """Returns a house from the ground up to each of its storeys, the lowest first."""
+    spec = house.spec
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    floors_m = sorted({round(room.floor_z_m, 2) for room in read_rooms(model)})
+    cut = []
+    for above_m in floors_m[1:]:
+        storey = spec.copy()
+        above = data.geom_xpos[:, 2] > above_m - STOREY_GAP_M
+        for body in list(storey.worldbody.bodies):
+            geoms = np.flatnonzero(model.geom_bodyid == model.body(body.name).id)
+            if geoms.size and above[geoms].all():
+                storey.delete(body)
+        for geom in list(storey.worldbody.geoms):
+            if geom.pos[2] > above_m - STOREY_GAP_M:
+                storey.delete(geom)
+        for site in list(storey.worldbody.sites):
+            if site.pos[2] > above_m:
+                storey.delete(site)
+        cut.append(replace(house, spec=storey))
+    return [*cut, house]
+
+
+def draw_views(house: House, columns: int = 3) -> Picture | None:
+    """Renders what the robot sees, tiled, (h, w, 3) RGB; None where there is nothing to see.
+
+    In each room it stands where the view is longest. In a house without rooms it looks at an object of each category.
+    """
+    seen = house.spec.copy()
+    add_backdrop(seen)
+    model = seen.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    rooms = read_rooms(model)
+    labels = read_labels(model, rules=house.rules, ignore_prefix="")
+    poses = _room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels)
+    eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
+    tiles = []
+    for name, (x, y, floor_z_m, yaw_deg) in poses:
+        camera = camera_at(np.array([x, y, floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
+        tile = np.ascontiguousarray(render(model, camera, VIEW_PX, fovy_deg=fovy))
+        cv2.putText(tile, name, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (200, 30, 30), 1, cv2.LINE_AA)
+        tiles.append(tile)
+    return tiled(tiles, min(columns, len(tiles))) if tiles else None
+
+
+def _room_poses(
+    model: mujoco.MjModel, data: mujoco.MjData, labels: Labels, rooms: tuple[Room, ...]
+) -> Iterator[tuple[str, ViewPose]]:
+    """Yields the pose of the longest view in each room where the robot fits, with the room's name."""
+    spaces = {z: FreeSpace(model, data, labels, rooms=rooms, floor_z_m=z) for z in {room.floor_z_m for room in rooms}}
+    for room in rooms:
+        place = _viewpoint(model, data, spaces[room.floor_z_m], room)
+        if place is not None:
+            x, y, yaw_deg = place
+            yield room.name, (x, y, room.floor_z_m, yaw_deg)
+
+
+def _object_poses(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> Iterator[tuple[str, ViewPose]]:
+    """Yields the name of the first instance of each category, goals first, and a pose from which it is visible."""
+    space = FreeSpace(model, data, labels)
+    places = np.random.default_rng(0).permutation(space.frame.to_metres(np.argwhere(space.largest_part())))[
+        :MOST_PLACES
+    ]
+    first = {each.category: each for each in reversed(labels.instances) if MPCAT40_ID[each.category] not in _STRUCTURE}
+    ordered = sorted(first.values(), key=lambda each: each.category not in GOAL_CATEGORIES)
+    poses = ((each.name, _look_at(model, data, each, places)) for each in ordered)
+    yield from itertools.islice(((name, pose) for name, pose in poses if pose is not None), MOST_VIEWS)
+
+
+def _look_at(
+    model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, places_m: NDArray[np.float64]
+) -> ViewPose | None:
+    """Returns the pose at one of the places (n, 2) that shows an instance, from a distance that fits its size, or None.
+
+    The ray from the camera to the instance, at the camera's height where the instance has that height, hits it first.
+    """
+    boxes = [geom_box(model, data, geom) for geom in instance.geom_ids]
+    low, high = np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)
+    middle, eye_m = (low + high) / 2, CameraModel().height_m
+    aim = np.array([middle[0], middle[1], np.clip(eye_m, low[2] + 0.02, high[2] - 0.02)])
+    away_m = np.hypot(*(places_m - aim[:2]).T)
+    wanted_m = NEAREST_LOOK_M + LOOK_SIZES * float((high - low)[:2].max())
+    hit = np.zeros(1, np.int32)
+    for x, y in places_m[np.argsort(np.abs(away_m - wanted_m))].tolist():
+        eye = np.array([x, y, eye_m])
+        mujoco.mj_ray(model, data, eye, aim - eye, None, 1, -1, hit, None)
+        if int(hit[0]) in instance.geom_ids:
+            return x, y, 0.0, math.degrees(math.atan2(aim[1] - y, aim[0] - x))
+    return None
+
+
+def _viewpoint(
+    model: mujoco.MjModel, data: mujoco.MjData, space: FreeSpace, room: Room
+) -> tuple[float, float, float] | None:
+    """Returns x, y (metres) and yaw (degrees) of the longest view among random free points, or None."""
+    (cx, cy, _), (hx, hy, _) = room.boxes[0]
+    points = space.frame.to_metres(np.argwhere(space.free))
+    points = points[(np.abs(points[:, 0] - cx) < hx) & (np.abs(points[:, 1] - cy) < hy)]
+    if len(points) == 0:
+        return None
+    rng = np.random.default_rng(0)
+    best, found = -1.0, None
+    for x, y in points[rng.integers(len(points), size=40)]:
+        inside = _view_lengths(model, data, room, float(x), float(y))
+        for i in range(0, len(FAN_DEG), 3):  # nine rays across the field of view
+            view = inside[np.arange(i - 4, i + 5) % len(FAN_DEG)]
+            score = float(view.mean() + 1.5 * min(view.min(), 1.0))
+            if score > best:
+                best, found = score, (float(x), float(y), float(FAN_DEG[i]))
+    return found
+
+
+def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: float, y: float) -> NDArray[np.float64]:
+    """Returns the free length (len(FAN_DEG),) of level rays from (x, y), in metres, up to 0.3 m beyond the room."""
+    (cx, cy, _), (hx, hy, _) = room.boxes[0]
+    fan = np.radians(FAN_DEG)
+    rays = np.column_stack([np.cos(fan), np.sin(fan), np.zeros_like(fan)])
+    geom, far = np.zeros(len(fan), np.int32), np.zeros(len(fan))
+    eye = np.array([x, y, room.floor_z_m + CameraModel().height_m])
+    mujoco.mj_multiRay(model, data, eye, rays.ravel(), None, 1, -1, geom, far, None, len(fan), 10.0)
+    with np.errstate(divide="ignore"):
+        to_walls = (np.array([hx, hy]) - np.sign(rays[:, :2]) * np.array([x - cx, y - cy])) / np.abs(rays[:, :2])
+    return np.minimum(np.where(far < 0, 10.0, far), to_walls.min(axis=1) + 0.3)
+
+
+def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and highest corner (3,) of all rooms; without rooms, of the storey's grid of free space."""
+    boxes = [box for room in read_rooms(model) for box in room.boxes]
+    if boxes:
+        centres, halves = np.array([box[0] for box in boxes]), np.array([box[1] for box in boxes])
+        return (centres - halves).min(axis=0), (centres + halves).max(axis=0)
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    frame = FreeSpace(model, data, labels).frame
+    low = np.array(frame.origin_xy_m)
+    return np.array([*low, 0.0]), np.array([*(low + np.array(frame.shape)[::-1] * frame.cell_m), CEILING_M])
+
+
+def add_backdrop(spec: mujoco.MjSpec) -> None:
+    """Adds a plain background in place of those of the file."""
+    for texture in [each for each in spec.textures if each.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
+        spec.delete(texture)
+    spec.add_texture(
+        name="backdrop", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
+        width=32, height=192, rgb1=list(BACKDROP), rgb2=list(BACKDROP),
+    )  # fmt: skip
+
+
+def camera_at(lookat: NDArray[np.float64], *, azimuth_deg: float, elevation_deg: float) -> mujoco.MjvCamera:
+    """Returns a camera at a point (3,) that looks along a direction; its `distance` moves it back."""
+    camera = mujoco.MjvCamera()
+    camera.type = mujoco.mjtCamera.mjCAMERA_FREE
+    camera.lookat[:] = lookat
+    camera.distance, camera.azimuth, camera.elevation = 1e-3, azimuth_deg, elevation_deg
+    return camera
+
+
+def render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, int], *, fovy_deg: float) -> Picture:
+    """Renders (h, w, 3) RGB with four samples per pixel and without shadows."""
+    width, height = size_px
+    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+    model.vis.global_.fovy = fovy_deg
+    model.stat.extent = 10.0
+    model.vis.map.znear, model.vis.map.zfar = 0.005, 20.0
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    renderer = mujoco.Renderer(model, height, width)
+    option = mujoco.MjvOption()
+    option.sitegroup[:] = 0
+    renderer.update_scene(data, camera, option)
+    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+    picture = renderer.render().copy()
+    renderer.close()
+    return picture
+
+
+def tiled(tiles: list[Picture], columns: int) -> Picture:
+    """Returns pictures of the same size in rows, (h, w, 3) RGB."""
+    blank = np.full_like(tiles[0], 255)
+    tiles = tiles + [blank] * (-len(tiles) % columns)
+    return np.vstack([np.hstack(tiles[i : i + columns]) for i in range(0, len(tiles), columns)])
