@@ -4,6 +4,7 @@ python tools/generate_views.py --split train --views 100000 --out /data/views --
 python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide --workers 2
 python tools/generate_views.py --pool wide --furniture runs/models --views 100000 --out /data/views_models --workers 2
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
+python tools/generate_views.py --house kitchen.xml --labels labels.json --views 500 --out runs/views_kitchen
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
 of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
@@ -31,7 +32,7 @@ from sim import cli
 from sim.datasets.shards import ShardNote, read_note, shard_name, write_index, write_shard
 from sim.datasets.views import sample_views
 from sim.env.scene import Scene
-from sim.episodes.splits import Split, load_split
+from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard, ordered_map
@@ -59,6 +60,12 @@ class Args:
 
     split: str = "train"
     """Houses of a shipped split, or of a folder with the same layout."""
+    house: Path | None = None
+    """One MJCF file in place of a split."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use besides those of its own folder."""
     pool: str | None = None
     """wide: new houses only, with the furniture of train and many more styles."""
     furniture: Path | None = None
@@ -104,7 +111,7 @@ def main(args: Args) -> int:
     """Generates the missing shards, then writes the index; returns the exit status."""
     is_ours = _shard_filter(args)
     executor = make_executor(args.executor, workers=args.workers, address=args.address)
-    split = load_split(args.split)
+    split = _split(args)
     tasks, config = plan(args, split), _config(args, split)
     args.out.mkdir(parents=True, exist_ok=True)
     notes = {task.number: _kept(args, task, config) for task in tasks}
@@ -165,9 +172,15 @@ def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote
     return replace(note, seconds=note.seconds | {"house": round(house_s, 3)})
 
 
+def _split(args: Args) -> Split:
+    if args.house is not None:
+        return one_house(args.house, labels=args.labels, root=args.root)
+    return load_split(args.split)
+
+
 def _house(args: Args, task: ShardTask) -> House:
     if task.fresh_seed is None:
-        return load_split(args.split).load_house(task.house)
+        return _split(args).load_house(task.house)
     try:
         return House(task.house, _made(args, task.fresh_seed).spec)
     except HouseError:  # this seed gives no house: another fixed one replaces it
@@ -246,6 +259,10 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
         raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
     if args.furniture is not None and args.split != "train":
         raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
+    if args.house is None and (args.labels is not None or args.root is not None):
+        raise ConfigError("--labels and --root need --house.")
+    if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
+        raise ConfigError("--house excludes --split, --pool and --furniture.")
     if args.seed < 0:
         raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
     return Shard.parse(args.shard).contains
@@ -253,7 +270,7 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
 
 def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
-    keys = ("split", "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
+    keys = ("split" if args.house is None else "house", "labels", "root", "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
     given = [(key, value) for key in keys if (value := getattr(args, key)) is not None]
     return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(value))}" for key, value in given) + " --out DIR"
 

@@ -90,8 +90,8 @@ def _write_names(
         scale = focal_px / (lookat[2] + distance_m - z)
         corner = (round(width / 2 + (x - lookat[0]) * scale) - 40, round(height / 2 - (y - lookat[1]) * scale))
         text = f"{instance.name}: {instance.category}"
-        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.45, (255, 255, 255), 4, cv2.LINE_AA)
-        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.45, (20, 20, 20), 1, cv2.LINE_AA)
+        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 255), 4, cv2.LINE_AA)
+        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (20, 20, 20), 1, cv2.LINE_AA)
 
 
 def storeys(house: House) -> list[House]:

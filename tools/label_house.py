@@ -38,6 +38,9 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40
 from sim.viewers.palette import PALETTE
 from tools.house_pictures import draw_top
 
+TABLE_WIDTH = 120
+"""Letters of a line where the output is not a terminal."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
@@ -76,7 +79,7 @@ def main(args: Args) -> int:
     rules = rules_of(propose(model)) if args.labels is None else read_rules(args.labels)
     house = House(house.name, house.spec, rules, house.path)
     labels = read_labels(model, rules=rules, ignore_prefix="")
-    console = Console(highlight=False, soft_wrap=not sys.stdout.isatty())
+    console = Console(highlight=False, soft_wrap=True, width=None if sys.stdout.isatty() else TABLE_WIDTH)
     console.print(table_of(model, rows_of(model, labels)))
     for sentence in summary(labels):
         console.print(sentence, markup=False)
@@ -109,6 +112,7 @@ def table_of(model: mujoco.MjModel, rows: Sequence[Row]) -> Table:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     table = Table("name", "category", box=None)
+    table.columns[0].overflow = "fold"
     for title in ("geoms", "size x y z (m)", "bottom, top (m)"):
         table.add_column(title, justify="right")
     table.add_column("doubt")

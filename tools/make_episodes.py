@@ -2,6 +2,10 @@
 
     python tools/make_episodes.py --split assets/mjcf_houses/val --workers 2
     python tools/make_episodes.py --split my_houses --episodes 100 --recipe large
+    python tools/make_episodes.py --house kitchen.xml --labels labels.json --episodes 20 --out runs/kitchen
+
+With --house, a split is made of one house: --out gets the house in one file, its meshes and textures, its label rules
+and its episodes. `sim.run --split runs/kitchen` then needs neither the original files nor --labels.
 
 The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
@@ -20,7 +24,7 @@ import functools
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -28,13 +32,18 @@ import numpy as np
 from sim import cli
 from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
-from sim.episodes.splits import Episode, write_split
-from sim.errors import EpisodeError
+from sim.episodes.splits import LABELS_FILE, Episode, labels_of, write_split
+from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
+from sim.files import write_together
 from sim.housegen.house_list import has_house_list, read_house_list
 from sim.housegen.split_recipes import SPLIT_VERSION
+from sim.houses.house import House
+from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from sim.houses.packing import packed
 from sim.interface import ConfigError, SuccessRule
+from sim.reading import read_bytes
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
@@ -47,8 +56,16 @@ Turn = tuple[int, int, Ask]
 class Args:
     """Generate the episodes of a split, beside its houses."""
 
-    split: Path
+    split: Path | None = None
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
+    house: Path | None = None
+    """One MJCF file in place of a split; needs --out."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use besides those of its own folder."""
+    out: cli.OutFolder | None = None
+    """With --house: folder of the new split."""
     episodes: cli.Count | None = None
     """Number of episodes of all houses; by default the recipe's number for each house."""
     recipe: str | None = None
@@ -69,7 +86,8 @@ def main(args: Args) -> int:
     Raises:
         ConfigError, EpisodeError, HouseError: there are no houses, or a house cannot be used.
     """
-    files, recipe = house_files(args.split), recipe_of(args)
+    args = with_split(args)
+    files, recipe = house_files(folder_of(args)), recipe_of(args)
     count = args.episodes if args.episodes is not None else recipe.per_house * len(files)
     if count < 1 or args.workers < 1:
         raise ConfigError("--episodes and --workers must be at least 1.")
@@ -87,7 +105,7 @@ def main(args: Args) -> int:
     order = balanced_goals({house: found.asks for house, found in goals.items()}, count)
     episodes = draw_episodes(args, order)
     write_split(
-        args.split,
+        folder_of(args),
         episodes,
         {house: found.listed for house, found in goals.items()},
         version=args.version,
@@ -95,6 +113,49 @@ def main(args: Args) -> int:
     )
     _report(episodes, goals, time.perf_counter() - began_s)
     return 0
+
+
+def folder_of(args: Args) -> Path:
+    """Returns the folder of the split; raises ConfigError where the options name none."""
+    if args.split is None:
+        raise ConfigError("make_episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
+    return args.split
+
+
+def with_split(args: Args) -> Args:
+    """Returns the options with a split: with --house, it is written to --out.
+
+    Raises:
+        ConfigError: the options contradict each other, or --out holds other files.
+        HouseError: the house cannot be used.
+    """
+    if args.house is None:
+        if any(each is not None for each in (args.labels, args.root, args.out)):
+            raise ConfigError("--labels, --root and --out need --house.")
+        return args
+    if args.split is not None or args.out is None:
+        raise ConfigError("--house needs --out FOLDER, and excludes --split.")
+    others = [file.stem for file in args.out.glob("*.xml") if file.stem != args.house.stem]
+    if others:
+        raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
+    house = load_house(args.house, labels_path=args.labels, root=args.root)
+    files = {args.out / name: content for name, content in packed(house, args.house).items()}
+    if args.labels is not None:
+        files[args.out / LABELS_FILE] = read_bytes(args.labels, what="Label rules")
+    write_together(files)
+    _require_same(house, load_house(args.out / f"{house.name}.xml", labels_path=labels_of(args.out)))
+    return replace(args, split=args.out)
+
+
+def _require_same(house: House, written: House) -> None:
+    """Raises HouseError where a house that was written as one file has other geoms or labels."""
+    first, second = house.spec.copy().compile(), written.spec.copy().compile()
+    same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
+    if same:
+        labels = [read_labels(model, rules=house.rules, ignore_prefix="") for model in (first, second)]
+        same = np.array_equal(labels[0].geom_category, labels[1].geom_category)
+    if not same:
+        raise HouseError(f"House '{house.name}' changes when MuJoCo writes it as one file; use it with --house.")
 
 
 def house_files(folder: Path) -> tuple[str, ...]:
@@ -119,7 +180,7 @@ def recipe_of(args: Args) -> EpisodeRecipe:
         ConfigError: there is no such recipe.
     """
     if args.recipe is None:
-        return EPISODE_RECIPES.get(args.split.resolve().name, DEFAULT_RECIPE)
+        return EPISODE_RECIPES.get(folder_of(args).resolve().name, DEFAULT_RECIPE)
     if args.recipe not in EPISODE_RECIPES:
         raise ConfigError(f"No recipe '{args.recipe}'. There is: {', '.join(EPISODE_RECIPES)}.")
     return EPISODE_RECIPES[args.recipe]
@@ -168,9 +229,10 @@ def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]
 
 
 def _task(args: Args, house: str) -> Task:
-    folder = args.split
+    folder = folder_of(args)
     path = read_house_list(folder).fetch(house) if has_house_list(folder) else folder / f"{house}.xml"
-    return Task(World(load_house(path), rule=args.success), TaskConfig(success=args.success))
+    loaded = load_house(path, labels_path=labels_of(folder))
+    return Task(World(loaded, rule=args.success), TaskConfig(success=args.success))
 
 
 def _find_asks(args: Args, house: str) -> HouseAsks:
@@ -181,7 +243,7 @@ def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[l
     """Returns the episodes of one house, each with its number, and how many do not meet the rule of the recipe."""
     number_of_house, house, turns = work
     drawer = StartDrawer(_task(args, house), recipe_of(args), house=number_of_house, seed=args.seed)
-    name, episodes, relaxed = args.split.resolve().name, [], 0
+    name, episodes, relaxed = folder_of(args).resolve().name, [], 0
     for i, number, ask in turns:
         drawn = drawer.draw(ask, number, np.random.default_rng([args.seed, i]))
         relaxed += not drawn.meets_rule

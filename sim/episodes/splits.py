@@ -4,6 +4,7 @@ A split is a folder of house files with its episodes beside them in Habitat's Ob
 `sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it
 may have a list of recipes, `train/houses.json` (see `sim.housegen.house_list`); such houses are generated on first use.
 
+`labels.json` in the folder holds label rules for its houses (docs/worlds.md).
 `val/unreachable.json` names the objects that no episode asks for, because no place of the free space reaches them.
 """
 
@@ -31,6 +32,7 @@ from sim.paths import assets_dir
 from sim.reading import Name, first_unprintable, printable, read_json
 
 UNREACHABLE_FILE = "unreachable.json"
+LABELS_FILE = "labels.json"
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
 
@@ -206,6 +208,12 @@ def write_split(
         file.unlink()
 
 
+def labels_of(folder: Path) -> Path | None:
+    """Returns the file of label rules in the folder of a split; None where its houses need none."""
+    file = folder / LABELS_FILE
+    return file if file.is_file() else None
+
+
 def read_unreachable(folder: Path) -> dict[str, tuple[str, ...]]:
     """Returns for each house of a split the goal instances that cannot be reached; empty if there is no such file.
 
@@ -261,8 +269,11 @@ def _read_split(folder: Path) -> Split:
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
             "generate both again (tools/generate_houses.py, tools/make_episodes.py)."
         )
-    sha256 = _sha256(house_list.sha256 if house_list else _file_sums(houses), ordered)
-    return Split(folder.name, version, sha256, houses, ordered, house_list=house_list)
+    sums = dict(house_list.sha256 if house_list else _file_sums(houses))
+    labels = labels_of(folder)
+    if labels is not None:
+        sums[LABELS_FILE] = hashlib.sha256(labels.read_bytes()).hexdigest()
+    return Split(folder.name, version, _sha256(sums, ordered), houses, ordered, labels, house_list=house_list)
 
 
 def _episodes_of(file: Path) -> list[Episode]:

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from sim.gl import mujoco
-from sim.houses.labels import Labels, names_of_geom, rendered_geoms
+from sim.houses.labels import Labels, collidable_geoms, names_of_geom, rendered_geoms
+from sim.interface import MPCAT40_ID
 
 MAX_NAMES = 8
 """Most names that a sentence lists."""
@@ -42,6 +43,27 @@ def remove_unsupported(spec: mujoco.MjSpec) -> tuple[str, ...]:
     if fixed:
         notes.append(f"Fixed in the pose of the file: {_count('joint', names)}.")
     return tuple(notes)
+
+
+def make_walls_solid(spec: mujoco.MjSpec, model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:
+    """Lets boxes collide that are labelled wall and only visual in the file; returns a sentence that lists them.
+
+    Robots that are bolted to the floor need no solid walls, so that the scenes of arms often have none. A mesh stays
+    visual: it would collide as its convex hull, without its doorways.
+
+    Args:
+        spec: of the scene; it was compiled to `model`.
+        model: the compiled model.
+        labels: of the model.
+    """
+    walls = (labels.geom_category == MPCAT40_ID["wall"]) & ~collidable_geoms(model)
+    walls &= model.geom_type == mujoco.mjtGeom.mjGEOM_BOX
+    names = []
+    for geom in spec.geoms:
+        if walls[geom.id]:
+            geom.contype = geom.conaffinity = 1
+            names.append(_first_name(model, geom.id))
+    return (f"Made solid: {_count('visual wall', names)}.",) if names else ()
 
 
 def void_notes(model: mujoco.MjModel, labels: Labels) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.errors import HouseError
 from sim.gl import mujoco
-from sim.houses.foreign import remove_unsupported, void_notes
+from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
 from sim.houses.mjcf import read_spec, require_sizes
@@ -54,7 +54,9 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
         labels = _validated(house, model)
     except HouseError as error:
         raise HouseError(f"House '{path}': {error}") from None
-    return replace(house, notes=(*notes, *void_notes(model, labels)))
+    if rules is not None:
+        notes = (*notes, *make_walls_solid(spec, model, labels), *void_notes(model, labels))
+    return replace(house, notes=notes)
 
 
 def read_rules(path: Path) -> dict[str, str]:

@@ -191,6 +191,8 @@ class RobotFile:
     """Names of the hinges of the left and the right wheel."""
     casters: tuple[str, ...] = ()
     """Names of geoms or bodies that slide on the floor."""
+    heading_rad: float = 0.0
+    """Direction that is ahead in the file, counter-clockwise from +x."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,13 +7,15 @@ Beside `carrier.xml` there is a sidecar `carrier.json`:
 | `wheel_joints` | names of the hinges of the left and the right wheel |
 | `wheel_radius_m` | metres |
 | `casters` | names of geoms or bodies that only slide on the floor; default: none |
+| `heading_deg` | direction that is ahead in the file, counter-clockwise from +x; default: 0 |
 | `radius_m`, `height_m` | size of the upright cylinder around the body; default: measured |
 | `camera_height_m`, `camera_forward_m` | position of the level camera above the floor and ahead of the axle (0.88, 0) |
 | `camera_hfov_deg` | horizontal field of view of the camera (79) |
 
-The file shows the robot at rest: +x ahead, wheels on the ground. Masses, inertias and collision shapes are those of the
-file. The rest is replaced: the base is held upright, each wheel collides as a sphere of its radius, two motors with the
-same force per kilogram as those of our robot drive the wheels, and all other joints are fixed.
+The file shows the robot at rest: +x ahead (or `heading_deg`), wheels on the ground. Masses, inertias and collision
+shapes are those of the file. The rest is replaced: the base is held upright, each wheel collides as a sphere of its
+radius, two motors with the same force per kilogram as those of our robot drive the wheels, and all other joints are
+fixed.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from sim.reading import read_json
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile, WheelConfig
 from sim.robot.measurement import RobotMeasurements, measure
 
-KEYS = ("wheel_joints", "wheel_radius_m", "casters", "radius_m", "height_m")
+KEYS = ("wheel_joints", "wheel_radius_m", "casters", "heading_deg", "radius_m", "height_m")
 CAMERA_KEYS = ("camera_height_m", "camera_forward_m", "camera_hfov_deg")
 LARGEST_M = 1000.0
 """Largest number of a sidecar, also of degrees."""
@@ -67,11 +69,14 @@ def robot_sha256(path: Path) -> str:
 def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
     joints, casters = sidecar["wheel_joints"], sidecar.get("casters", [])
     wheel_radius_m = _positive(sidecar, "wheel_radius_m")
-    file = RobotFile(path, (joints[0], joints[1]), tuple(casters))
+    heading_rad = math.radians(_number(sidecar, "heading_deg", "degrees"))
+    file = RobotFile(path, (joints[0], joints[1]), tuple(casters), heading_rad)
     measured = measure(file, wheel_radius_m)
     body = _body(sidecar, measured)
     wheels = _wheels(measured, wheel_radius_m, body)
-    return RobotConfig(body=body, wheels=wheels, file=file, camera_forward_m=_camera_forward_m(sidecar))
+    return RobotConfig(
+        body=body, wheels=wheels, file=file, camera_forward_m=_number(sidecar, "camera_forward_m", "metres")
+    )
 
 
 def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> WheelConfig:
@@ -124,13 +129,12 @@ def _camera(sidecar: dict[str, Any]) -> CameraModel:
     )
 
 
-def _camera_forward_m(sidecar: dict[str, Any]) -> float:
-    forward_m = sidecar.get("camera_forward_m", 0.0)
-    if isinstance(forward_m, bool) or not isinstance(forward_m, int | float) or not abs(forward_m) <= LARGEST_M:
-        raise ConfigError(
-            f'"camera_forward_m" in its sidecar must be a number of metres; it is {json.dumps(forward_m)}.'
-        )
-    return float(forward_m)
+def _number(sidecar: dict[str, Any], key: str, unit: str) -> float:
+    """Returns a number that may be negative; 0 when it is not given."""
+    value = sidecar.get(key, 0.0)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST_M:
+        raise ConfigError(f'"{key}" in its sidecar must be a number of {unit}; it is {json.dumps(value)}.')
+    return float(value)
 
 
 def _read_sidecar(file: Path) -> dict[str, Any]:

@@ -26,7 +26,7 @@ class Wheel:
     """One wheel in the pose of the file."""
 
     joint: str
-    centre_m: NDArray[np.float64]  # (3,) in the world of the file
+    centre_m: NDArray[np.float64]  # (3,) in the world of the file, turned so that the robot faces +x
     sign: float
     """1 when a positive joint velocity drives ahead, else -1."""
 
@@ -48,7 +48,7 @@ class RobotMeasurements:
 
     @property
     def middle_m(self) -> NDArray[np.float64]:
-        """The middle (3,) of the axle in the world of the file."""
+        """The middle (3,) of the axle in the world of the file, turned so that the robot faces +x."""
         return 0.5 * (self.wheels[0].centre_m + self.wheels[1].centre_m)
 
 
@@ -124,10 +124,12 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
     require_sizes(model, error=ConfigError)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    left, right = _wheels(model, data, file)
+    turn = turn_to_x(file)
+    left, right = _wheels(model, data, file, turn)
     middle = 0.5 * (left.centre_m + right.centre_m)
     ground_m = float(middle[2]) - wheel_radius_m
     vertices = np.concatenate([geom_polytope(model, data, model.geom(geom.name).id).vertices_m for geom in hull])
+    vertices = vertices @ turn.T
     body = model.body(root.name).id
     return RobotMeasurements(
         wheels=(left, right),
@@ -137,6 +139,12 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
         bottom_m=float(vertices[:, 2].min()) - ground_m,
         top_m=float(vertices[:, 2].max()) - ground_m,
     )
+
+
+def turn_to_x(file: RobotFile) -> NDArray[np.float64]:
+    """Returns the rotation (3, 3) about z that turns the robot of a file to +x."""
+    cos, sin = math.cos(file.heading_rad), math.sin(file.heading_rad)
+    return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _make_paths_absolute(spec: mujoco.MjSpec, file: RobotFile) -> None:
@@ -176,28 +184,30 @@ def _delete_other_joints(spec: mujoco.MjSpec, file: RobotFile) -> None:
             spec.delete(joint)
 
 
-def _wheels(model: mujoco.MjModel, data: mujoco.MjData, file: RobotFile) -> tuple[Wheel, Wheel]:
-    left, right = (_wheel(model, data, name) for name in file.wheel_joints)
+def _wheels(
+    model: mujoco.MjModel, data: mujoco.MjData, file: RobotFile, turn: NDArray[np.float64]
+) -> tuple[Wheel, Wheel]:
+    left, right = (_wheel(model, data, name, turn) for name in file.wheel_joints)
     across = left.centre_m - right.centre_m
     if across[1] <= 0.0 or np.hypot(across[0], across[2]) > LEVEL_M:
         raise ConfigError(
             "its wheels must be beside each other with the first of wheel_joints on the left (+y), but they are at "
-            f"{_format(left.centre_m)} and {_format(right.centre_m)} m."
+            f"{_format(left.centre_m)} and {_format(right.centre_m)} m{_turned(file)}."
         )
     return left, right
 
 
-def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str) -> Wheel:
+def _wheel(model: mujoco.MjModel, data: mujoco.MjData, name: str, turn: NDArray[np.float64]) -> Wheel:
     joint = model.joint(name).id
     if model.jnt_type[joint] != mujoco.mjtJoint.mjJNT_HINGE:
         raise ConfigError(f"its wheel joint '{name}' is not a hinge.")
-    axis = data.xaxis[joint]
+    axis = turn @ data.xaxis[joint]
     if abs(axis[1]) < MIN_AXLE_COSINE:
         raise ConfigError(
             f"the axle of '{name}' points along {_format(axis)}, but must point left or right (y): the file has to "
-            "show the robot with +x ahead."
+            "show the robot with +x ahead, or heading_deg in the sidecar has to give its direction."
         )
-    return Wheel(name, data.xanchor[joint].copy(), math.copysign(1.0, float(axis[1])))
+    return Wheel(name, turn @ data.xanchor[joint], math.copysign(1.0, float(axis[1])))
 
 
 def _root_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> mujoco.MjsBody:
@@ -205,6 +215,10 @@ def _root_of(spec: mujoco.MjSpec, body: mujoco.MjsBody) -> mujoco.MjsBody:
     while body.parent is not None and body.parent.name != spec.worldbody.name:
         body = body.parent
     return body
+
+
+def _turned(file: RobotFile) -> str:
+    return f" when heading_deg = {math.degrees(file.heading_rad):g} is turned to +x" if file.heading_rad else ""
 
 
 def _format(vector: NDArray[np.float64]) -> str:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
 from sim.robot.body import (
@@ -17,7 +19,7 @@ from sim.robot.body import (
     built_in_robot_spec,
 )
 from sim.robot.config import BodyConfig, RobotConfig, RobotFile
-from sim.robot.measurement import RobotMeasurements, collision_geoms, measure, read_body
+from sim.robot.measurement import RobotMeasurements, collision_geoms, measure, read_body, turn_to_x
 
 FILE_PREFIX = "file/"
 """Prefix of the names that come from the file, after `PREFIX`."""
@@ -46,7 +48,9 @@ def _third_party_robot_spec(config: RobotConfig, file: RobotFile) -> mujoco.MjSp
     base = spec.worldbody.add_body(name="base", fuse=0)
     add_joints(base, config)
     x, y, z = measured.middle_m.tolist()
-    frame = base.add_frame(pos=(-x, -y, config.wheels.radius_m - z))
+    quat = np.empty(4)
+    mujoco.mju_mat2Quat(quat, turn_to_x(file).ravel())
+    frame = base.add_frame(pos=(-x, -y, config.wheels.radius_m - z), quat=quat)
     frame.attach_body(root, FILE_PREFIX, "")
     for name, wheel in zip(("left", "right"), measured.wheels, strict=True):
         motor = add_motor(spec, name, FILE_PREFIX + wheel.joint, config)
