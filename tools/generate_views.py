@@ -4,6 +4,8 @@ python tools/generate_views.py --split train --views 100000 --out /data/views --
 python tools/generate_views.py --pool wide --views 100000 --out /data/views_wide --workers 2
 python tools/generate_views.py --pool wide --furniture runs/models --views 100000 --out /data/views_models --workers 2
 python tools/generate_views.py --split val --views 2000 --out runs/views_val --seed 1
+python tools/generate_views.py --split val --views 2000 --extras instances normals poses --out runs/views_objects
+python tools/generate_views.py --split val --views 2000 --sequence 40 --extras poses --out runs/views_along
 python tools/generate_views.py --house kitchen.xml --labels labels.json --views 500 --out runs/views_kitchen
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
@@ -30,7 +32,7 @@ import numpy as np
 
 from sim import cli
 from sim.datasets.shards import ShardNote, read_note, shard_name, write_index, write_shard
-from sim.datasets.views import sample_views
+from sim.datasets.views import EXTRAS, sample_views
 from sim.env.scene import Scene
 from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import HouseError
@@ -49,6 +51,10 @@ from sim.sensors.profiles import get_profile
 
 FRESH_SEEDS_FROM = 1_000_000
 """Smallest seed of new houses; the seeds of the shipped splits are lower."""
+
+MOST_PER_SHARD = 250
+"""Views in a shard, if there are enough of them for `FEWEST_HOUSES` shards."""
+FEWEST_HOUSES = 20
 
 WIDE = "wide"
 """The pool with styles of furniture that no split has."""
@@ -86,8 +92,12 @@ class Args:
     """Rendering quality: good or fast."""
     seed: cli.Seed = 0
     """Seed of houses and poses."""
-    views_per_shard: cli.Count = 250
-    """Number of views in a shard, all of one house."""
+    views_per_shard: cli.Count | None = None
+    """Number of views in a shard, all of one house; None: 250, or fewer, so that few views are of 20 houses."""
+    extras: tuple[str, ...] = ()
+    """More of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
+    sequence: cli.Count | None = None
+    """Views come as sequences of this many along paths of a robot; None: half along paths, half anywhere."""
     shrink: cli.Count = 1
     """Factor by which the views are reduced: 2 gives 320 x 240."""
     rgb: str = "jpg"
@@ -142,13 +152,24 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
     if not houses:
         raise ConfigError(f"Split '{split.name}' has no houses.")
     tasks = []
-    for number, first in enumerate(range(0, args.views, args.views_per_shard)):
-        count = min(args.views_per_shard, args.views - first)
-        fresh = args.pool is not None or args.furniture is not None or (number >= len(houses) and split.name == "train")
+    per_shard = views_per_shard(args)
+    for number, first in enumerate(range(0, args.views, per_shard)):
+        count = min(per_shard, args.views - first)
+        of_train = split.name == "train" and args.house is None
+        fresh = args.pool is not None or args.furniture is not None or (number >= len(houses) and of_train)
         seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
         house = _recipe(args, seed).name if seed is not None else houses[number % len(houses)]
         tasks.append(ShardTask(number, count, house, seed))
     return tasks
+
+
+def views_per_shard(args: Args) -> int:
+    """Returns the number of views in a shard, whole sequences where there are sequences."""
+    if args.views_per_shard is not None:
+        return args.views_per_shard
+    houses = FEWEST_HOUSES if args.house is None else 1
+    count, unit = min(MOST_PER_SHARD, -(-args.views // houses)), args.sequence or 1
+    return -(-count // unit) * unit
 
 
 def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote:
@@ -165,7 +186,10 @@ def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote
         name = shard_name(task.number)
         rng = np.random.default_rng([args.seed, 1, task.number])
         record = {"house": task.house, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
-        views = sample_views(scene, rng, task.views, stem=name, record=record, block_px=args.shrink)
+        views = sample_views(
+            scene, rng, task.views, stem=name, record=record, block_px=args.shrink, extras=args.extras,
+            sequence=args.sequence,
+        )  # fmt: skip
         note = write_shard(args.out, name, views, house=task.house, config=config, rgb_format=args.rgb)
     finally:
         scene.close()
@@ -231,9 +255,11 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         "split_sha256": split.sha256,
         "seed": args.seed,
         "profile": asdict(get_profile(args.profile)),
-        "views_per_shard": args.views_per_shard,
+        "views_per_shard": views_per_shard(args),
         "shrink": args.shrink,
         "rgb": args.rgb,
+        **({"extras": sorted(args.extras)} if args.extras else {}),
+        **({"sequence": args.sequence} if args.sequence is not None else {}),
         "versions": {name: version(name) for name in packages} | {"gl_renderer": describe_gl()},
     }
 
@@ -247,12 +273,17 @@ def _styles_sha256() -> str:
 
 def _shard_filter(args: Args) -> Callable[[int], bool]:
     """Returns the test for shards that are generated here; raises ConfigError for invalid options."""
-    for name in ("views", "workers", "views_per_shard", "shrink"):
-        if getattr(args, name) < 1:
+    for name in ("views", "workers", "views_per_shard", "shrink", "sequence"):
+        if (value := getattr(args, name)) is not None and value < 1:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
     camera = CameraModel()
     if camera.width_px % args.shrink or camera.height_px % args.shrink:
         raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
+    unknown = [name for name in args.extras if name not in EXTRAS]
+    if unknown or len(set(args.extras)) < len(args.extras):
+        raise ConfigError(f"--extras must be some of {', '.join(EXTRAS)}, got '{' '.join(args.extras)}'.")
+    if args.sequence is not None and (args.views % args.sequence or views_per_shard(args) % args.sequence):
+        raise ConfigError(f"--sequence must divide --views and --views-per-shard, got {args.sequence}.")
     if args.rgb not in ("jpg", "png"):
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
     if args.pool not in (None, WIDE) or (args.pool and args.split != "train"):
@@ -270,9 +301,14 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
 
 def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
-    keys = ("split" if args.house is None else "house", "labels", "root", "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb")
-    given = [(key, value) for key in keys if (value := getattr(args, key)) is not None]
-    return " ".join(f"--{key.replace('_', '-')} {shlex.quote(str(value))}" for key, value in given) + " --out DIR"
+    source = ("split",) if args.house is None else ("house", "labels", "root")
+    keys = (
+        *source, "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb", "sequence",
+    )  # fmt: skip
+    given = [(key, [value]) for key in keys if (value := getattr(args, key)) is not None]
+    given += [("extras", args.extras)] if args.extras else []
+    words = [f"--{key.replace('_', '-')} {shlex.join(map(str, values))}" for key, values in given]
+    return " ".join(words) + " --out DIR"
 
 
 def _summary(index: dict[str, Any]) -> str:

@@ -51,6 +51,8 @@ from stubborn.segmentation.training import exponential_average, learning_rate, p
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
+PRINT_EVERY_S = 10.0
+"""Shortest time between two lines that print the loss."""
 MAX_GRADIENT_NORM = 5.0
 SAVE_EVERY_S = 60.0
 """Shortest time between two writes of the state."""
@@ -177,6 +179,7 @@ class Trainer:
         self.loading_s = 0.0
         """Time since the start of this process in which the step waited for views."""
         self.first_step = 0
+        self._printed_s = -math.inf
         self.total = args.steps
         args.out.mkdir(parents=True, exist_ok=True)
         self._resume()
@@ -202,6 +205,8 @@ class Trainer:
             if time.perf_counter() - last_saved_s > SAVE_EVERY_S:
                 self._save_state()
                 last_saved_s = time.perf_counter()
+        if losses:  # of the last steps, or of a training shorter than one row
+            self._log(float(np.mean(losses)), last=True)
         if self.step % self.args.evaluate_every:
             self._evaluate()
         self._save_state()
@@ -276,14 +281,17 @@ class Trainer:
             "torch": torch.__version__,
         }
 
-    def _log(self, loss: float) -> None:
-        """Writes a row of the training curve."""
+    def _log(self, loss: float, *, last: bool = False) -> None:
+        """Writes a row of the training curve, and prints it if nothing was printed for a while or it is the last."""
         rate = max(group["lr"] for group in self.optimiser.param_groups)
         per_s = self.args.batch * self.step / max(self.spent_s, 1e-9)
         loader = self.args.batch * (self.step - self.first_step) / max(self.loading_s, 1e-9)
         row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
         row |= {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2), "loader_views_per_s": round(loader, 1)}
         _append(self.args.out / "train.csv", row)
+        if last or time.perf_counter() - self._printed_s >= PRINT_EVERY_S:
+            self._printed_s = time.perf_counter()
+            print(f"step {self.step} of {self.total}: loss {loss:.3f}, {per_s:.1f} views/s", flush=True)
 
     def _save_state(self) -> None:
         """Writes the state of the run; the file is replaced in one step."""

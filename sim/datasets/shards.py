@@ -1,8 +1,9 @@
 """WebDataset tar shards of views: written completely or not at all; the same seed gives the same bytes.
 
 A shard `views-000012.tar` holds `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16 millimetres), `key.semantic.png`
-(uint8 mpcat40 id) and `key.json` for each view. The note beside it, `views-000012.json`, holds its statistics and its
-checksum; a shard without a note, or with another checksum, is broken and is made again.
+(uint8 mpcat40 id) and `key.json` for each view; where they were asked for, also `key.instances.png` (uint16) with
+`key.coco.json`, and `key.normals.png` (docs/datasets.md). The note beside it, `views-000012.json`, holds its statistics
+and its checksum; a shard without a note, or with another checksum, is broken and is made again.
 """
 
 from __future__ import annotations
@@ -154,12 +155,19 @@ def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, confi
 def _encoded(view: View, rgb_format: str) -> list[tuple[str, bytes]]:
     png = (cv2.IMWRITE_PNG_COMPRESSION, PNG_LEVEL)
     rgb_options = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY) if rgb_format == "jpg" else png
-    return [
+    members = [
         (f"rgb.{rgb_format}", _image(f".{rgb_format}", cv2.cvtColor(view.rgb, cv2.COLOR_RGB2BGR), rgb_options)),
         ("depth.png", _image(".png", view.depth_mm, png)),
         ("semantic.png", _image(".png", view.semantic, png)),
         ("json", json.dumps(view.record, sort_keys=True).encode()),
     ]
+    if view.instances is not None:
+        members.append(("instances.png", _image(".png", view.instances, png)))
+    if view.annotations is not None:
+        members.append(("coco.json", json.dumps(view.annotations, sort_keys=True).encode()))
+    if view.normals is not None:
+        members.append(("normals.png", _image(".png", cv2.cvtColor(view.normals, cv2.COLOR_RGB2BGR), png)))
+    return members
 
 
 def _image(suffix: str, image: NDArray, options: Sequence[int]) -> bytes:

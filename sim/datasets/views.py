@@ -1,33 +1,37 @@
 """Labelled views for training a segmentation network: sampling of poses, rejection of bare walls, metadata.
 
 Half of the views are from random free positions in random directions; the other half are along shortest paths between
-two positions of the house, on the 30 deg grid of headings of an exploring robot.
+two positions of the house, on the 30 deg grid of headings of an exploring robot. Sequences are all views along such a
+path, in their order. `EXTRAS` are members that a view has only where they are asked for.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.datasets.coco import annotate
+from sim.datasets.normals import encode_normals, surface_normals
+from sim.datasets.poses import MAX_TRIES, any_pose, mixed_poses, sequence_poses
 from sim.env.scene import Scene
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, MPCAT40_ID, TURN_RAD, CameraModel, wrap_angle
+from sim.houses.labels import Labels
+from sim.interface import MPCAT40_ID, CameraModel
 from sim.world.freespace import FreeSpace
 
 BARE_SHARE = 0.97
 """A view is rejected if wall, floor, ceiling and void cover more than this share and its median depth is small."""
 BARE_DEPTH_M = 1.2
 """Median depth below which such a view is rejected: a near wall holds no information."""
-VIEWS_PER_PATH = 12
-"""Largest number of views along one path."""
-_MAX_TRIES = 40
+EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
+"""Members of a view besides colour, depth and categories."""
 _STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 
 
@@ -44,10 +48,24 @@ class View:
     """(h, w) mpcat40 id"""
     record: dict[str, Any]
     """House, pose, intrinsics, profile and versions; JSON types."""
+    instances: NDArray[np.uint16] | None = None
+    """(h, w) number of the instance, from 1, the same in all views of a house; 0: none."""
+    annotations: list[dict[str, Any]] | None = None
+    """Boxes and masks of the objects (`sim.datasets.coco.annotate`)."""
+    normals: NDArray[np.uint8] | None = None
+    """(h, w, 3) surface normals (`sim.datasets.normals.encode_normals`)."""
 
 
 def sample_views(
-    scene: Scene, rng: np.random.Generator, count: int, *, stem: str, record: dict[str, Any], block_px: int = 1
+    scene: Scene,
+    rng: np.random.Generator,
+    count: int,
+    *,
+    stem: str,
+    record: dict[str, Any],
+    block_px: int = 1,
+    extras: Collection[str] = (),
+    sequence: int | None = None,
 ) -> Iterator[View]:
     """Yields views of one house; the same generator state gives the same views.
 
@@ -57,10 +75,12 @@ def sample_views(
         count: number of views.
         stem: the keys are `<stem>_<number>`.
         record: entries of each view's record.
-        block_px: factor by which views are reduced: colour is averaged, depth and labels take the middle pixel.
+        block_px: factor by which views are reduced: colour is averaged, all else takes the middle pixel.
+        extras: names of `EXTRAS`.
+        sequence: number of views of a sequence along one path; bare walls in it are not rejected. None: no sequences.
 
     Raises:
-        HouseError: the house has no free position, or shows only bare walls.
+        HouseError: the house has no free position, shows only bare walls, or has no path of that many views.
     """
     space = scene.task.truth.space(0.0)
     cells = np.argwhere(space.largest_part())
@@ -68,18 +88,19 @@ def sample_views(
     if len(cells) == 0:
         raise HouseError(f"House '{name}': the robot fits nowhere, so there is no view of it.")
     _start_world(scene, space, cells, rng)
-    poses = _poses(space, cells, rng)
+    poses = mixed_poses(space, cells, rng) if sequence is None else sequence_poses(space, cells, rng, sequence, name)
+    labels = ("depth", "semantic", *(("geom",) if {"instances", "normals"} & set(extras) else ()))
     taken = tries = 0
     while taken < count:
-        if tries >= _MAX_TRIES * count:
+        if tries >= MAX_TRIES * count:
             raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows only bare walls.")
         tries += 1
-        pose, kind = next(poses)
-        images = scene.camera.render(scene.world.data, pose, ("depth", "semantic"))
-        if is_bare(images["semantic"], images["depth"]):
+        pose, how = next(poses)
+        images = scene.camera.render(scene.world.data, pose, labels)
+        if sequence is None and is_bare(images["semantic"], images["depth"]):
             continue
         images |= scene.camera.render(scene.world.data, pose, ("rgb",))
-        yield _view(f"{stem}_{taken:05d}", images, pose, scene.camera.camera, block_px, record | {"pose_kind": kind})
+        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras)
         taken += 1
 
 
@@ -112,78 +133,75 @@ def reduce_image(image: NDArray, block_px: int) -> NDArray:
     height, width = image.shape[:2]
     if image.ndim == 3:
         return cv2.resize(image, (width // block_px, height // block_px), interpolation=cv2.INTER_AREA)
+    return _middle_pixels(image, block_px)
+
+
+def camera_to_world(pose: Pose, camera: CameraModel) -> NDArray[np.float64]:
+    """Returns the transform `T_world_cam` (4, 4) from the camera's frame to the world's, in metres.
+
+    The camera's axes are those of OpenCV: x to the right, y down, z along the optical axis.
+    """
+    c, s = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
+    return np.array(
+        [
+            [s, 0.0, c, pose.x_m],
+            [-c, 0.0, s, pose.y_m],
+            [0.0, -1.0, 0.0, pose.floor_z_m + camera.height_m],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def _middle_pixels(image: NDArray, block_px: int) -> NDArray:
+    """Returns the middle pixel of each block of an image (h, w, ...)."""
     middle = block_px // 2
     return np.ascontiguousarray(image[middle::block_px, middle::block_px])
 
 
 def _view(
-    key: str, images: dict[str, NDArray], pose: Pose, camera: CameraModel, block_px: int, record: dict[str, Any]
+    key: str,
+    images: dict[str, NDArray],
+    pose: Pose,
+    scene: Scene,
+    block_px: int,
+    record: dict[str, Any],
+    extras: Collection[str],
 ) -> View:
+    camera = scene.camera.camera
     depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
     camera_entry = {"intrinsics": intrinsics(camera, block_px), "camera_height_m": camera.height_m}
-    pose_entry = {name: round(value, 4) for name, value in asdict(pose).items()}
-    return View(
+    pose_entry: dict[str, Any] = {name: round(value, 4) for name, value in asdict(pose).items()}
+    if "poses" in extras:
+        record = record | {"T_world_cam": camera_to_world(Pose(**pose_entry), camera).round(6).tolist()}
+    view = View(
         key,
         reduce_image(images["rgb"], block_px),
         depth_mm,
         reduce_image(images["semantic"], block_px),
         {"key": key, "pose": pose_entry, **camera_entry, **record},
     )
+    if "normals" in extras:
+        normals = surface_normals(images["depth"], images["geom"], camera)
+        view = replace(view, normals=_middle_pixels(encode_normals(normals), block_px))
+    if "instances" in extras:
+        labels = scene.world.labels
+        ids = _instance_ids(_middle_pixels(images["geom"], block_px), labels)
+        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances))
+    return view
 
 
-def _poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Iterator[tuple[Pose, str]]:
-    """Yields poses without end, along a path and anywhere in turn."""
-    while True:
-        along = list(_path_poses(space, cells, rng))
-        picked = np.sort(rng.permutation(len(along))[:VIEWS_PER_PATH])
-        for i in picked.tolist():
-            yield along[i], "path"
-            yield _any_pose(space, cells, rng), "anywhere"
+def _instance_ids(geom: NDArray[np.int32], labels: Labels) -> NDArray[np.uint16]:
+    """Returns the number of the instance of each pixel (h, w), from 1; 0: none."""
+    numbers = np.append(labels.geom_instance, -1) + 1  # geom -1 takes the last
+    return numbers[geom].astype(np.uint16)
 
 
 def _start_world(scene: Scene, space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> None:
     """Starts the world at a random free position where the body fits, so that movable objects come to rest."""
-    for _ in range(_MAX_TRIES):
+    for _ in range(MAX_TRIES):
         try:
-            scene.world.reset(_any_pose(space, cells, rng))
+            scene.world.reset(any_pose(space, cells, rng))
         except EpisodeError:
             continue
         return
-    raise HouseError(f"House '{scene.world.house.name}': the robot fits at none of {_MAX_TRIES} free places.")
-
-
-def _any_pose(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Pose:
-    x_m, y_m = space.frame.to_metres(cells[rng.integers(len(cells))])
-    return Pose(float(x_m), float(y_m), float(rng.uniform(-math.pi, math.pi)), space.floor_z_m)
-
-
-def _path_poses(space: FreeSpace, cells: NDArray[np.intp], rng: np.random.Generator) -> Iterator[Pose]:
-    """Yields the poses of a robot on the shortest path between two positions, after each forward and each turn."""
-    goal = np.zeros(space.frame.shape, np.bool_)
-    goal[tuple(cells[rng.integers(len(cells))])] = True
-    left_m = space.geodesic(goal)
-    here = _any_pose(space, cells, rng)
-    first_yaw = here.yaw_rad
-    yield here
-    while (after := _step(space, left_m, here, first_yaw)) is not None:
-        turns = round(wrap_angle(after.yaw_rad - here.yaw_rad) / TURN_RAD)
-        for i in range(1, abs(turns) + 1):
-            yaw = wrap_angle(here.yaw_rad + math.copysign(i, turns) * TURN_RAD)
-            yield Pose(here.x_m, here.y_m, yaw, here.floor_z_m)
-        yield after
-        here = after
-
-
-def _step(space: FreeSpace, left_m: NDArray[np.float32], here: Pose, first_yaw: float) -> Pose | None:
-    """Returns the pose after the forward that comes nearest to the goal; None where no forward comes nearer."""
-    yaws = first_yaw + TURN_RAD * np.arange(round(math.tau / TURN_RAD))
-    ends = np.stack([here.x_m + FORWARD_M * np.cos(yaws), here.y_m + FORWARD_M * np.sin(yaws)], axis=1)
-    cells = space.frame.to_cells(ends)
-    inside = space.frame.inside(cells)
-    row, col = np.clip(cells, 0, np.array(space.frame.shape) - 1).T
-    remaining = np.where(inside, left_m[row, col], np.inf)
-    best = int(np.argmin(remaining))
-    row0, col0 = space.frame.to_cells(np.array([here.x_m, here.y_m]))
-    if not remaining[best] < left_m[row0, col0] - 0.5 * FORWARD_M:
-        return None
-    return Pose(float(ends[best, 0]), float(ends[best, 1]), wrap_angle(float(yaws[best])), here.floor_z_m)
+    raise HouseError(f"House '{scene.world.house.name}': the robot fits at none of {MAX_TRIES} free places.")

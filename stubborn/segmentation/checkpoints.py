@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import msgspec
 import torch
 from safetensors import SafetensorError, safe_open
-from safetensors.torch import save_file
+from safetensors.torch import save
 from torch import Tensor
 
 from sim.interface import ConfigError
@@ -71,7 +71,7 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
     header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
     part = file.with_name(file.name + ".part")
     try:
-        save_file(tensors, part, metadata=header)
+        part.write_bytes(save(tensors, metadata=header))  # `save_file` writes a file that only its owner can read
         os.replace(part, file)
     except (SafetensorError, OSError) as error:
         part.unlink(missing_ok=True)

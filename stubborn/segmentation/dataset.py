@@ -1,8 +1,9 @@
 """Reads labelled views from WebDataset shards, as arrays and as a PyTorch data set.
 
 A shard is a tar file in which the members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
-millimetres), `key.semantic.png` (uint8 mpcat40 id) and `key.json`. The `webdataset` package reads them as well; this
-reader needs only the standard library and OpenCV, and its errors name the broken file and view.
+millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, where they were asked for, `key.instances.png`,
+`key.coco.json` and `key.normals.png` (docs/datasets.md). The `webdataset` package reads them as well, with
+`decode_member`; this reader needs only the standard library and OpenCV, and its errors name the broken file and view.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import math
 import tarfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,7 +19,7 @@ import cv2
 import msgspec
 import numpy as np
 import torch
-from jaxtyping import Float32, Float64, Shaped, UInt8
+from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
@@ -66,6 +67,40 @@ class LabelledView:
     """mpcat40 ids."""
     record: dict[str, Any] = field(default_factory=dict)
     """Content of `key.json`."""
+    instances: UInt16[np.ndarray, "h w"] | None = None
+    """Number of the instance of each pixel, from 1; 0: none. None: the shard has no such member."""
+    annotations: list[dict[str, Any]] | None = None
+    """The objects in the format of COCO: boxes and masks; None: the shard has no such member."""
+    normals: Float32[np.ndarray, "h w 3"] | None = None
+    """Unit surface normals in the camera's frame (x right, y down, z forward); 0 where there is none. None: the shard
+    has no such member."""
+
+
+def decode_member(name: str, content: bytes) -> Any:
+    """Returns a member of a view as it was stored, for `webdataset.WebDataset(...).decode(decode_member)`.
+
+    The decoders of `webdataset` (`"rgb8"`, `"pil"`) take every PNG file for a colour image and reduce depth in
+    millimetres to 8 bits. This one keeps it.
+
+    Args:
+        name: name of the member, of which the ending counts: `rgb.jpg`, `depth.png`, ...
+        content: the file.
+
+    Returns:
+        `rgb` and `normals` as uint8 (h, w, 3), `depth` and `instances` as uint16 (h, w), `semantic` as uint8 (h, w),
+        JSON as what it holds; None for another ending, which leaves it to the next decoder.
+
+    Raises:
+        ConfigError: an image or a JSON text cannot be read.
+    """
+    parts = name.rsplit("/", 1)[-1].lower().split(".")
+    if parts[-1] == "json":
+        return parse_json(content, Any, where=f"Member '{name}'")
+    if parts[-1] not in ("png", "jpg"):
+        return None
+    in_colour = {"rgb", "normals"} & set(parts[:-1])
+    image = _read_image(content, cv2.IMREAD_COLOR if in_colour else cv2.IMREAD_UNCHANGED, f"Member '{name}'")
+    return cv2.cvtColor(image, cv2.COLOR_BGR2RGB) if in_colour else image
 
 
 def list_shards(folder: Path) -> list[Path]:
@@ -121,7 +156,8 @@ class ViewDataset(IterableDataset):
 
     Args:
         shards: files.
-        transform: converts a view to a sample; each worker has a random generator of its own.
+        transform: converts a view to a sample; each worker has a random generator of its own. None: the samples are
+            the views, `LabelledView`, for which a `DataLoader` needs `collate_fn=list` or `batch_size=None`.
         buffer: number of views among which the next one is drawn.
         repeats: returns how often a view is used in an epoch on average, at least once; None: once.
         seed: seeds the order and the transform, together with the epoch.
@@ -131,7 +167,7 @@ class ViewDataset(IterableDataset):
     def __init__(
         self,
         shards: Sequence[Path],
-        transform: Callable[[LabelledView, np.random.Generator], Any],
+        transform: Callable[[LabelledView, np.random.Generator], Any] | None = None,
         *,
         buffer: int = 1000,
         repeats: Callable[[LabelledView], float] | None = None,
@@ -157,7 +193,7 @@ class ViewDataset(IterableDataset):
         once = (view for shard in shards[worker::workers] for view in read_shard(shard))
         views = once if self.repeats is None else _repeated(once, self.repeats, rng)
         for view in _shuffled(views, rng, self.buffer) if self.shuffle else views:
-            yield self.transform(view, rng)
+            yield view if self.transform is None else self.transform(view, rng)
 
 
 def _repeated(
@@ -306,14 +342,39 @@ def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
         raise ConfigError(f"Shard '{file}': view '{key}' has category {semantic.max()}, mpcat40 ends at 40.")
     record = parse_json(parts["json"], dict[str, Any], where=f"Shard '{file}': the record of view '{key}'")
     colour = np.asarray(cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB), np.uint8)
-    return LabelledView(key, colour, depth.astype(np.float32) / 1000.0, semantic, record)
+    view = LabelledView(key, colour, depth.astype(np.float32) / 1000.0, semantic, record)
+    return _with_extras(file, view, parts)
+
+
+def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> LabelledView:
+    """Returns the view with those of the optional members that there are; raises ConfigError where one is broken."""
+    where = f"Shard '{file}': view '{view.key}'"
+    if "instances" in parts:
+        instances = _image(file, view.key, "instances", parts, cv2.IMREAD_UNCHANGED)
+        if instances.dtype != np.uint16 or instances.shape != view.semantic.shape:
+            raise ConfigError(f"{where} has instances of {instances.dtype} {instances.shape}; wanted is uint16 (h, w).")
+        view = replace(view, instances=instances)
+    if "coco" in parts:
+        view = replace(view, annotations=parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects"))
+    if "normals" in parts:
+        levels = cv2.cvtColor(_image(file, view.key, "normals", parts, cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        if levels.shape[:2] != view.semantic.shape:
+            raise ConfigError(f"{where} has normals of another size.")
+        normals = levels.astype(np.float32) / np.float32(127.5) - 1.0
+        view = replace(view, normals=normals * levels.any(axis=-1, keepdims=True))
+    return view
 
 
 def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) -> Shaped[np.ndarray, "h w *channels"]:
-    require_small_image(parts[part], where=f"Shard '{file}': the {part} image of view '{key}'")
-    image = cv2.imdecode(np.frombuffer(parts[part], np.uint8), flag)
+    return _read_image(parts[part], flag, f"Shard '{file}': the {part} image of view '{key}'")
+
+
+def _read_image(content: bytes, flag: int, where: str) -> Shaped[np.ndarray, "h w *channels"]:
+    """Returns an image; raises ConfigError where it is too large or cannot be read."""
+    require_small_image(content, where=where)
+    image = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
     if image is None:
-        raise ConfigError(f"Shard '{file}': the {part} image of view '{key}' cannot be read.")
+        raise ConfigError(f"{where} cannot be read.")
     return image
 
 

@@ -92,6 +92,26 @@ def test_train_continues_with_new_houses_and_no_other_split_does() -> None:
     assert all(task.fresh_seed is None for task in val)
 
 
+@pytest.mark.parametrize(("views", "houses", "shards"), [(60, 20, 20), (7, 7, 7), (5000, 20, 20), (6000, 24, 24)])
+def test_few_views_are_of_many_houses_and_many_views_in_shards_of_250(views: int, houses: int, shards: int) -> None:
+    tasks = plan(Args(split="val", out=Path("x"), views=views), load_split("val"))
+    assert (len({task.house for task in tasks}), len(tasks)) == (houses, shards)
+    assert sum(task.views for task in tasks) == views
+    assert max(task.views for task in tasks) == min(250, -(-views // 20))
+
+
+def test_objects_and_sequences_are_options_that_a_folder_keeps(split: Path, tmp_path: Path) -> None:
+    few = {"views": 4, "views_per_shard": 4, "extras": ("instances", "poses")}
+    main(options(split, tmp_path, sequence=2, **few))
+    index = json.loads((tmp_path / "index.json").read_text())
+    assert index["command"].endswith("--sequence 2 --extras instances poses --out DIR")
+    (view, *_) = read_shard(tmp_path / "views-000000.tar")
+    assert view.annotations is not None
+    assert view.record["frame"] == 0
+    with pytest.raises(ConfigError, match="holds shards with sequence = 2, this run has None"):
+        main(options(split, tmp_path, **few))
+
+
 def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     main(Args(pool="wide", views=2, views_per_shard=2, shrink=8, profile="fast", out=tmp_path))
     index = json.loads((tmp_path / "index.json").read_text())
@@ -108,6 +128,8 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
     [
         ({"views": 0}, "--views must be at least 1, got 0"),
         ({"shrink": 7}, "--shrink must divide 640 and 480, got 7"),
+        ({"extras": ("boxes",)}, "--extras must be some of instances, normals, poses, got 'boxes'"),
+        ({"sequence": 2}, "--sequence must divide --views and --views-per-shard, got 2"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
         ({"shard": "2/2"}, '--shard must be "i/n" with 0 <= i < n, got "2/2"'),
         ({"pool": "wide"}, "--pool must be wide, and needs --split train, got 'wide' with"),

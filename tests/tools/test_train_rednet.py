@@ -52,7 +52,9 @@ def options(tmp_path: Path, **changes: object) -> Args:
     return Args(**{**base, "batch": 2, "steps": 4, "evaluate_every": 2, "device": "cpu", **changes})  # type: ignore[arg-type]
 
 
-def test_training_writes_curves_and_weights_and_continues_a_run(tmp_path: Path) -> None:
+def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "more", 3)
     write_views(tmp_path / "val", 2)
@@ -65,6 +67,8 @@ def test_training_writes_curves_and_weights_and_continues_a_run(tmp_path: Path) 
     assert card["block_px"] == 1
     assert card["options"]["views"] == [str(folder) for folder in folders]
     assert card["miou_goals"] == pytest.approx(max(float(row["miou_goals"]) for row in first), abs=1e-4)
+    loss = float(rows(tmp_path / "out/train.csv")[-1]["loss"])
+    assert f"step 4 of 4: loss {loss:.3f}, " in capsys.readouterr().out
     assert main(options(tmp_path, views=folders, steps=6)) == 0
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
 

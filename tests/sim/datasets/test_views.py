@@ -8,6 +8,7 @@ import json
 import os
 import tarfile
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -34,9 +35,9 @@ def scene():
     scene.close()
 
 
-def views_of(scene: Scene, seed: int = 0, count: int = 6, block_px: int = 2) -> list[View]:
+def views_of(scene: Scene, seed: int = 0, count: int = 6, block_px: int = 2, **more: Any) -> list[View]:
     rng = np.random.default_rng(seed)
-    return list(sample_views(scene, rng, count, stem="v", record=RECORD, block_px=block_px))
+    return list(sample_views(scene, rng, count, stem="v", record=RECORD, block_px=block_px, **more))
 
 
 def test_views_are_from_free_space_and_show_the_objects_of_the_house(scene: Scene) -> None:
@@ -54,10 +55,10 @@ def test_views_are_from_free_space_and_show_the_objects_of_the_house(scene: Scen
 
 def test_path_views_follow_one_another_as_a_robot_moves(scene: Scene) -> None:
     """Along a path the headings are multiples of 30 deg from the first one."""
-    from sim.datasets.views import _path_poses
+    from sim.datasets.poses import path_poses
 
     space = scene.task.truth.space(0.0)
-    poses = list(_path_poses(space, np.argwhere(space.largest_part()), np.random.default_rng(3)))
+    poses = list(path_poses(space, np.argwhere(space.largest_part()), np.random.default_rng(3)))
     assert len(poses) > 3
     for before, after in itertools.pairwise(poses):
         turn = np.degrees(after.yaw_rad - before.yaw_rad)

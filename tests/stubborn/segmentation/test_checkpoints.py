@@ -84,6 +84,12 @@ def test_a_truncated_file_is_refused(tmp_path: Path) -> None:
         load_network(file)
 
 
+def test_weights_have_the_permissions_of_any_new_file(tmp_path: Path) -> None:
+    save_network(tmp_path / "net.safetensors", RedNet(TINY))
+    (tmp_path / "other").touch()
+    assert (tmp_path / "net.safetensors").stat().st_mode == (tmp_path / "other").stat().st_mode
+
+
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"No weights at '.*nowhere\.pth'"):
         load_network(tmp_path / "nowhere.pth")

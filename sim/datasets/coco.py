@@ -1,0 +1,76 @@
+"""Objects of a view in the format of COCO: boxes and run-length encoded masks from an image of instances.
+
+The format is that of `pycocotools` and of the libraries that read its files (https://cocodataset.org/#format-data).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.houses.labels import Instance
+from sim.interface import MPCAT40, MPCAT40_ID
+
+STUFF: tuple[str, ...] = ("void", "wall", "floor", "ceiling")
+"""Categories that are surfaces and not objects: they have pixels in the image of instances, but no annotation."""
+CATEGORIES: tuple[dict[str, Any], ...] = tuple(
+    {"id": i, "name": name} for i, name in enumerate(MPCAT40) if name not in STUFF
+)
+"""The categories of COCO files; their ids are those of mpcat40."""
+
+
+def annotate(instance_ids: NDArray[np.uint16], instances: Sequence[Instance]) -> list[dict[str, Any]]:
+    """Returns an annotation for each visible object of a view, without the id of the image.
+
+    Args:
+        instance_ids: (h, w) number of the instance of each pixel, from 1; 0: none.
+        instances: the instances of the house; number `n` is `instances[n - 1]`.
+
+    Returns:
+        For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask.
+    """
+    found = []
+    for number in np.unique(instance_ids[instance_ids > 0]).tolist():
+        instance = instances[number - 1]
+        if instance.category in STUFF:
+            continue
+        mask = instance_ids == number
+        found.append(
+            {
+                "id": number,
+                "name": instance.name,
+                "category_id": MPCAT40_ID[instance.category],
+                "bbox": bounding_box(mask),
+                "area": int(mask.sum()),
+                "iscrowd": 0,
+                "segmentation": encode_mask(mask),
+            }
+        )
+    return found
+
+
+def bounding_box(mask: NDArray[np.bool_]) -> list[int]:
+    """Returns the column and row of the corner of a mask (h, w) that is not empty, its width and its height, pixels."""
+    rows, cols = (np.flatnonzero(mask.any(axis=axis)) for axis in (1, 0))
+    top, left = int(rows[0]), int(cols[0])
+    return [left, top, int(cols[-1]) - left + 1, int(rows[-1]) - top + 1]
+
+
+def encode_mask(mask: NDArray[np.bool_]) -> dict[str, list[int]]:
+    """Returns a mask (h, w) as COCO's uncompressed runs: column by column, first the number of pixels outside."""
+    flat = mask.ravel(order="F")
+    ends = np.flatnonzero(flat[1:] != flat[:-1]) + 1
+    counts = np.diff(np.concatenate(([0], ends, [flat.size]))).tolist()
+    return {"size": [*mask.shape], "counts": [0, *counts] if flat[0] else counts}
+
+
+def decode_mask(segmentation: Mapping[str, Sequence[int]]) -> NDArray[np.bool_]:
+    """Returns the mask (h, w) of the runs that `encode_mask` gives."""
+    counts = np.asarray(segmentation["counts"], np.int64)
+    inside = np.arange(len(counts)) % 2 == 1
+    height, width = segmentation["size"]
+    return np.repeat(inside, counts).reshape((height, width), order="F")
