@@ -164,12 +164,19 @@ class Trainer:
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         second = model.config.second
+        self.val_block_px = args.val_block_px or args.block_px
         sampler = Sampler(
-            camera, args.block_px, Augmentation(), args.window_px, args.whole_share, args.focus_share, second
+            camera,
+            args.block_px,
+            Augmentation(),
+            args.window_px,
+            args.whole_share,
+            args.focus_share,
+            second,
+            used_block_px=self.val_block_px,
         )
         repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
         self.data = ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
-        self.val_block_px = args.val_block_px or args.block_px
         self.stored_block_px = stored_block_px(_all_shards(args.val_views))
         self.val = Samples(
             spread_views(_all_shards(args.val_views), args.val_count),

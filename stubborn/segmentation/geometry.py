@@ -70,7 +70,9 @@ def mirrored(channels: Float32[np.ndarray, "h w 6"]) -> Float32[np.ndarray, "h w
     return flipped
 
 
-def zoomed(channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int) -> Float32[np.ndarray, "rows cols 6"]:
+def zoomed(
+    channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int, enlargement: float
+) -> Float32[np.ndarray, "rows cols 6"]:
     """Returns a window of the channels at another resolution, as seen from a place at which its objects are as large.
 
     A window that is enlarged by a factor shows its objects as from a place that is nearer by this factor, so inverse
@@ -78,5 +80,5 @@ def zoomed(channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int
     the distance.
     """
     resized = cv2.resize(channels, (width_px, height_px), interpolation=cv2.INTER_NEAREST)
-    resized[..., INVERSE_DEPTH] *= width_px / channels.shape[1]
+    resized[..., INVERSE_DEPTH] *= enlargement
     return resized

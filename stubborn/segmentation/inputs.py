@@ -40,9 +40,13 @@ class SecondInput(Protocol):
         ...
 
     def zoomed(
-        self, channels: Float32[np.ndarray, "h w c"], width_px: int, height_px: int
+        self, channels: Float32[np.ndarray, "h w c"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols c"]:
-        """Returns a window at another resolution, with distances for which its objects keep their metric size."""
+        """Returns a window at another resolution, with distances for which its objects keep their metric size.
+
+        `enlargement` is the size of objects in the result relative to their size in the images that the network is
+        made for.
+        """
         ...
 
     def normalised(
@@ -66,11 +70,11 @@ class DepthInput:
         return np.ascontiguousarray(channels[:, ::-1])
 
     def zoomed(
-        self, channels: Float32[np.ndarray, "h w 1"], width_px: int, height_px: int
+        self, channels: Float32[np.ndarray, "h w 1"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols 1"]:
         """Returns a window whose depth is divided by its enlargement."""
         resized = cv2.resize(channels[..., 0], (width_px, height_px), interpolation=cv2.INTER_NEAREST)
-        return (resized * np.float32(channels.shape[1] / width_px))[..., None]
+        return (resized / np.float32(enlargement))[..., None]
 
     def normalised(
         self, channels: Float32[np.ndarray, "h w 1"], camera: CameraModel
@@ -93,10 +97,10 @@ class GeometryInput:
         return geometry.mirrored(channels)
 
     def zoomed(
-        self, channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int
+        self, channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols 6"]:
         """Returns a window whose inverse depth is multiplied by its enlargement."""
-        return geometry.zoomed(channels, width_px, height_px)
+        return geometry.zoomed(channels, width_px, height_px, enlargement)
 
     def normalised(
         self, channels: Float32[np.ndarray, "h w 6"], camera: CameraModel

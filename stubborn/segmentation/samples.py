@@ -73,6 +73,9 @@ class Sampler:
     """Share of the windows that show some pixel of a goal category, each category in the view equally often."""
     second: InputKind = "depth"
     """Kind of the network's second input. It is computed from the whole view, before the window is cut out."""
+    used_block_px: int | None = None
+    """Factor by which views are shrunk where the network is used: the windows' distances are those at which objects are
+    as large in such images. None: as `block_px`."""
 
     def __call__(self, view: LabelledView, rng: np.random.Generator) -> Sample:
         """Returns a sample of a view."""
@@ -84,7 +87,9 @@ class Sampler:
             shown = random_goal_pixel(semantic, rng) if rng.random() < self.focus_share else None
             window = random_window(height, width, self.window_px, self.whole_share, rng, shown=shown)
             rgb, semantic = window.colour(rgb), window.labels(semantic)
-            channels = second.zoomed(channels[window.cut], window.width_px, window.height_px)
+            cut = channels[window.cut]
+            enlargement = window.width_px / cut.shape[1] * (self.used_block_px or self.block_px) / self.block_px
+            channels = second.zoomed(cut, window.width_px, window.height_px, enlargement)
         if augmentation.mirror and rng.random() < 0.5:
             rgb, channels, semantic = _mirrored(rgb), second.mirrored(channels), _mirrored(semantic)
         return (

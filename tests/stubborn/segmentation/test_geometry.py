@@ -74,11 +74,11 @@ def test_mirroring_the_image_is_mirroring_the_channels() -> None:
 def test_a_zoomed_window_shows_its_objects_nearer_and_at_their_height() -> None:
     depth = np.full((48, 64), 3.0, np.float32)
     channels = geometry_image(depth, CameraModel())[:24, :32]
-    near = INPUTS["geometry"].zoomed(channels, 64, 48)
+    near = INPUTS["geometry"].zoomed(channels, 64, 48, 2.0)
     assert near.shape == (48, 64, 6)
     assert near[..., INVERSE_DEPTH] == pytest.approx(2 / 3.0)
     assert near[0, 0, HEIGHT] == channels[0, 0, HEIGHT]
-    assert INPUTS["depth"].zoomed(depth[:24, :32, None], 64, 48) == pytest.approx(1.5)
+    assert INPUTS["depth"].zoomed(depth[:24, :32, None], 64, 48, 2.0) == pytest.approx(1.5)
 
 
 def test_a_crop_and_an_infinite_range_are_refused() -> None:

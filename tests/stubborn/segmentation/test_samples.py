@@ -73,7 +73,7 @@ def test_windows_have_one_size_and_all_positions_and_scales() -> None:
         window = random_window(60, 80, 40, 0.0, np.random.default_rng(seed))
         rgb, semantic = window.colour(np.stack([row, row, row], axis=2)), window.labels(col)
         cut = depth[window.cut]
-        nearer = INPUTS["depth"].zoomed(cut, window.width_px, window.height_px)
+        nearer = INPUTS["depth"].zoomed(cut, window.width_px, window.height_px, 40 / cut.shape[1])
         assert rgb.shape == (30, 40, 3)
         assert (rgb.dtype, nearer.dtype, semantic.dtype) == (np.uint8, np.float32, np.uint8)
         metres = np.round(nearer[..., 0] * (40 / cut.shape[1]))  # half the depth at twice the size
@@ -145,3 +145,13 @@ def test_rotating_the_hue_keeps_greys_and_brightness_and_permutes_primaries_afte
     assert turned[0, 1, 0] == pytest.approx(0.0, abs=1e-3)
     assert turn_hue(image, 0.4).sum(axis=2) == pytest.approx(image.sum(axis=2), rel=1e-5)
     assert turn_hue(turn_hue(image, 0.4), -0.4) == pytest.approx(image, abs=1e-3)
+
+
+def test_a_whole_view_in_training_has_the_distances_of_the_view_that_the_network_will_see() -> None:
+    view, rng = a_view(), np.random.default_rng(0)
+    for block_px in (1, 2):
+        used = Sampler(CameraModel(), block_px)(view, rng)[1]
+        trained = Sampler(CameraModel(), 1, NONE, view.rgb.shape[1] // block_px, 1.0, used_block_px=block_px)(
+            view, rng
+        )[1]
+        assert trained.mean() == pytest.approx(float(used.mean()), abs=0.02)
