@@ -11,6 +11,7 @@ The same command continues a killed run: `state.pt` holds weights, their average
 
 from __future__ import annotations
 
+import copy
 import csv
 import io
 import math
@@ -47,12 +48,14 @@ from stubborn.segmentation.dataset import (
 from stubborn.segmentation.evaluation import Iou, evaluate
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss
+from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
 """Shortest time between two lines that print the loss."""
+NORMALISATION_VIEWS = 320
+"""Number of whole views that give mean and variance of the normalisations of a network trained on windows."""
 MAX_GRADIENT_NORM = 5.0
 SAVE_EVERY_S = 60.0
 """Shortest time between two writes of the state."""
@@ -182,6 +185,11 @@ class Trainer:
             spread_views(_all_shards(args.val_views), args.val_count),
             Sampler(camera, self.val_block_px, second=second),
         )
+        self.whole: Samples | None = None
+        """With windows: whole views of the training, augmented, for the statistics of the normalisation."""
+        if args.window_px is not None:
+            whole = Sampler(camera, self.val_block_px, Augmentation(), second=second)
+            self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), whole)
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
         self.loading_s = 0.0
         """Time since the start of this process in which the step waited for views."""
@@ -262,7 +270,7 @@ class Trainer:
 
     def _evaluate(self) -> None:
         """Evaluates, writes a row, and saves the network if it is the best so far."""
-        averaged: Network = self.average.module  # pyright: ignore[reportAssignmentType] - a module of the same class
+        averaged = self._usable()
         iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
@@ -271,6 +279,14 @@ class Trainer:
         if iou.goals > self.best:
             self.best = iou.goals
             save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou))
+
+    def _usable(self) -> Network:
+        """Returns the averaged network; after training on windows, normalised for whole views."""
+        averaged: Network = copy.deepcopy(self.average.module)  # pyright: ignore[reportAssignmentType] - the same class
+        if self.whole is not None:
+            loader = DataLoader(self.whole, batch_size=16)
+            set_normalisation(averaged, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))
+        return averaged
 
     def _card(self, iou: Iou) -> dict[str, Any]:
         """Returns the metadata of the file of weights."""

@@ -100,17 +100,16 @@ class Sampler:
 
 
 class Samples(Dataset):
-    """A data set of the samples of views in memory, without randomness."""
+    """A data set of the samples of views in memory; the randomness of a sample depends on its place only."""
 
     def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
-        """The sampler must not augment."""
         self._views, self._sampler = views, sampler
 
     def __len__(self) -> int:
         return len(self._views)
 
     def __getitem__(self, i: int) -> Sample:
-        return self._sampler(self._views[i], np.random.default_rng(0))
+        return self._sampler(self._views[i], np.random.default_rng(i))
 
 
 def _mirrored(image: Shaped[np.ndarray, "h w *channels"]) -> Shaped[np.ndarray, "h w *channels"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import torch
 from jaxtyping import Float, Float32, Int64
@@ -52,6 +52,31 @@ def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Te
                 old.copy_(new)
 
     return update
+
+
+def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]) -> None:
+    """Sets mean and variance of all batch normalisations to those of these batches of the two inputs.
+
+    Training on windows leaves those of windows, in which objects are larger and other surfaces frequent than in the
+    whole views that the network is used with. Weights do not change.
+
+    Raises:
+        ValueError: there is no batch.
+    """
+    layers = [layer for layer in model.modules() if isinstance(layer, nn.BatchNorm2d)]
+    momenta, mode, count = [layer.momentum for layer in layers], model.training, 0
+    for layer in layers:
+        layer.reset_running_stats()
+        layer.momentum = None  # the mean over all batches
+    model.train()
+    with torch.no_grad():
+        for count, (rgb, second) in enumerate(batches, start=1):  # noqa: B007
+            model(rgb, second)
+    model.train(mode)
+    for layer, momentum in zip(layers, momenta, strict=True):
+        layer.momentum = momentum
+    if count == 0:
+        raise ValueError("set_normalisation needs at least one batch.")
 
 
 def learning_rate(step: int, total: int, *, peak: float, warmup: int) -> float:

@@ -13,7 +13,7 @@ from sim.interface import CameraModel
 from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.samples import IGNORED, Sampler
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss
+from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -86,3 +86,21 @@ def test_the_average_forgets_the_initial_weights_and_then_changes_slowly() -> No
     torch.nn.init.constant_(network.weight, 2.0)
     average.update_parameters(network)
     assert average.module.get_parameter("weight").item() == pytest.approx(1.001, abs=0.01)
+
+
+def test_the_normalisation_becomes_that_of_the_given_views_and_the_weights_stay() -> None:
+    torch.manual_seed(0)
+    network = RedNet(TINY).eval()
+    before = {name: value.clone() for name, value in network.named_parameters()}
+    batches = [(torch.rand(4, 3, 32, 32) + shift, torch.rand(4, 1, 32, 32)) for shift in (0.0, 2.0)]
+    set_normalisation(network, batches)
+    assert not network.training
+    assert all(torch.equal(value, before[name]) for name, value in network.named_parameters())
+    layer = next(layer for layer in network.modules() if isinstance(layer, torch.nn.BatchNorm2d))
+    assert layer.momentum == 0.1
+    first = network.get_submodule("conv1")
+    means = torch.stack([first(rgb).mean(dim=(0, 2, 3)) for rgb, _ in batches])
+    assert layer.running_mean is not None
+    assert torch.allclose(layer.running_mean, means.mean(dim=0), atol=1e-4)
+    with pytest.raises(ValueError, match="at least one batch"):
+        set_normalisation(network, [])
