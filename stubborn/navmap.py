@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -97,8 +97,8 @@ class NavMap:
 
     def view(self, window: Window) -> NavMap:
         """Returns the part of the map in a window; its layers share memory with this map's."""
-        layers = {f.name: getattr(self, f.name)[window.index] for f in fields(self) if f.name not in ("frame", "known")}
-        return NavMap(frame=window.frame, **layers)
+        index = window.index
+        return NavMap(frame=window.frame, **{name: getattr(self, name)[index] for name in _LAYERS})
 
     def collision_marks(self, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns the marks of a collision layer; without a layer there are none."""

@@ -34,7 +34,15 @@ ROOMS = (
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
 AGENT_ROOMS = (
-    ("stubborn.raster", "stubborn.navmap", "stubborn.canvas", "stubborn.surface_kernels", "stubborn.track_kernels"),
+    (
+        "stubborn.raster",
+        "stubborn.navmap",
+        "stubborn.canvas",
+        "stubborn.surface_kernels",
+        "stubborn.track_kernels",
+        "stubborn.frame_kernels",
+        "stubborn.grid_kernels",
+    ),
     ("stubborn.mapping", "stubborn.segmentation"),
     ("stubborn.planning",),
     ("stubborn.exploration",),

@@ -19,7 +19,12 @@ import math
 import numpy as np
 from jaxtyping import Bool, Float, Float32
 
-from sim.geometry.fast_marching_kernels import advance_first_order, advance_second_order
+from sim.geometry.fast_marching_kernels import (
+    advance_first_order,
+    advance_second_order,
+    frame_problem,
+    unframed,
+)
 
 
 def distances(
@@ -69,11 +74,8 @@ def travel_times(
         Seconds; infinite where there is no path, and where the time was not computed.
     """
     rows, cols = goal.shape
-    cost = np.full((rows + 2, cols + 2), np.inf, np.float32)  # seconds to cross a cell; the frame is impassable
-    np.divide(np.float32(cell_m), speed, out=cost[1:-1, 1:-1], where=passable, casting="same_kind")
-    time = np.full(cost.shape, np.inf)
-    time[1:-1, 1:-1][goal & passable] = 0.0
-    target = -1 if until is None else (until[0] + 1) * cost.shape[1] + until[1] + 1
+    cost, time = np.empty((rows + 2, cols + 2), np.float32), np.empty((rows + 2, cols + 2))
+    frame_problem(goal, passable, speed, np.float32(cell_m), cost, time)
+    target = -1 if until is None else (until[0] + 1) * (cols + 2) + until[1] + 1
     limit = advance_first_order(cost.reshape(-1), time.reshape(-1), cols + 2, 0.5 * cell_m, limit_m, target, beyond_m)
-    inner = time[1:-1, 1:-1]
-    return np.where(inner <= limit, inner, np.inf).astype(np.float32)
+    return unframed(time, limit)

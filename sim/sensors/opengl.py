@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
 from sim.gl import INSTALL_HINT, begin_rendering, mujoco
 from sim.interface import CameraModel
+from sim.sensors.image_kernels import look_up_ids, to_metres
 from sim.sensors.profiles import RenderProfile
 
 Z_NEAR_M = 0.05
@@ -17,8 +17,6 @@ Z_FAR_M = 80.0
 """Far plane: beyond the diagonal of the largest house."""
 DEPTH_SLOPE, DEPTH_OFFSET = (Z_FAR_M - Z_NEAR_M) / (Z_FAR_M * Z_NEAR_M), 1.0 / Z_FAR_M
 """The depth in metres of a reversed depth buffer is 1 / (DEPTH_SLOPE * value + DEPTH_OFFSET)."""
-_BLOCK_ROWS = 32
-"""Rows of a depth image that are converted together, so that they stay in the processor's cache."""
 
 
 def make_gl_context(camera: CameraModel) -> mujoco.GLContext:
@@ -93,13 +91,9 @@ def look_up(color_buffer: NDArray[np.uint8], table: NDArray) -> NDArray:
         color_buffer: (h, w, 3), the bottom row first; red is the low byte of the index, green the high byte.
         table: entry of each index.
     """
-    if len(table) <= 256 and table.dtype == np.uint8:
-        red = cv2.flip(cv2.extractChannel(color_buffer, 0), 0)
-        return np.asarray(cv2.LUT(red, np.pad(table, (0, 256 - len(table)))), np.uint8)
-    numbers = color_buffer[::-1, :, 0].astype(np.uint16)
-    if len(table) > 256:
-        numbers |= color_buffer[::-1, :, 1].astype(np.uint16) << 8
-    return table[numbers]
+    image = np.empty(color_buffer.shape[:2], table.dtype)
+    look_up_ids(color_buffer, table, image)
+    return image
 
 
 def metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np.float32]:
@@ -110,12 +104,6 @@ def metric_depth(buffer: NDArray[np.float32], camera: CameraModel) -> NDArray[np
         camera: its depth range counts.
     """
     depth_m = np.empty_like(buffer)
-    for row in range(0, len(buffer), _BLOCK_ROWS):
-        block, raw = depth_m[row : row + _BLOCK_ROWS], buffer[::-1][row : row + _BLOCK_ROWS]
-        np.multiply(raw, np.float32(DEPTH_SLOPE), out=block)
-        block += np.float32(DEPTH_OFFSET)
-        np.reciprocal(block, out=block)
-        np.minimum(block, np.float32(camera.max_depth_m), out=block)
-        block *= block >= camera.min_depth_m
-        block *= raw > 0.0  # 0: no geom was rendered there
+    slope, offset = np.float32(DEPTH_SLOPE), np.float32(DEPTH_OFFSET)
+    to_metres(buffer, slope, offset, np.float32(camera.min_depth_m), np.float32(camera.max_depth_m), depth_m)
     return depth_m

@@ -170,9 +170,9 @@ class World:
 
     def _require_finite(self) -> None:
         """Raises a PhysicsError when MuJoCo gave a warning, or a position is not finite."""
-        for kind, warning in enumerate(self.data.warning):
-            if warning.number:
-                raise self._physics_error(mujoco.mju_warningText(kind, int(warning.lastinfo)))
+        warnings = self.data.warning
+        for kind in np.flatnonzero(warnings.number).tolist():
+            raise self._physics_error(mujoco.mju_warningText(kind, int(warnings.lastinfo[kind])))
         if not np.isfinite(self.data.qpos).all():
             raise self._physics_error("a position is not finite.")
 

@@ -90,7 +90,7 @@ def square_ahead(
     that no heading leaves a hole.
     """
     middle_xy_m = pose.ahead(near_edge_m + 0.5 * edge_m)
-    patch = frame.patch(middle_xy_m[0], middle_xy_m[1], edge_m)
+    patch = frame.patch(middle_xy_m[:1], middle_xy_m[1:], edge_m)
     x_m, y_m = patch.frame.mesh()
     cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     ahead_m = cos * (x_m - pose.x_m) + sin * (y_m - pose.y_m)

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from stubborn.frame_kernels import highest_scores
 from stubborn.navmap import NavMap
 
 
@@ -33,20 +34,14 @@ class FrameScores:
         other: Float32[np.ndarray, " n"],
     ) -> None:
         """`flat` is the row-major cell of each pixel; `target` and `other` are its scores in [0, 1]."""
-        self.in_view: Bool[np.ndarray, "rows cols"] = np.zeros(shape, np.bool_)
+        in_view, highest, other_of = np.zeros(shape, np.bool_), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+        highest_scores(flat, target, other, in_view.reshape(-1), highest.reshape(-1), other_of.reshape(-1))
+        self.in_view: Bool[np.ndarray, "rows cols"] = in_view
         """True where a pixel lies."""
-        self.in_view.reshape(-1)[flat] = True
-        self.target: Float32[np.ndarray, "rows cols"] | None = None
+        self.target: Float32[np.ndarray, "rows cols"] | None = highest if (target > 0).any() else None
         """Highest score of the target; 0 out of view. None: 0 everywhere."""
-        hit = target > 0
-        if hit.any():
-            self.target = np.zeros(shape, np.float32)
-            np.maximum.at(self.target.reshape(-1), flat[hit], target[hit])
-            speaks = target == self.target.reshape(-1)[flat]
-            flat, other = flat[speaks], other[speaks]
-        self.other: Float32[np.ndarray, "rows cols"] = np.zeros(shape, np.float32)
+        self.other: Float32[np.ndarray, "rows cols"] = other_of
         """Highest score of any other category where the target's is highest; 0 out of view."""
-        np.maximum.at(self.other.reshape(-1), flat, other)
 
 
 class AllFrames:

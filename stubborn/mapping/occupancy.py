@@ -18,6 +18,7 @@ from jaxtyping import Bool, Float32, Int, Int8, UInt8
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
+from stubborn.frame_kernels import smooth_surfaces
 from stubborn.navmap import NavMap
 
 
@@ -57,39 +58,45 @@ class Surfaces:
 
     depth: Float32[np.ndarray, "h w"]
     """Metres: the mean of a pixel and those of its eight neighbours that lie on one surface with it."""
-    neighbours: UInt8[np.ndarray, "h w"]
-    """Number of these neighbours."""
-    exact: bool
-    """True: the image shows no noise, so that every pixel counts."""
+    neighbours: UInt8[np.ndarray, "h w"] | None
+    """Number of these neighbours; None: the image shows no noise, so that every pixel counts."""
 
     @classmethod
     def of(cls, depth: Float32[np.ndarray, "h w"], config: OccupancyConfig) -> Surfaces:
         """Returns the surfaces of an image in metres, where 0 is no distance."""
-        scaled = depth * np.float32(config.jump_1_m)
-        total, count = depth.copy(), np.zeros(depth.shape, np.uint8)
-        for ahead, behind in _NEIGHBOUR_PAIRS:
-            a, b = depth[ahead], depth[behind]
-            gap = b - a
-            # |1/a - 1/b| < jump, without a division; never true where one of them is 0.
-            same = np.abs(gap) < scaled[ahead] * b
-            gap *= same
-            count[ahead] += same
-            count[behind] += same
-            total[ahead] += gap  # sums of differences from the pixel itself
-            total[behind] -= gap
-        total -= depth
-        total /= count + np.float32(1.0)
-        some = count[::4, ::4] > 0
-        if not some.any():
-            return cls(depth, count, exact=False)
-        rough_1_m = np.median(np.abs(total[::4, ::4][some]) / np.square(depth[::4, ::4][some]))
-        # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
-        exact = bool(rough_1_m < config.exact_1_m)
-        return cls(depth if exact else total + depth, count, exact)
+        change, count = _smoothed(depth, config, every=4)
+        some = count > 0
+        if some.any():
+            rough_1_m = np.median(np.abs(change[some]) / np.square(depth[::4, ::4][some]))
+            # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
+            if rough_1_m < config.exact_1_m:
+                return cls(depth, None)
+        change, count = _smoothed(depth, config, every=1)
+        return cls(change + depth if some.any() else depth, count)
+
+    @property
+    def exact(self) -> bool:
+        """True: the image shows no noise."""
+        return self.neighbours is None
 
     def confirmed(self, least: int) -> Bool[np.ndarray, "h w"]:
         """Returns True where a pixel has so many neighbours on its surface; everywhere in an exact image."""
-        return self.neighbours >= (0 if self.exact else least)
+        if self.neighbours is None:
+            return np.ones(self.depth.shape, np.bool_)
+        return self.neighbours >= least
+
+
+def _smoothed(
+    depth: Float32[np.ndarray, "h w"], config: OccupancyConfig, every: int
+) -> tuple[Float32[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
+    """Returns the mean of a pixel and its neighbours on one surface with it, less the pixel, and their number.
+
+    Only every so many rows and columns are computed.
+    """
+    shape = -(-depth.shape[0] // every), -(-depth.shape[1] // every)
+    change, count = np.empty(shape, np.float32), np.empty(shape, np.uint8)
+    smooth_surfaces(np.ascontiguousarray(depth), np.float32(config.jump_1_m), every, change, count)
+    return change, count
 
 
 def agreeing(
@@ -99,20 +106,12 @@ def agreeing(
 
     `depth` is in metres, 0 where there is no distance; such neighbours do not count.
     """
-    known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     surfaces = Surfaces.of(depth, config)
-    same = surfaces.neighbours
-    most = (2 * same + 1 >= np.asarray(known)) | surfaces.exact
+    if surfaces.neighbours is None:
+        return np.ones(depth.shape, np.bool_), surfaces.depth
+    known = cv2.boxFilter((depth > 0).view(np.uint8), -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
+    most = 2 * surfaces.neighbours + 1 >= np.asarray(known)
     return surfaces.confirmed(config.neighbours) & most, surfaces.depth
-
-
-_ALL, _FIRST, _LAST = slice(None), slice(None, -1), slice(1, None)
-_NEIGHBOUR_PAIRS = (
-    ((_LAST, _ALL), (_FIRST, _ALL)),
-    ((_ALL, _LAST), (_ALL, _FIRST)),
-    ((_LAST, _LAST), (_FIRST, _FIRST)),
-    ((_LAST, _FIRST), (_FIRST, _LAST)),
-)
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from jaxtyping import Bool, Float32, Int32
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel
+from stubborn.frame_kernels import ground_points
 
 
 @dataclass(frozen=True)
@@ -58,18 +59,22 @@ class Rays:
 
         The window must contain everything in range: see `sight_window_cells`.
         """
-        valid = confirmed & (d >= self.camera.min_depth_m) & (d < self.camera.max_depth_m)
         cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
-        frame = window.frame
+        frame, camera = window.frame, self.camera
         x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
         y_cells = np.float32((camera_pose.y_m - frame.origin_xy_m[1]) / frame.cell_m)
         x_slope = ((cos - sin * self.left) / frame.cell_m).astype(np.float32)
         y_slope = ((sin + cos * self.left) / frame.cell_m).astype(np.float32)
-        # Positive throughout the window, so truncation is floor.
-        cols = (d * x_slope + x_cells)[valid].astype(np.int32)
-        rows = (d * y_slope + y_cells)[valid].astype(np.int32)
-        height_m = (d * self.up[:, None] + np.float32(self.camera.height_m))[valid]
-        return GroundPoints(valid, rows, cols, height_m)
+        camera_m, near_m, far_m = (
+            np.float32(distance_m) for distance_m in (camera.height_m, camera.min_depth_m, camera.max_depth_m)
+        )
+        valid = np.empty(d.shape, np.bool_)
+        rows, cols, height_m = np.empty(d.size, np.int32), np.empty(d.size, np.int32), np.empty(d.size, np.float32)
+        n = ground_points(
+            d, confirmed, x_slope, y_slope, x_cells, y_cells, self.up, camera_m, near_m, far_m, valid, rows, cols,
+            height_m,
+        )  # fmt: skip
+        return GroundPoints(valid, rows[:n], cols[:n], height_m[:n])
 
 
 def sight_window_cells(camera: CameraModel, cell_m: float) -> int:

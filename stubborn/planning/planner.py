@@ -12,6 +12,7 @@ from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, ConfigError
+from stubborn.grid_kernels import distance_within
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import ProvenGround
 from stubborn.raster import connected, distance_to
@@ -58,7 +59,7 @@ class FreeSpace:
     traversable: Bool[np.ndarray, "rows cols"]
     """True: outside dilated obstacles, or proven free by the robot's own trail."""
     clearance_m: Float32[np.ndarray, "rows cols"]
-    """Distance from each cell's centre to that of the nearest obstacle cell, before dilation."""
+    """Distance from each cell's centre to that of the nearest obstacle cell, before dilation; cut off where large."""
     reachable: Bool[np.ndarray, "rows cols"]
     """True: traversable and connected to the robot's cell (4-neighbourhood)."""
     speed: Float32[np.ndarray, "rows cols"]
@@ -130,7 +131,7 @@ class Planner:
         )
         # An obstacle cell under the robot is a cell that the obstacle only just enters.
         obstacles[own_index][own] = False
-        clearance_m = distance_to(obstacles) * np.float32(view.frame.cell_m)
+        clearance_m = distance_within(obstacles, self._reach_cells(view.frame)) * np.float32(view.frame.cell_m)
         traversable = clearance_m > self.config.dilation_m + 1e-4
         traversable |= self.proven_ground(view).centre
         traversable[own_index] |= own
@@ -140,6 +141,11 @@ class Planner:
         if costly is not None:
             speed[costly] *= self.config.unseen_speed
         return FreeSpace(view.frame, traversable, clearance_m, reachable, speed)
+
+    def _reach_cells(self, frame: GridFrame) -> int:
+        """Returns the distance to obstacles beyond which no cost and no rule depends on it."""
+        c = self.config
+        return math.ceil(max(c.dilation_m, c.clearance_m, c.preferred_clearance_m) / frame.cell_m) + 2
 
     def route(self, goal: Goal, pose: Pose) -> Route | None:
         """Returns the route to the nearest goal cell by travel time.

@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float32, Float64
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, wrap_angle
+from stubborn.grid_kernels import bilinear, sweep
 from stubborn.planning.planner import FreeSpace, PlanningConfig, Route
 from stubborn.raster import connected
 
@@ -93,14 +94,10 @@ def _sweep(
     A robot that is already nearer than the safety distance may leave, but not come nearer still.
     """
     along_m = np.arange(1, 11)[:, None] * (length_m / 10)
-    x_m, y_m = pose.x_m + along_m * np.cos(yaw_rad), pose.y_m + along_m * np.sin(yaw_rad)
-    rows, cols = free.frame.cells(x_m, y_m)  # (10, directions)
-    inside = free.frame.contains(rows, cols)
-    rows, cols = np.clip(rows, 0, free.frame.shape[0] - 1), np.clip(cols, 0, free.frame.shape[1] - 1)
-    here_m = free.clearance_m[free.frame.cell(pose.x_m, pose.y_m)]
-    clearance_m = free.clearance_m[rows, cols]
-    clear = free.traversable[rows, cols] | (clearance_m >= max(here_m, free.frame.cell_m))
-    return np.asarray((clear & inside).all(axis=0)), clearance_m.min(axis=0)
+    x_m, y_m = pose.x_m + along_m * np.cos(yaw_rad), pose.y_m + along_m * np.sin(yaw_rad)  # (10, directions)
+    frame = free.frame
+    least_m = np.float32(max(free.clearance_m[frame.cell(pose.x_m, pose.y_m)], frame.cell_m))
+    return sweep(free.traversable, free.clearance_m, least_m, *frame.origin_xy_m, frame.cell_m, x_m, y_m)
 
 
 def _lowest_neighbour(distance_m: Float32[np.ndarray, "rows cols"], row: int, col: int) -> tuple[int, int]:
@@ -128,19 +125,4 @@ def _interpolate(
 
     The value is infinite where that of the point's own cell is.
     """
-    fc = (x_m - frame.origin_xy_m[0]) / frame.cell_m - 0.5
-    fr = (y_m - frame.origin_xy_m[1]) / frame.cell_m - 0.5
-    c0, r0 = np.floor(fc).astype(int), np.floor(fr).astype(int)
-    total, weight = np.zeros(len(x_m)), np.zeros(len(x_m))
-    for dr in (0, 1):
-        for dc in (0, 1):
-            r = np.clip(r0 + dr, 0, frame.shape[0] - 1)
-            c = np.clip(c0 + dc, 0, frame.shape[1] - 1)
-            share = np.abs(1 - dr - (fr - r0)) * np.abs(1 - dc - (fc - c0))
-            finite = np.isfinite(values[r, c])
-            total += np.where(finite, share * np.where(finite, values[r, c], 0.0), 0.0)
-            weight += np.where(finite, share, 0.0)
-    rows, cols = frame.cells(x_m, y_m)
-    known = frame.contains(rows, cols) & (weight > 1e-6)
-    known[known] = np.isfinite(values[rows[known], cols[known]])
-    return np.where(known, total / np.maximum(weight, 1e-9), np.inf)
+    return bilinear(values, *frame.origin_xy_m, frame.cell_m, x_m, y_m)

@@ -159,10 +159,10 @@ class TargetSeeker:
         if step >= self._retry_step:
             navmap.view(whole).set_aside[:] = False
         parts = self.parts(navmap)
-        candidates = self._candidates(navmap, parts)
-        if not candidates.any():
+        if not (parts.mask & ~navmap.set_aside[whole.index]).any():
             self._far, self._pursued = False, None
             return None
+        candidates = self._candidates(navmap, parts)
         acceptable = self._acceptable(navmap, parts) if self.verifier.may_refuse else None
         for choice in self._choices(candidates, acceptable, window, whole, step):
             found = approach_on(navmap.view(choice.part), choice.candidates, pose, self._viewpoints, choice.last_resort)
