@@ -21,7 +21,8 @@ def crossing(
 ) -> tuple[float, float]:
     """Returns where a ray in plan from the eye enters and leaves a box, in lengths of the ray.
 
-    The ray misses the box where it leaves before it enters. A ray parallel to a side is turned by a tiny angle, so that it still crosses the box.
+    The ray misses the box where it leaves before it enters. A ray parallel to a side is turned by a tiny angle, so that
+    it still crosses the box.
     """
     ax, ay = axis[box, 0], axis[box, 1]
     ox, oy = centre[box, 0] - eye_m[0], centre[box, 1] - eye_m[1]
