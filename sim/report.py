@@ -1,15 +1,18 @@
-"""Writes the report of a run, or of two runs side by side, as one HTML page.
+"""Writes the report of a run, or of several runs side by side, as one HTML page.
 
-    python -m sim.report runs/mine                 # writes runs/mine/report.html
-    python -m sim.report runs/before runs/after    # writes runs/after/report_against_before.html
+    python -m sim.report runs/mine                         # writes runs/mine/report.html
+    python -m sim.report runs/before runs/after            # writes runs/after/report_against_before.html
+    python -m sim.report runs/may runs/june runs/july      # writes runs/july/report_of_3_runs.html
 
-For a run with `--record` it has a picture of each episode. No episode is run again; the page needs no network.
+For a run with `--record` it has a plan and a picture of each episode, with `--video` its video. No episode is run
+again; the page needs no network.
 """
 
 from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,43 +21,45 @@ import tyro
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import read_run
-from sim.analysis.report.build import build_page
+from sim.analysis.report.build import MOST_RUNS, build_page
+from sim.errors import ConfigError
 from sim.files import require_writable, write_atomically
 
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Write the report of a run, or of two runs of the same episodes, as one HTML page."""
+    """Write the report of a run, or of several runs of the same episodes, as one HTML page."""
 
-    run: tyro.conf.Positional[Path]
-    """Folder of a run."""
-    other: tyro.conf.Positional[Path | None] = None
-    """Folder of another run of the same episodes, which is compared with the first."""
+    runs: tyro.conf.Positional[tuple[Path, ...]]
+    """Folders of runs; differences are from the first one. Three or more are also shown as a trend, in this order."""
     out: cli.OutFile | None = None
-    """The page (RUN/report.html, or OTHER/report_against_RUN.html)."""
+    """The page (RUN/report.html; of several runs LAST/report_against_FIRST.html or LAST/report_of_3_runs.html)."""
 
 
 def main(args: Args) -> int:
     """Reads the runs and writes the page; returns the exit status."""
-    runs = [read_run(args.run), *([read_run(args.other)] if args.other is not None else [])]
-    out = args.out or _default_out(args)
+    if not 1 <= len(args.runs) <= MOST_RUNS:
+        raise ConfigError(f"Give 1 to {MOST_RUNS} folders of runs, got {len(args.runs)}.")
+    runs = [read_run(path) for path in args.runs]
+    out = args.out or _default_out(args.runs)
     require_writable(out, name="--out", folder=False)
-    paths = [str(path) for path in (args.run, args.other) if path is not None]
     console = display.make_console()
     console.print(
         f"{max(len(run.lines) for run in runs)} episodes; each house takes about a second, each goal in it a tenth."
     )
-    page = build_page(runs, out_folder=out.parent, command=shlex.join(["python", "-m", "sim.report", *paths]))
-    write_atomically(out, page)
+    command = shlex.join(["python", "-m", "sim.report", *map(str, args.runs)])
+    write_atomically(out, build_page(runs, out_folder=out.parent, command=command))
     message = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
     console.print(message, highlight=False, markup=False, soft_wrap=True)
     return 0
 
 
-def _default_out(args: Args) -> Path:
-    if args.other is None:
-        return args.run / "report.html"
-    return args.other / f"report_against_{args.run.resolve().name}.html"
+def _default_out(runs: Sequence[Path]) -> Path:
+    if len(runs) == 1:
+        return runs[0] / "report.html"
+    if len(runs) == 2:
+        return runs[1] / f"report_against_{runs[0].resolve().name}.html"
+    return runs[-1] / f"report_of_{len(runs)}_runs.html"
 
 
 if __name__ == "__main__":

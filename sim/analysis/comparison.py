@@ -1,4 +1,4 @@
-"""Reads runs, checks that two runs have the same episodes, and lists the fields in which their configurations differ.
+"""Reads runs, checks that they have the same episodes, and lists the fields in which their configurations differ.
 
 Two agents that played the same episodes differ less by chance than their separate intervals suggest: houses, goals and
 starts are the same. So differences are taken in each episode (`sim.evaluation.bootstrap.paired_difference`).
@@ -24,6 +24,8 @@ __all__ = [
 ]  # fmt: skip
 
 Line = Mapping[str, Any]
+LETTERS = "ABCDEFGHIJKL"
+"""Names of the runs that are compared, the first one `A`."""
 SAME_PATH_M = 0.05
 """Largest difference of the same shortest path measured by two versions of the code: one cell."""
 
@@ -76,22 +78,38 @@ def config_differences(first: Run, second: Run) -> list[Difference]:
     return [difference for difference in found if difference[0].partition(".")[0] not in WITHOUT_EFFECT]
 
 
-def differences_table(first: Run, second: Run) -> ResultTable:
-    """Returns a table of the fields of config.json in which two runs, A and B, differ."""
-    rows = [(path, [field_text(a), field_text(b)]) for path, a, b in config_differences(first, second)]
-    notes = () if rows else ("The configurations are equal.",)
-    return ResultTable("fields", "Fields in which the runs differ", ("field", "A", "B"), rows, notes)
+def differences_table(first: Run, *others: Run) -> ResultTable:
+    """Returns a table of the fields of config.json in which runs, A, B and so on, differ from the first one."""
+    values: dict[str, list[str]] = {}
+    for number, other in enumerate(others, start=1):
+        for path, a, b in config_differences(first, other):
+            values.setdefault(path, [field_text(a)] * (1 + len(others)))[number] = field_text(b)
+    notes = () if values else ("The configurations are equal.",)
+    header = ("field", *LETTERS[: 1 + len(others)])
+    return ResultTable("fields", "Fields in which the runs differ", header, sorted(values.items()), notes)
 
 
-def require_same_episodes(first: Run, second: Run) -> list[str]:
-    """Returns the ids of the episodes that two runs share, in the order of the first run.
+def require_same_episodes(first: Run, *others: Run) -> list[str]:
+    """Returns the ids of the episodes that all runs share, in the order of the first run.
 
     Episodes drawn in one house (`sim.run --house`) have the same ids for every seed. So house, goal and shortest path
     must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
 
     Raises:
-        ConfigError: the runs are of different splits, share no episode, or share only ids of episodes.
+        ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of
+            episodes; or no episode is in all runs.
     """
+    common = list(first.lines)
+    for other in others:
+        shared = set(_shared_episodes(first, other))
+        common = [episode_id for episode_id in common if episode_id in shared]
+    if not common:
+        raise ConfigError(f"No episode is in all of the {1 + len(others)} runs.")
+    return common
+
+
+def _shared_episodes(first: Run, second: Run) -> list[str]:
+    """Returns the episodes of two runs; see `require_same_episodes`."""
     identities = [run.config.get("split_identity", {}) for run in (first, second)]
     if identities[0] != identities[1]:
         named = " and ".join(f"{i.get('name')} {i.get('version')} ({str(i.get('sha256'))[:8]})" for i in identities)

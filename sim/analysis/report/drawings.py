@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from sim.analysis.report.words import marks
 from sim.configuration import with_fields
 from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import EpisodeError, HouseError
-from sim.houses.house import House
+from sim.houses.house import House, read_rooms
 from sim.interface import CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
@@ -73,6 +73,8 @@ class Drawings:
     """The area where a STOP succeeds, by plan and goal."""
     episodes: dict[str, Any] = field(default_factory=dict)
     """By id: the names of plan and area, the shortest path, and a path for each run."""
+    house_m2: dict[str, float | None] = field(default_factory=dict)
+    """Floor area of all rooms of each house; None where the house declares none."""
 
     def add(
         self, runs: Sequence[Run], episode_id: str, trajectories: Sequence[Trajectory | None], truth: HouseTruth
@@ -121,25 +123,33 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
     Episodes in houses that do not exist any more, or have changed, are drawn without a plan.
     """
     drawings, problems = Drawings(), []
-    recorded = [i for i, of_runs in trajectories.items() if any(trajectory is not None for trajectory in of_runs)]
-    if not recorded:
-        return drawings, problems
     split, robot = None, None
     try:
         split, robot = split_of(runs[0]), _robot_of(runs[0])
     except (ConfigError, HouseError, KeyError) as error:
-        problems.append(f"The houses are not drawn: {error}")
-    truth: HouseTruth = None
-    house = None
-    for episode_id in sorted(recorded, key=lambda i: str(runs[0].lines[i]["house"])):
-        if house != (house := str(runs[0].lines[episode_id]["house"])) and split is not None:
+        problems.append(f"The houses are not drawn, and their sizes are unknown: {error}")
+    for house, episode_ids in _by_house(runs[0], trajectories).items():
+        recorded = [i for i in episode_ids if any(trajectory is not None for trajectory in trajectories[i])]
+        truth: HouseTruth = None
+        if split is not None:
             try:
-                truth = ground_truth_of(runs[0], split.load_house(house), robot)
+                loaded = split.load_house(house)
+                truth = ground_truth_of(runs[0], loaded, robot) if recorded else None
+                rooms = truth.world.rooms if truth is not None else read_rooms(loaded.spec.copy().compile())
+                drawings.house_m2[house] = sum(room.area_m2 for room in rooms) or None
             except (ConfigError, HouseError) as error:
-                truth = None
-                problems.append(f"House '{house}' is not drawn: {error}")
-        drawings.add(runs, episode_id, trajectories[episode_id], truth)
+                problems.append(f"House '{house}' is not drawn, and its size is unknown: {error}")
+        for episode_id in recorded:
+            drawings.add(runs, episode_id, trajectories[episode_id], truth)
     return drawings, problems
+
+
+def _by_house(run: Run, episode_ids: Iterable[str]) -> dict[str, list[str]]:
+    """Returns the episodes of each house, houses by name."""
+    houses: dict[str, list[str]] = {}
+    for episode_id in sorted(episode_ids, key=lambda i: str(run.lines[i]["house"])):
+        houses.setdefault(str(run.lines[episode_id]["house"]), []).append(episode_id)
+    return houses
 
 
 def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) -> GroundTruth:
@@ -178,12 +188,6 @@ def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[st
         "seen": list(_spans(trajectory.goal_share >= EXPLORED_SHARE)),
         "robot": round(radius_m * PX_M),
     }
-
-
-def video_of(run: Run, episode_id: str) -> Path | None:
-    """Returns the video of an episode, None if there is none."""
-    file = run.path / "videos" / f"{trajectory_file(Path(), episode_id).stem}.mp4"
-    return file if file.is_file() else None
 
 
 def _marks(run: Run, episode_id: str, trajectory: Trajectory) -> list[list[Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
@@ -79,24 +79,35 @@ class Group:
     name: str
     shares: Sequence[Proportion]
     """One for each run."""
-    difference: Cell | None
-    """Second minus first, in percent of the pairs; None for one run."""
+    differences: Sequence[Cell]
+    """One for each run after the first: that run minus the first, in percent of the pairs."""
     note: str = ""
 
 
 Runs = Sequence[Sequence[Line]]
-"""The lines of each run; two runs have the same episodes in the same order."""
+"""The lines of each run; all have the same episodes in the same order."""
 
 
 def groups(runs: Runs, key: str) -> list[Group]:
     """Returns the success by goal category (in the order of the contract) or by house (by name)."""
-    names = {str(line[key]) for line in runs[0]}
-    order = [*(goal for goal in GOAL_CATEGORIES if goal in names), *sorted(names.difference(GOAL_CATEGORIES))]
+    names = [str(line[key]) for line in runs[0]]
+    order = [goal for goal in GOAL_CATEGORIES if goal in names]
+    return grouped(runs, names, [*order, *sorted(set(names).difference(order))])
+
+
+def grouped(runs: Runs, names: Sequence[str], order: Sequence[str]) -> list[Group]:
+    """Returns the success by group.
+
+    Args:
+        runs: the lines of each run.
+        names: the group of each episode.
+        order: the groups to return; those without an episode are left out.
+    """
     found = []
-    for name in order:
-        some = [[line for line in lines if line[key] == name] for lines in runs]
+    for name in (name for name in order if name in names):
+        some = [[line for line, of in zip(lines, names, strict=True) if of == name] for lines in runs]
         shares = [wilson(sum(bool(line["success"]) for line in lines), len(lines)) for lines in some]
-        found.append(Group(name, shares, SUCCESS.difference(*some) if len(runs) == 2 else None))
+        found.append(Group(name, shares, differences(SUCCESS, some)))
     return found
 
 
@@ -108,10 +119,10 @@ def causes(runs: Runs) -> list[Group]:
     for cause in [*(cause for cause in CAUSES if cause in known), *sorted(known.difference(CAUSES))]:
         failed = [[float(name == cause) for name in names] for names in outcomes]
         shares = [_proportion(values, houses) for values in failed]
-        difference = None
-        if len(runs) == 2:
-            difference = Cell(paired_difference(failed[0], failed[1], houses), percent=True, difference=True)
-        found.append(Group(cause, shares, difference, MEANING.get(cause, _OTHER.get(cause, ""))))
+        against = [
+            Cell(paired_difference(failed[0], values, houses), percent=True, difference=True) for values in failed[1:]
+        ]
+        found.append(Group(cause, shares, against, MEANING.get(cause, _OTHER.get(cause, ""))))
     return sorted(found, key=lambda group: -sum(share.count for share in group.shares))
 
 
@@ -124,9 +135,14 @@ def _proportion(values: Sequence[float], houses: Sequence[str]) -> Proportion:
 _OTHER = {"error": "The episode ended with an error.", "failed": "No cause was recorded."}
 
 
-def means(runs: Runs) -> list[tuple[Metric, list[Cell]]]:
-    """Returns for each metric its mean in each run and, for two runs, the paired difference."""
-    return [(metric, [*map(metric.cell, runs), *_differences(metric, runs)]) for metric in METRICS]
+def means(runs: Runs) -> list[tuple[Metric, list[Cell], list[Cell]]]:
+    """Returns for each metric its mean in each run, and the paired differences of the others from the first run."""
+    return [(metric, [metric.cell(lines) for lines in runs], differences(metric, runs)) for metric in METRICS]
+
+
+def differences(metric: Metric, runs: Runs) -> list[Cell]:
+    """Returns the paired difference of each run after the first: that run minus the first."""
+    return [metric.difference(runs[0], lines) for lines in runs[1:]]
 
 
 def verdict(difference: Estimate) -> str:
@@ -148,7 +164,3 @@ def interval_note(runs: Runs) -> str:
             "nothing about other houses."
         )
     return "95 % bootstrap intervals: houses are resampled, then the episodes of each house."
-
-
-def _differences(metric: Metric, runs: Runs) -> Iterable[Cell]:
-    return [metric.difference(*runs)] if len(runs) == 2 else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import itertools
 import json
 import re
@@ -16,19 +17,23 @@ import pytest
 
 from sim import run
 from sim.analysis.comparison import Run, read_run
-from sim.analysis.report.build import command_of
 from sim.analysis.report.drawings import ground_truth_of, path_on, split_of
+from sim.analysis.report.facts import command_of
 from sim.analysis.report.figures import wilson
 from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
 from sim.analysis.report.words import explain, marks
+from sim.evaluation.last_view import picture_file
 from sim.interface import ConfigError
+from sim.reading import image_size_px
 from sim.report import Args, main
 from sim.task.ground_truth import GroundTruth
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, write_trajectory
+from sim.viewers.video import VideoWriter, video_file
 from sim.world.world import World
 from tests.helpers.browser import ENTER, Browser, missing
 from tests.helpers.worlds import room, two_storeys, with_box
 
+MINUS = "\N{MINUS SIGN}"
 HOSTILE = "</script><img src=x onerror=alert(1)> & \"' {{ 7*7 }}"
 
 
@@ -74,7 +79,7 @@ def _rewrite(file: Path, **changed: Any) -> None:
 
 def _page(*folders: Path) -> str:
     out = folders[-1] / "page.html"
-    assert main(Args(run=folders[0], other=folders[1] if len(folders) > 1 else None, out=out)) == 0
+    assert main(Args(runs=folders, out=out)) == 0
     return out.read_text()
 
 
@@ -214,17 +219,33 @@ def test_videos_are_linked_from_where_the_page_lies_and_only_those_that_are_ther
     (tmp_path / "a run" / "videos" / f"{episode_id}.mp4").touch()
     (tmp_path / "pages").mkdir()
     out = tmp_path / "pages" / "p.html"
-    main(Args(run=tmp_path / "a run", out=out))
+    main(Args(runs=(tmp_path / "a run",), out=out))
     videos = {episode["id"]: episode["videos"][0] for episode in _data(out.read_text())["episodes"]}
     assert videos.pop(episode_id) == f"../a%20run/videos/{episode_id}.mp4"
     assert set(videos.values()) == {None}
+
+
+def test_the_last_picture_is_linked_and_its_thumbnail_is_part_of_the_page(played: Path, tmp_path: Path) -> None:
+    shutil.copytree(played / "found", tmp_path / "run")
+    first, second, *_ = [line["episode_id"] for line in _lines(tmp_path / "run")]
+    picture_file(tmp_path / "run", first).write_bytes(b"rubbish")
+    picture_file(tmp_path / "run", second).unlink()
+    page = _page(tmp_path / "run")
+    episodes = _data(page)["episodes"]
+    assert [episode["thumbs"][0] is None for episode in episodes] == [True, True, False, False]
+    assert episodes[2]["pictures"] == [f"pictures/{episodes[2]['id']}.jpg"]
+    jpeg = base64.b64decode(episodes[2]["thumbs"][0])
+    assert image_size_px(jpeg) == (128, 96)
+    assert len(jpeg) < 6_000  # 200 of them are less than 1.6 MB in the page
+    assert "is neither a PNG nor a JPEG image" in page
+    assert "1 of 4 episodes have no pictures of the end (they were run without --record)." in page
 
 
 def test_a_run_without_trajectories_has_a_report_that_says_how_to_get_pictures(played: Path, tmp_path: Path) -> None:
     shutil.copytree(played / "found", tmp_path / "run")
     shutil.rmtree(tmp_path / "run" / "trajectories")
     page = _page(tmp_path / "run")
-    assert "There are no trajectories, so there are no pictures." in page
+    assert "There are no trajectories (plans with paths) and no videos." in page
     assert "--start-deg &#39;-2 1 90&#39;" in page
     assert "--record" in page
     assert _data(page)["plans"] == {}
@@ -263,7 +284,7 @@ def test_what_is_no_run_is_one_sentence(played: Path, tmp_path: Path, broken: An
     shutil.copytree(played / "found", tmp_path / "run")
     broken(tmp_path / "run")
     with pytest.raises(ConfigError, match=sentence):
-        main(Args(run=tmp_path / "run"))
+        main(Args(runs=(tmp_path / "run",)))
     assert not (tmp_path / "run" / "report.html").exists()
 
 
@@ -292,9 +313,22 @@ def test_the_page_of_two_runs_lists_the_fields_in_which_they_differ(pair: tuple[
     file = pair[1] / "config.json"
     file.write_text(json.dumps(json.loads(file.read_text()) | {"workers": 7, "seed": 3}))
     page = _page(*pair)
-    assert re.search(r"<code>seed</code></th><td>0</td><td>3</td>", page)
+    assert re.search(r"<code>seed</code></th><td data-label=\"A\">0</td><td data-label=\"B\">3</td>", page)
     assert "<code>workers</code>" not in page
     assert "Fields in which the runs differ" not in _page(pair[0])
+
+
+def test_several_runs_are_columns_with_differences_from_the_first_and_a_trend(pair: tuple[Path, Path]) -> None:
+    page = _page(pair[0], pair[1], pair[0])
+    data = _data(page)
+    assert data["runs"] == ["A", "B", "C"]
+    assert page.count(f"B {MINUS} A") == page.count(f"C {MINUS} A") == 13 + 6  # metrics, rows of groups
+    assert "Trend of the runs in their order" in page
+    assert "Trend of the runs in their order" not in _page(*pair)
+    assert page.count('data-outcome="some ') == 2
+    assert page.count('data-outcome="all"') == 2
+    with pytest.raises(ConfigError, match="1 to 12"):
+        main(Args(runs=(pair[0],) * 13))
 
 
 def test_the_page_says_over_what_its_intervals_are(pair: tuple[Path, Path]) -> None:
@@ -307,7 +341,7 @@ def test_runs_of_other_episodes_are_refused(played: Path, pair: tuple[Path, Path
     _, folder = pair
     _write_lines(folder, [line | {"shortest_path": 99.0} for line in _lines(folder)[2:]])
     with pytest.raises(ConfigError, match="not played on the same episodes"):
-        main(Args(run=played / "found", other=folder))
+        main(Args(runs=(played / "found", folder)))
 
 
 def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> None:
@@ -394,7 +428,8 @@ def test_the_page_opens_from_disk_fetches_nothing_and_complains_of_nothing(
         _open(browser, *folders)
         assert len(browser.run(SHOWN)) == 4
         assert browser.run("return performance.getEntriesByType('navigation')[0].loadEventEnd") < 2000
-        assert all(address.startswith("file:") and "page.html" in address for address in browser.requests())
+        fetched = [address for address in browser.requests() if not address.startswith("data:image/jpeg;base64,")]
+        assert all(address.startswith("file:") and "page.html" in address for address in fetched)
         assert browser.complaints() == []
 
 
@@ -469,6 +504,53 @@ def test_nothing_runs_out_of_a_narrow_window(browser: Browser, pair: tuple[Path,
         assert browser.run("return document.documentElement.scrollWidth") <= width
         edges = "return [...document.querySelectorAll('.detail .plan')].map(p => p.getBoundingClientRect().right)"
         assert max(browser.run(edges)) <= width
+
+
+OVERFLOW = """
+return [...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth).length
+  + (document.documentElement.scrollWidth > innerWidth)"""
+
+
+@pytest.mark.parametrize("runs", [1, 2, 6])
+def test_no_column_is_clipped_at_1400_and_800_pixels(browser: Browser, pair: tuple[Path, Path], runs: int) -> None:
+    houses = [line | {"house": f"a_house_{i}", "goal": "chest_of_drawers"} for i, line in enumerate(_lines(pair[0]))]
+    for folder in pair:
+        _write_lines(folder, houses)
+    folders = [pair[1 - i % 2] for i in range(runs)]
+    _open(browser, *folders)
+    browser.click(".open")
+    for width in (1400, 800):
+        browser.resize(width, 900)
+        assert browser.run(OVERFLOW) == 0
+
+
+def test_pictures_and_videos_show_where_the_page_was_moved_with_its_run(
+    browser: Browser, played: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(played / "found", tmp_path / "first")
+    episode_id = _lines(tmp_path / "first")[0]["episode_id"]
+    writer = VideoWriter(video_file(tmp_path / "first", episode_id), size_px=(128, 96))
+    writer.write(np.zeros((96, 128, 3), np.uint8))
+    writer.finish()
+    _page(tmp_path / "first")
+    (tmp_path / "first").rename(tmp_path / "moved")
+    browser.open(tmp_path / "moved" / "page.html")
+    browser.click(".open")
+    assert browser.run("return document.querySelectorAll('.thumb').length") == 4
+    loaded = """return new Promise(done => {
+      const [image, video] = [document.querySelector('figure img'), document.querySelector('video')];
+      video.addEventListener('loadeddata', () => image.decode().then(
+        () => done([image.naturalWidth, video.videoWidth, video.poster.endsWith(image.getAttribute('src'))])
+      ));
+      video.load(); video.play();
+    })"""
+    assert browser.run(loaded) == [640, 128, True]
+    assert browser.complaints() == []
+    shutil.copy(tmp_path / "moved" / "page.html", tmp_path / "page.html")
+    browser.open(tmp_path / "page.html")
+    browser.click(".open")
+    waited = "return new Promise(done => setTimeout(() => done(document.querySelector('.detail').innerText), 300))"
+    assert "The large picture is not there: keep the page beside the folder of its run." in browser.run(waited)
 
 
 def test_text_from_files_runs_nothing_in_the_browser(browser: Browser, pair: tuple[Path, Path]) -> None:

@@ -92,6 +92,46 @@
     if (open) history.replaceState(null, "", `#episode=${encodeURIComponent(id)}`);
   }
 
+  // ---- thumbnails
+  function thumbnail(episode, run) {
+    const address = `data:image/jpeg;base64,${episode.thumbs[run]}`;
+    return html("img", { class: "thumb", loading: "lazy", decoding: "async", alt: "", width: 68, height: 51, src: address });
+  }
+
+  function addThumbnails() {
+    for (const row of rows) {
+      const episode = data.episodes[row.dataset.index];
+      for (const outcome of row.querySelectorAll(".outcome")) {
+        if (episode.thumbs[outcome.dataset.run]) outcome.prepend(thumbnail(episode, outcome.dataset.run));
+      }
+    }
+  }
+
+  // ---- the picture of the end and the video: files of the run, found from where the page lies
+  function makePhoto(episode, run) {
+    if (!episode.pictures[run]) return [];
+    const words = html("figcaption", {}, "What the camera sees at the end, without noise.");
+    const image = html("img", { src: episode.pictures[run], alt: `What the camera sees at the end of ${episode.id}` });
+    image.addEventListener("error", () => {
+      if (episode.thumbs[run]) image.replaceWith(thumbnail(episode, run));
+      words.textContent = "The large picture is not there: keep the page beside the folder of its run.";
+    }, { once: true });
+    return [html("figure", {}, image, words)];
+  }
+
+  function makeVideo(episode, run) {
+    if (!episode.videos[run]) return [];
+    const [src, poster] = [episode.videos[run], episode.pictures[run]];
+    const attributes = { controls: "", preload: poster ? "none" : "metadata", src, "aria-label": `Video of ${episode.id}` };
+    const player = html("video", poster ? { ...attributes, poster } : attributes);
+    const words = html("figcaption", {}, html("a", { href: src }, "Open the file of the video"));
+    player.addEventListener("error", () => {
+      player.remove();
+      words.textContent = "The video is not there: keep the page beside the folder of its run.";
+    }, { once: true });
+    return [html("figure", { class: "film" }, player, words)];
+  }
+
   // ---- the pictures
   function makeDetail(row) {
     const episode = data.episodes[row.dataset.index];
@@ -116,11 +156,11 @@
     const side = html("div", { class: "path" });
     if (label) side.append(html("h3", {}, html("span", { class: "badge" }, label), ` ${plain(episode.outcomes[run])}`));
     const why = html("p", { class: "why" }, episode.words[run]);
-    const links = html("p", { class: "why" });
-    if (episode.videos[run]) links.append(html("a", { href: episode.videos[run] }, "Watch the video"));
+    const facts = label ? [html("p", { class: "small" }, episode.facts[run].join("; "))] : [];
+    const photo = makePhoto(episode, run), film = makeVideo(episode, run);
     const path = episode.paths && episode.paths[run] ? decode(episode.paths[run]) : null;
     if (!path) {
-      side.append(html("div", {}, why, html("p", { class: "small" }, data.why_no_picture), links));
+      side.append(html("div", {}, why, ...facts, html("p", { class: "small" }, data.why_no_picture), ...photo), ...film);
       return side;
     }
     const picture = makePicture(episode, path);
@@ -142,7 +182,7 @@
       marks.append(html("li", {}, button));
     });
     const scrub = html("div", { class: "scrub" }, chart.svg, slider, status);
-    side.append(html("div", {}, picture.svg, makeLegend(episode, path)), html("div", {}, why, marks, scrub, links));
+    side.append(html("div", {}, picture.svg, makeLegend(episode, path)), html("div", {}, why, ...facts, marks, scrub, ...photo), ...film);
     show(path.n);
     return side;
   }
@@ -324,6 +364,7 @@
     row.scrollIntoView();
   }
   addEventListener("hashchange", followHash);
+  addThumbnails();
   filter();  // the browser may have restored the form
   followHash();
 })();

@@ -1,0 +1,159 @@
+"""Sorts episodes into bins: by shortest path and house size, SPL and time to first sight, confidence of stops."""
+
+from __future__ import annotations
+
+import bisect
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sim.analysis.comparison import Line
+from sim.analysis.report.figures import Proportion, Runs, wilson
+
+NEVER = "never"
+SPL_LABELS = ("0", *(f"{low / 10:g} to {(low + 1) / 10:g}" for low in range(10)))
+CONFIDENCE_BINS = 10
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Half-open intervals of a number: edge i <= number < edge i + 1; the last one has no end."""
+
+    edges: tuple[float, ...]
+    unit: str
+    unknown: str
+    """Name of the bin of None."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the bins in order, `unknown` last."""
+        first, *inner, last = self.edges
+        middle = (f"{low:g} to {high:g} {self.unit}" for low, high in zip((first, *inner), (*inner, last), strict=True))
+        below, *others = middle
+        if first == 0.0:
+            below = f"under {self.edges[1]:g} {self.unit}"
+        return below, *others, f"{last:g} {self.unit} and more", self.unknown
+
+    def name(self, value: float | None) -> str:
+        """Returns the name of the bin of a number, which is at least the first edge."""
+        if value is None:
+            return self.unknown
+        return self.names[max(0, bisect.bisect_right(self.edges, value) - 1)]
+
+
+DISTANCES = Bins((0.0, 4.0, 8.0, 12.0, 16.0, 24.0, 40.0), "m", "no path")
+"""Bins of the shortest path."""
+HOUSE_SIZES = Bins((0.0, 60.0, 80.0, 100.0, 125.0, 150.0, 300.0, 500.0), "m²", "size unknown")
+"""Bins of the floor area of all rooms of a house."""
+FIRST_SIGHTS = Bins((0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0), "steps", NEVER)
+FIRST_SIGHT_LABELS = ("0", "1 to 9", "10 to 24", "25 to 49", "50 to 99", "100 to 199", "200 on", NEVER)
+"""Labels of the bins of `FIRST_SIGHTS`, whose numbers are whole."""
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Counts of episodes in bins, for each run."""
+
+    labels: Sequence[str]
+    counts: Sequence[Sequence[int]]
+    """Of each run: one for each label."""
+
+    @property
+    def totals(self) -> list[int]:
+        """Number of episodes of each run that have the number."""
+        return [sum(counts) for counts in self.counts]
+
+    @property
+    def highest_share(self) -> float:
+        """The largest share of a bin in any run, the height of all pictures; 1 without episodes."""
+        return max((max(c) / t for c, t in zip(self.counts, self.totals, strict=True) if t), default=1.0)
+
+
+def spl_histogram(runs: Runs) -> Histogram:
+    """Returns the distribution of SPL: failures in a bin of their own, then tenths."""
+    return _histogram(runs, SPL_LABELS, [[_spl_bin(line) for line in lines] for lines in runs])
+
+
+def first_sight_histogram(runs: Runs) -> Histogram:
+    """Returns the distribution of the steps to first sight, with episodes that never showed the goal as the last bin.
+
+    Lines of older versions, and of episodes that could not begin, do not count.
+    """
+    return _histogram(runs, FIRST_SIGHT_LABELS, [[_sight_bin(line) for line in lines] for lines in runs])
+
+
+def _histogram(runs: Runs, labels: Sequence[str], bins: Sequence[Sequence[int | None]]) -> Histogram:
+    counted = [Counter(of_run) for of_run in bins]
+    return Histogram(labels, [[counts[i] for i in range(len(labels))] for counts in counted])
+
+
+def _spl_bin(line: Line) -> int | None:
+    spl = line.get("spl")
+    if spl is None:
+        return None
+    return 1 + min(9, int(10.0 * spl)) if line["success"] and spl > 0.0 else 0
+
+
+def _sight_bin(line: Line) -> int | None:
+    if line.get("gt_explored") is None:
+        return None
+    step = line.get("first_seen_step")
+    if step is None:
+        return None if line["gt_explored"] else len(FIRST_SIGHT_LABELS) - 1
+    return FIRST_SIGHTS.names.index(FIRST_SIGHTS.name(float(step)))
+
+
+@dataclass(frozen=True)
+class StopBin:
+    """Stops with a confidence in one interval."""
+
+    low: float
+    high: float
+    confidence: float
+    """Mean of these stops."""
+    correct: Proportion
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The agent's confidence at its stops against how many of them are correct."""
+
+    bins: Sequence[StopBin]
+    stops: int
+    """Episodes that ended with STOP."""
+    correct: Proportion
+    """Of the stops with a confidence."""
+    confidence: float
+    """Mean of the stops with a confidence; 0 without any."""
+
+    @property
+    def error(self) -> float:
+        """Expected calibration error: mean distance of confidence and share over the bins, weighted by their stops."""
+        distances = (abs(b.confidence - b.correct.count / b.correct.of) * b.correct.of for b in self.bins)
+        return sum(distances) / self.correct.of if self.correct.of else 0.0
+
+
+def calibration(lines: Sequence[Line]) -> Calibration:
+    """Returns the calibration of a run's stops; a stop is correct if the episode is a success."""
+    stops = [line for line in lines if line["end_reason"] == "stop"]
+    rated = [(float(line["stop_confidence"]), bool(line["success"])) for line in stops if _is_rated(line)]
+    bins = []
+    for i in range(CONFIDENCE_BINS):
+        some = [each for each in rated if min(CONFIDENCE_BINS - 1, int(each[0] * CONFIDENCE_BINS)) == i]
+        if some:
+            low, high = i / CONFIDENCE_BINS, (i + 1) / CONFIDENCE_BINS
+            bins.append(StopBin(low, high, _mean_confidence(some), _correct(some)))
+    return Calibration(bins, len(stops), _correct(rated), _mean_confidence(rated))
+
+
+def _is_rated(line: Line) -> bool:
+    confidence = line.get("stop_confidence")
+    return confidence is not None and 0.0 <= confidence <= 1.0
+
+
+def _mean_confidence(rated: Sequence[tuple[float, bool]]) -> float:
+    return sum(confidence for confidence, _ in rated) / len(rated) if rated else 0.0
+
+
+def _correct(rated: Sequence[tuple[float, bool]]) -> Proportion:
+    return wilson(sum(success for _, success in rated), len(rated))

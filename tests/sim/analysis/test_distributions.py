@@ -1,0 +1,118 @@
+"""The figures of a report: bins, histograms, calibration of stops, trends of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from sim.analysis.report.distributions import (
+    DISTANCES,
+    FIRST_SIGHT_LABELS,
+    FIRST_SIGHTS,
+    HOUSE_SIZES,
+    SPL_LABELS,
+    Bins,
+    calibration,
+    first_sight_histogram,
+    spl_histogram,
+)
+from sim.analysis.report.figures import grouped
+from sim.analysis.report.trend import HEIGHT, METRICS, TOP, trend
+
+Line = dict[str, Any]
+
+
+def line(**changed: Any) -> Line:
+    """The line of an episode that was found."""
+    usual = {"house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
+    return usual | {"first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed
+
+
+@pytest.mark.parametrize("bins", [DISTANCES, HOUSE_SIZES, FIRST_SIGHTS])
+def test_a_number_is_in_the_bin_that_begins_at_or_below_it_and_ends_above_it(bins: Bins) -> None:
+    assert len(bins.names) == len(set(bins.names)) == len(bins.edges) + 1
+    for i, edge in enumerate(bins.edges):
+        assert bins.name(edge) == bins.names[i]
+        assert bins.name(edge - 1e-9) == bins.names[max(0, i - 1)]
+    assert bins.name(1e9) == bins.names[-2]
+    assert bins.name(None) == bins.unknown == bins.names[-1]
+    assert len(FIRST_SIGHT_LABELS) == len(FIRST_SIGHTS.names)
+
+
+def test_groups_hold_each_episode_once_and_differences_are_from_the_first_run() -> None:
+    first = [line(success=float(i % 2)) for i in range(6)]
+    second, third = [line(success=1.0)] * 6, [line(success=0.0)] * 6
+    names = ["a", "b", "a", "c", "c", "c"]
+    found = grouped([first, second, third], names, ["c", "b", "nothing", "a"])
+    assert [group.name for group in found] == ["c", "b", "a"]
+    assert [share.of for group in found for share in group.shares] == [3, 3, 3, 1, 1, 1, 2, 2, 2]
+    assert [[cell.estimate.mean for cell in group.differences] for group in found] == [
+        [pytest.approx(1 / 3), pytest.approx(-2 / 3)], [0.0, -1.0], [1.0, 0.0]
+    ]  # fmt: skip
+
+
+def test_spl_counts_failures_apart_and_each_tenth_from_its_lower_edge() -> None:
+    lines = [line(spl=value) for value in (0.0999, 0.1, 0.95, 1.0)]
+    lines += [line(spl=0.0, success=0.0), line(spl=None)]
+    histogram = spl_histogram([lines, []])
+    counts = dict(zip(SPL_LABELS, histogram.counts[0], strict=True))
+    assert {name: count for name, count in counts.items() if count} == {
+        "0": 1, "0 to 0.1": 1, "0.1 to 0.2": 1, "0.9 to 1": 2
+    }  # fmt: skip
+    assert histogram.totals == [5, 0]
+    assert histogram.highest_share == pytest.approx(0.4)
+
+
+def test_an_episode_that_never_showed_the_goal_is_the_last_bin_of_first_sights() -> None:
+    lines = [line(first_seen_step=step) for step in (0, 1, 9, 10, 499)]
+    lines += [line(first_seen_step=None, gt_explored=False), line(first_seen_step=None, gt_explored=None)]
+    counts = dict(zip(FIRST_SIGHT_LABELS, first_sight_histogram([lines]).counts[0], strict=True))
+    assert {name: count for name, count in counts.items() if count} == {
+        "0": 1, "1 to 9": 2, "10 to 24": 1, "200 on": 1, "never": 1
+    }  # fmt: skip
+
+
+def stops(*pairs: tuple[float, int]) -> list[Line]:
+    return [line(stop_confidence=confidence, success=float(success)) for confidence, success in pairs]
+
+
+def test_confidence_that_equals_the_share_of_correct_stops_has_no_calibration_error() -> None:
+    perfect = stops(*[(0.75, 1)] * 3, (0.75, 0), *[(1.0, 1)] * 4)
+    assert calibration(perfect).error == pytest.approx(0.0)
+    sure = stops(*[(1.0, 1)] * 3, (1.0, 0))
+    assert calibration(sure).error == pytest.approx(0.25)
+
+
+def test_calibration_counts_stops_with_a_confidence_in_tenths() -> None:
+    lines = [*stops((0.0, 0), (0.31, 0), (0.39, 1), (1.0, 1)), line(stop_confidence=None), line(stop_confidence=7.0)]
+    lines.append(line(end_reason="max_steps", success=0.0, stop_confidence=0.9))
+    found = calibration(lines)
+    assert found.stops == 6
+    assert found.correct.of == 4
+    assert [(b.low, b.correct.count, b.correct.of) for b in found.bins] == [(0.0, 0, 1), (0.3, 1, 2), (0.9, 1, 1)]
+    assert found.bins[1].confidence == pytest.approx(0.35)
+    assert calibration([line()]).bins == []
+
+
+def runs(*collisions: Sequence[float]) -> list[list[Line]]:
+    return [[line(house=f"h{i}", collisions=c) for i, c in enumerate(of_run)] for of_run in collisions]
+
+
+def test_a_trend_shows_each_run_in_order_within_the_chart() -> None:
+    charts = trend(runs([0, 0, 0], [10, 20, 30], [4, 5, 6]), "ABC")
+    assert [chart.title for chart in charts] == [metric.title for metric in METRICS]
+    points = charts[-1].points
+    assert [point.label for point in points] == ["A", "B", "C"]
+    assert points[0].x < points[1].x < points[2].x
+    assert points[1].y < points[2].y < points[0].y == charts[-1].floor_y  # more collisions are higher
+    for point in points:
+        assert TOP <= point.high_y <= point.y <= point.low_y <= HEIGHT
+    assert float(charts[-1].top) >= 30.0
+
+
+def test_two_runs_are_no_trend_and_a_number_that_no_run_has_is_left_out() -> None:
+    assert trend(runs([1], [2]), "AB") == []
+    without = [[line(collisions=None)]] * 3
+    assert "collisions" not in [chart.title for chart in trend(without, "ABC")]
