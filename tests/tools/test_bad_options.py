@@ -96,6 +96,11 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--markdown nowhere.md", "cannot be read"),
         ("--markdown FILE", "cannot be read"),
     ],
+    "tools.bench_against": [
+        ("--against nowhere", "names no commit"),
+        ("--against HEAD --parts walk", "--parts must be names"),
+        ("--against HEAD --rounds 0", "--rounds must be at least 1"),
+    ],
     "tools.check_collisions": [("--run nowhere", "no results.jsonl")],
     "tools.check_houses": [("--split nowhere", "Unknown split 'nowhere'"), ("--kind castle", "castle")],
     "tools.compare_networks": [

@@ -1,0 +1,69 @@
+"""The comparison with another commit refuses what it cannot compare, and takes turns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sim.interface import ConfigError
+from tools import bench_against
+from tools.bench_against import Worker, commit_of, in_turns, parse_parts, unpack
+
+pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reason="needs a git checkout")
+
+
+def test_a_wrong_ref_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    assert bench_against.entry(["--against", "no-such-release"]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("error: --against 'no-such-release' names no commit, tag or branch")
+    assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("ref", ["", "--all", "HEAD:README.md"])
+def test_what_is_no_commit_is_no_ref(ref: str) -> None:
+    with pytest.raises(ConfigError, match="names no commit"):
+        commit_of(ref)
+
+
+def test_parts_that_there_are_not_are_refused() -> None:
+    assert parse_parts("start, step") == ["step", "start"]
+    for text in ("walk", "", "step,walk"):
+        with pytest.raises(ConfigError, match="--parts must be names out of step,images"):
+            parse_parts(text)
+
+
+def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:
+    unpack(commit_of("HEAD"), tmp_path)
+    assert (tmp_path / "tools" / "bench.py").is_file()
+    assert not (tmp_path / ".git").exists()
+
+
+class Told(Worker):
+    """A version whose rounds take the given seconds; none is left: its process has ended."""
+
+    def __init__(self, name: str, seconds: list[float], order: list[str]) -> None:
+        self.name, self.seconds, self.order = name, seconds, order
+
+    def round(self, part: str) -> dict[str, float] | None:
+        self.order.append(self.name)
+        return {f"a {part}": self.seconds.pop(0)} if self.seconds else None
+
+    def last_words(self) -> str:
+        return "ImportError: no such part"
+
+
+def test_versions_take_turns_and_the_first_round_does_not_count() -> None:
+    order: list[str] = []
+    here, there = Told("here", [9.0, 1.0, 2.0, 1.0], order), Told("there", [9.0, 3.0, 3.0, 2.0], order)
+    (found,) = in_turns("step", here, there, 3, "v1")
+    assert order == ["there", "here", "here", "there", "there", "here", "here", "there"]
+    assert found.what == "a step"
+    assert (found.here_s, found.there_s) == ([1.0, 2.0, 1.0], [3.0, 3.0, 2.0])
+    assert found.ratio == 2.0  # the median of 3, 1.5 and 2
+
+
+def test_a_version_that_cannot_run_a_part_is_named() -> None:
+    order: list[str] = []
+    with pytest.raises(ConfigError, match="Part step does not run in 'v1': ImportError: no such part"):
+        in_turns("step", Told("here", [1.0], order), Told("there", [], order), 1, "v1")
