@@ -250,7 +250,7 @@ def advance_first_order(
     while waiting > 0 and number * bucket <= limit:
         while top[current] >= 0:
             entry = top[current]
-            cell, top[current] = cell_of[entry], below[entry]
+            cell, top[current] = int(cell_of[entry]), below[entry]
             below[entry], unused = unused, entry
             if bucket_of[cell] != current:
                 continue

@@ -41,7 +41,7 @@ def smoothed(depth: NDArray[np.float32], jump_1_m: float) -> tuple[NDArray[np.fl
         count[behind] += same
         total[ahead] += gap * same
         total[behind] -= gap * same
-    return (total - depth) / (count + np.float32(1.0)), count
+    return np.divide(total - depth, count + np.float32(1.0), dtype=np.float32), count
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -49,6 +49,7 @@ def test_a_noisy_image_is_smoothed_along_surfaces_only(seed: int) -> None:
     depth, config = depth_image(np.random.default_rng(seed), noise_m=0.02), OccupancyConfig()
     change, count = smoothed(depth, config.jump_1_m)
     surfaces = Surfaces.of(depth, config)
+    assert surfaces.neighbours is not None
     assert np.array_equal(surfaces.neighbours, count)
     assert np.array_equal(surfaces.depth, change + depth)
     assert np.array_equal(surfaces.confirmed(3), count >= 3)
