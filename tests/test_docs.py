@@ -74,6 +74,7 @@ FURNITURE_LAWS = [
 NEED_MORE = {
     "rednet_semmap_mp3d_40.pth": "the published checkpoint",
     "runs/plans": "plans that tools/export_plans.py writes",
+    "views_val": "views that tools/generate_views.py writes",
 }
 """Words of blocks that cannot run here, and what they need."""
 

@@ -95,6 +95,7 @@ _HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{
 _EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 3"
 _VIEWS = (
     f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
+    " --views-per-shard 4"
 )
 _FOREIGN = f"{PYTHON} -c 'from pathlib import Path; from tests.helpers.foreign import *; "
 _SCENE = _FOREIGN + 'write_scene(Path("{tmp}/s"))\''
@@ -184,6 +185,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/gymnasium.md
     f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
+    f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
+        f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
+    ),
+    f"{PYTHON} tools/bench.py --parts j": (f"{PYTHON} tools/bench.py --quick --parts j",),
     # docs/plans.md
     f"{PYTHON} tools/export_plans.py --split val --out runs/plans/val --workers 2": (
         f"{PYTHON} tools/export_plans.py --split val --houses 1 --workers 1 --out {{tmp}}/plans",
@@ -240,7 +245,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/generate_views.py --pool wide --furniture runs/models --views 20000 --shrink 2"
     " --out views_models": (
         *_MODELS,
-        f"{PYTHON} tools/generate_views.py --pool wide --furniture {{tmp}}/models --views 4 --shrink 4 --profile fast"
+        f"{PYTHON} tools/generate_views.py --pool wide --furniture {{tmp}}/models --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
     f"{PYTHON} tools/generate_houses.py --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
@@ -248,7 +253,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/generate_views.py --split runs/transfer --views 2000 --shrink 2 --profile fast"
     " --out views_transfer": (
         *_TRANSFER,
-        f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 4 --shrink 4 --profile fast"
+        f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
     f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
@@ -296,22 +301,32 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
     ),
+    # docs/datasets.md
+    f"{PYTHON} tools/generate_views.py --split val --views 500 --shrink 2 --profile fast"
+    " --extras instances normals poses --out views_objects": (f"{_VIEWS} --extras instances normals poses",),
+    f"{PYTHON} tools/generate_views.py --split val --views 800 --sequence 40 --extras poses --out views_along": (
+        f"{_VIEWS} --sequence 4 --extras poses",
+    ),
+    f"{PYTHON} examples/read_views.py views_val/views-000000.tar": (
+        _VIEWS,
+        f"{PYTHON} examples/read_views.py {{tmp}}/views/views-000000.tar",
+    ),
     # docs/segmentation.md
     f"{PYTHON} tools/generate_views.py --split train --views 100000 --out views --workers 2": (
-        f"{PYTHON} tools/generate_views.py --split train --views 4 --out {{tmp}}/views --workers 1",
+        f"{PYTHON} tools/generate_views.py --split train --views 1 --out {{tmp}}/views --workers 1",
     ),
     f"{PYTHON} tools/generate_views.py --split train --views 20000 --shrink 2 --profile fast --out views_small": (
-        f"{PYTHON} tools/generate_views.py --split train --views 4 --shrink 2 --profile fast --out {{tmp}}/views",
+        f"{PYTHON} tools/generate_views.py --split train --views 1 --shrink 2 --profile fast --out {{tmp}}/views",
     ),
     f"{PYTHON} tools/generate_views.py --pool wide --views 20000 --shrink 2 --profile fast --out views_wide": (
-        f"{PYTHON} tools/generate_views.py --pool wide --views 4 --shrink 2 --profile fast --out {{tmp}}/views",
+        f"{PYTHON} tools/generate_views.py --pool wide --views 1 --shrink 2 --profile fast --out {{tmp}}/views",
     ),
     f"{PYTHON} tools/generate_views.py --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
-    f"{PYTHON} tools/show_views.py --views views --out views.png": (
+    f"{PYTHON} tools/show_views.py --views views_objects --out views.png": (
         _VIEWS,
         f"{PYTHON} tools/show_views.py --views {{tmp}}/views --out {{tmp}}/views.png",
     ),
-    f"{PYTHON} tools/unpack_views.py --views views --out views_png": (
+    f"{PYTHON} tools/unpack_views.py --views views_objects --out views_png": (
         _VIEWS,
         f"{PYTHON} tools/unpack_views.py --views {{tmp}}/views --out {{tmp}}/views_png",
     ),
@@ -325,7 +340,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{PYTHON} tools/evaluate_rednet.py --views views_val --calibrate --card card.md "
     "--weights runs/rednet/rednet.safetensors": (
-        f"{_VIEWS} --views-per-shard 2",
+        _VIEWS.replace("shard 4", "shard 2"),
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
         f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --calibrate --card {{tmp}}/card.md "
         "--weights {tmp}/rednet.safetensors",
