@@ -13,7 +13,7 @@ from sim.interface import ConfigError
 
 FOLDER = "pictures"
 QUALITY = 85
-"""JPEG quality: 640 x 480 takes about 25 KB."""
+"""JPEG quality: 640 x 480 takes 15 to 45 KB."""
 
 
 def picture_file(run: Path, episode_id: str) -> Path:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sim import cli
-from sim.analysis.report.build import command_of
+from sim.analysis.report.facts import command_of
 from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.configuration import as_json, field_paths, with_fields
