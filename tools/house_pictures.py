@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import cv2
@@ -131,12 +131,15 @@ def draw_views(house: House, columns: int = 3) -> Picture | None:
     mujoco.mj_kinematics(model, data)
     rooms = read_rooms(model)
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
-    poses = _room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels)
+    poses = list(_room_poses(model, data, labels, rooms) if rooms else _object_poses(model, data, labels))
     eye_m, fovy = CameraModel().height_m, math.degrees(CameraModel().vfov_rad)
+    cameras = [
+        camera_at(np.array([x, y, floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
+        for _, (x, y, floor_z_m, yaw_deg) in poses
+    ]
     tiles = []
-    for name, (x, y, floor_z_m, yaw_deg) in poses:
-        camera = camera_at(np.array([x, y, floor_z_m + eye_m]), azimuth_deg=yaw_deg, elevation_deg=0.0)
-        tile = np.ascontiguousarray(render(model, camera, VIEW_PX, fovy_deg=fovy))
+    for (name, _), picture in zip(poses, render_all(model, cameras, VIEW_PX, fovy_deg=fovy), strict=True):
+        tile = np.ascontiguousarray(picture)
         cv2.putText(tile, name, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (200, 30, 30), 1, cv2.LINE_AA)
         tiles.append(tile)
     return tiled(tiles, min(columns, len(tiles))) if tiles else None
@@ -256,9 +259,17 @@ def camera_at(lookat: NDArray[np.float64], *, azimuth_deg: float, elevation_deg:
 
 def render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, int], *, fovy_deg: float) -> Picture:
     """Renders (h, w, 3) RGB with four samples per pixel and without shadows."""
+    return next(render_all(model, [camera], size_px, fovy_deg=fovy_deg))
+
+
+def render_all(
+    model: mujoco.MjModel, cameras: Iterable[mujoco.MjvCamera], size_px: tuple[int, int], *, fovy_deg: float
+) -> Iterator[Picture]:
+    """Yields a picture (h, w, 3) of each camera; the model's visual settings are changed."""
     width, height = size_px
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     model.vis.global_.fovy = fovy_deg
+    model.vis.quality.shadowsize = 0
     model.stat.extent = 10.0
     model.vis.map.znear, model.vis.map.zfar = 0.005, 20.0
     data = mujoco.MjData(model)
@@ -266,12 +277,14 @@ def render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, 
     renderer = mujoco.Renderer(model, height, width)
     option = mujoco.MjvOption()
     option.sitegroup[:] = 0
-    renderer.update_scene(data, camera, option)
-    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
-    renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
-    picture = renderer.render().copy()
-    renderer.close()
-    return picture
+    try:
+        for camera in cameras:
+            renderer.update_scene(data, camera, option)
+            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False
+            renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+            yield renderer.render().copy()
+    finally:
+        renderer.close()
 
 
 def tiled(tiles: list[Picture], columns: int) -> Picture:

@@ -53,7 +53,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     ),
     "clothes": ("coat", "jacket", "shirt"),
     "objects": (
-        "ball", "book", "bottle", "box", "bread", "can", "cereal", "cup", "kettle", "laptop", "lemon", "milk", "mug",
+        "ball", "book", "bottle", "bread", "can", "cereal", "cup", "kettle", "laptop", "lemon", "milk", "mug",
         "plate", "pot", "basket", "bin", "crate", "bag", "lid", "toy",
     ),
 }  # fmt: skip
@@ -63,7 +63,9 @@ LEAST_ENDING = 4
 FLAT_M = 0.3
 """Largest thickness of a wall, a floor or a ceiling that is recognized by its size."""
 LARGE_M = 1.5
-"""Least length of such a wall, and least sides of such a floor."""
+"""Least sides of such a floor."""
+LONG_M = 1.0
+"""Least length of such a wall."""
 TALL_M = 1.5
 """Least height of such a wall."""
 AT_FLOOR_M = 0.05
@@ -99,19 +101,20 @@ def propose(model: mujoco.MjModel) -> tuple[Proposal, ...]:
     mujoco.mj_kinematics(model, data)
     visible, collides = rendered_geoms(model), collidable_geoms(model)
     found: dict[str, Proposal] = {}
-    for geom in range(model.ngeom):
-        if not (visible[geom] or collides[geom]):
-            continue
+    unknown: list[list[str]] = []
+    around: set[str] = set()  # names of bodies that hold something whose category is known
+    for geom in np.flatnonzero(visible | collides).tolist():
         names = [name for name in names_of_geom(model, geom) if name]
         proposals = list(_by_name(names))
         if not proposals and visible[geom]:
-            by_size = category_by_size(*geom_box(model, data, geom), movable=_is_movable(model, geom))
-            proposals = [
-                Proposal(names[0] if by_size else names[-1], by_size or VOID, "size" if by_size else "unknown")
-            ]
-        for proposal in proposals:
-            if proposal.name not in found or found[proposal.name].category == VOID:
-                found[proposal.name] = proposal
+            category = category_by_size(*geom_box(model, data, geom), movable=_is_movable(model, geom))
+            proposals = [Proposal(names[0], category, "size")] if category else []
+            unknown += [] if category else [names]
+        around |= {name for proposal in proposals for name in names[names.index(proposal.name) :]}
+        found |= {each.name: each for each in proposals if each.name not in found}
+    for names in unknown:
+        name = next((name for name in reversed(names) if name not in around), names[0])
+        found.setdefault(name, Proposal(name, VOID, "unknown"))
     return tuple(found.values())
 
 
@@ -151,7 +154,7 @@ def category_by_size(low_m: NDArray[np.float64], high_m: NDArray[np.float64], *,
         if abs(high_m[2]) <= AT_FLOOR_M:
             return "floor"
         return "ceiling" if low_m[2] >= CEILING_FROM_M else None
-    if z >= TALL_M and min(x, y) <= FLAT_M and max(x, y) >= LARGE_M:
+    if z >= TALL_M and min(x, y) <= FLAT_M and max(x, y) >= LONG_M:
         return "wall"
     return None
 

@@ -78,7 +78,9 @@ def read_body(file: RobotFile) -> tuple[mujoco.MjSpec, mujoco.MjsBody]:
     if len(roots) != 1:
         raise ConfigError(f"its wheels belong to different bodies of the world: {', '.join(sorted(roots))}.")
     spec.option = mujoco.MjSpec().option  # those of the world are used
-    return spec, _root_of(spec, spec.joint(file.wheel_joints[0]).parent)
+    root = _root_of(spec, spec.joint(file.wheel_joints[0]).parent)
+    _resolve_orientation(spec, root)
+    return spec, root
 
 
 def collision_geoms(root: mujoco.MjsBody, file: RobotFile) -> CollisionGeoms:
@@ -145,6 +147,18 @@ def turn_to_x(file: RobotFile) -> NDArray[np.float64]:
     """Returns the rotation (3, 3) about z that turns the robot of a file to +x."""
     cos, sin = math.cos(file.heading_rad), math.sin(file.heading_rad)
     return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _resolve_orientation(spec: mujoco.MjSpec, root: mujoco.MjsBody) -> None:
+    """Writes the orientation of the top body as a quaternion: attaching reads its Euler angles in another order."""
+    if root.alt.type == mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        return
+    try:
+        root_quat = spec.copy().compile().body(root.name).quat
+    except ValueError as error:
+        raise ConfigError(f"it cannot be compiled: {' '.join(str(error).split())}") from None
+    root.quat = root_quat
+    root.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
 
 
 def _make_paths_absolute(spec: mujoco.MjSpec, file: RobotFile) -> None:

@@ -261,3 +261,37 @@ def test_a_seam_between_two_floors_is_no_edge():
     space = free_space(house)
     assert space.is_free(-0.1, 0.0)
     assert space.free[tuple(space.frame.to_cells((-0.1, 0.0)))]
+
+
+def _space_of(world: str) -> FreeSpace:
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{world}</worldbody></mujoco>")
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return FreeSpace(model, data, read_labels(model))
+
+
+FLOOR_OF_6_M = '<geom name="floor_00" type="plane" size="3 3 1"/>'
+BACK_WALL = '<geom name="wall_00" type="box" size="0.05 1 1" pos="1 0 1"/>'
+
+
+def test_a_plane_with_a_size_is_free_where_it_is_rendered() -> None:
+    space = _space_of(FLOOR_OF_6_M)
+    assert space.is_free(2.7, 0.0)
+    assert not space.is_free(3.3, 0.0)
+
+
+def test_a_single_wall_encloses_no_house() -> None:
+    space = _space_of(FLOOR_OF_6_M + BACK_WALL)
+    assert space.is_free(-2.0, 0.0)
+    assert space.is_free(2.0, 0.0)
+    assert not space.is_free(1.0, 0.0)
+
+
+def test_walls_on_four_sides_enclose_a_house_on_a_larger_floor() -> None:
+    sides = (("0.05 1.5", "1.5 0"), ("0.05 1.5", "-1.5 0"), ("1.5 0.05", "0 1.5"), ("1.5 0.05", "0 -1.5"))
+    walls = "".join(
+        f'<geom name="wall_{i:02}" type="box" size="{size} 1" pos="{at} 1"/>' for i, (size, at) in enumerate(sides)
+    )
+    space = _space_of(FLOOR_OF_6_M + walls)
+    assert space.is_free(0.0, 0.0)
+    assert not space.is_free(2.5, 0.0)

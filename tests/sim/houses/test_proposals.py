@@ -1,0 +1,102 @@
+"""Labels are proposed from the words in names and from sizes, and the proposed rules give these labels."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.houses.labels import read_labels
+from sim.houses.proposals import category_by_size, category_of_name, propose, rules_of, size_doubt
+from sim.interface import MPCAT40_ID
+from tests.helpers.foreign import write_scene
+from tools.label_house import Args, _read
+
+NAMES = {
+    "Couch.001": "sofa",
+    "wall_leftcorner_visual": "wall",
+    "hingecabinet": "cabinet",
+    "backwall": "wall",
+    "KitchenCounterTop": "counter",
+    "chest_of_drawers_3": "chest_of_drawers",
+    "TVMonitor": "tv_monitor",
+    "DiningChairs": "chair",
+    "office_desk_lamp": "lighting",
+    "microwave": "appliances",
+    "//unnamed_geom_3": None,
+    "panda0_link0": None,
+    "cannon": None,
+}
+
+
+@pytest.mark.parametrize(("name", "category"), NAMES.items())
+def test_the_last_known_word_of_a_name_is_its_category(name: str, category: str | None) -> None:
+    assert category_of_name(name) == category
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "category"),
+    [
+        ((-3, -3, -0.1), (3, 3, 0.0), "floor"),
+        ((-3, -3, 0.7), (3, 3, 0.8), None),
+        ((-3, -3, 2.5), (3, 3, 2.6), "ceiling"),
+        ((0, -2, 0), (0.1, 2, 2.5), "wall"),
+        ((0, -2, 0), (0.1, 2, 0.5), None),
+        ((0, 0, 0), (0.5, 0.5, 2.0), None),
+    ],
+)
+def test_large_flat_boxes_are_floor_wall_or_ceiling(low, high, category) -> None:
+    assert category_by_size(np.array(low), np.array(high)) == category
+    assert category_by_size(np.array(low), np.array(high), movable=True) is None
+
+
+def test_sizes_that_a_category_does_not_have_are_doubtful() -> None:
+    assert size_doubt("chair", np.array([0.5, 0.5, 1.0])) == ""
+    assert size_doubt("chair", np.array([0.5, 5.0, 1.0])) == "too large"
+    assert size_doubt("chair", np.array([0.05, 0.05, 0.05])) == "too small"
+    assert size_doubt("wall", np.array([50.0, 0.1, 3.0])) == ""
+
+
+def test_the_proposed_rules_give_the_proposed_labels(tmp_path: Path) -> None:
+    house, _ = write_scene(tmp_path / "s")
+    _, model = _read(Args(house=house))
+    labels = read_labels(model, rules=rules_of(propose(model)))
+    found = {each.name: each.category for each in labels.instances}
+    expected = {"Ground": "floor", "Shell.N": "wall", "Couch.001": "sofa", "Pillow.A": "cushion", "Ball_3": "objects"}
+    expected |= {"Sideboard": "cabinet", "Sideboard_door": "door", "Stool_7": "stool"}
+    assert expected.items() <= found.items()
+    assert labels.void_geoms == 2  # Gadget.box, Widget
+
+
+def test_names_that_differ_only_in_their_numbers_share_a_rule_unless_their_categories_differ() -> None:
+    model = _model(
+        *(f'<body name="crate_{i}" pos="{i} 0 1"><geom size="0.2"/></body>' for i in (1, 2, 30)),
+        '<body name="thing.1" pos="5 0 1"><geom size="0.2"/></body>',
+    )
+    rules = rules_of(propose(model))
+    assert rules == {"^g$": "floor", r"^crate_\d+$": "objects", r"^thing\.1$": "void"}
+
+
+def test_a_named_part_with_the_category_of_its_body_is_no_instance_of_its_own() -> None:
+    model = _model(
+        '<body name="table"><geom name="table_leg" size="0.1"/><geom name="tabletop" size="0.2"/>'
+        '<body name="vase_on_table"><geom name="vase" size="0.1"/></body></body>'
+    )
+    labels = read_labels(model, rules=rules_of(propose(model)))
+    assert {each.name: len(each.geom_ids) for each in labels.instances} == {"g": 1, "table": 2, "vase": 1}
+
+
+def test_a_geom_without_any_name_has_its_number_as_a_name() -> None:
+    model = _model('<geom type="box" size="0.1 2 1.2" pos="2 0 1.2"/>', '<body><geom size="0.3"/></body>')
+    rules = rules_of(propose(model))
+    assert rules == {"^g$": "floor", "^#1$": "wall", "^#2$": "void"}
+    labels = read_labels(model, rules={**rules, "^#2$": "plant"})
+    assert labels.geom_category.tolist() == [MPCAT40_ID[name] for name in ("floor", "wall", "plant")]
+
+
+def _model(*world: str):
+    from sim.gl import mujoco
+
+    floor = '<geom name="g" type="plane" size="5 5 1"/>'
+    return mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{floor}{''.join(world)}</worldbody></mujoco>")
