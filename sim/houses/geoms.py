@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from sim.geometry.convex import Polytope
 from sim.gl import mujoco
@@ -88,6 +87,8 @@ def mesh_is_convex(model: mujoco.MjModel, geom: int) -> bool:
 
 @functools.lru_cache(maxsize=1024)
 def _is_convex(points: bytes, faces: bytes) -> bool:
+    from scipy.spatial import ConvexHull, QhullError  # on demand: half a second at every start
+
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     a, b, c = vertices[np.frombuffer(faces, dtype=np.int32).reshape(-1, 3)].transpose(1, 0, 2)
     volume_m3 = float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
@@ -168,6 +169,8 @@ def _mesh_hull(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
 @functools.lru_cache(maxsize=1024)
 def _hull_of_bytes(points: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Computes a convex hull; results are cached by content, since meshes repeat within a house."""
+    from scipy.spatial import ConvexHull, QhullError  # on demand: half a second at every start
+
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     try:
         hull = ConvexHull(vertices)

@@ -20,7 +20,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 from sim.interface import CameraModel, ConfigError
 from sim.sensors.random_fields import fill_normal, fill_shifts, smooth_normal
@@ -115,6 +114,8 @@ class NoisyDepth:
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
         """Starts an episode in a house whose geoms have this gloss (ngeom,)."""
+        from scipy.special import ndtri  # on demand: half a second at every start
+
         shares = np.append(self._config.hole_shares(gloss), 0.0)  # the last entry is for id -1, no geom
         self._hole_level = ndtri(shares).astype(np.float32)
 

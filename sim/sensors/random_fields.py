@@ -12,7 +12,6 @@ from functools import cache
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
 
 _LEVELS = 1 << 16
 _SCATTER = 40503
@@ -62,6 +61,8 @@ def _levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint
 
 @cache
 def _normal_quantiles() -> NDArray[np.float32]:
+    from scipy.special import ndtri  # on demand: half a second at every start
+
     return ndtri((np.arange(_LEVELS) + 0.5) / _LEVELS).astype(np.float32)
 
 

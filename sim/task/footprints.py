@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import KDTree
 
 from sim.geometry.convex import ConvexPolygon, plan_polygon
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
 from sim.interface import MPCAT40_ID
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 SAMPLE_M = 0.025
 """Largest gap between neighbouring sample points on a footprint's boundary."""
@@ -65,6 +67,8 @@ def footprint_of(
     model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[Floor] = ()
 ) -> Footprint | None:
     """Returns the footprint of an instance; None where nothing of it is rendered."""
+    from scipy.spatial import KDTree  # on demand: half a second at every start
+
     rendered = rendered_geoms(model)
     geoms = [geom for geom in instance.geom_ids if rendered[geom]]
     parts = tuple(part for geom in geoms for part in _rendered_parts(model, data, geom))
