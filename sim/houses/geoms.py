@@ -87,7 +87,7 @@ def mesh_is_convex(model: mujoco.MjModel, geom: int) -> bool:
 
 @functools.lru_cache(maxsize=1024)
 def _is_convex(points: bytes, faces: bytes) -> bool:
-    from scipy.spatial import ConvexHull, QhullError  # on demand: half a second at every start
+    from scipy.spatial import ConvexHull, QhullError  # on demand: a quarter of a second at every start
 
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     a, b, c = vertices[np.frombuffer(faces, dtype=np.int32).reshape(-1, 3)].transpose(1, 0, 2)
@@ -169,7 +169,7 @@ def _mesh_hull(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
 @functools.lru_cache(maxsize=1024)
 def _hull_of_bytes(points: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Computes a convex hull; results are cached by content, since meshes repeat within a house."""
-    from scipy.spatial import ConvexHull, QhullError  # on demand: half a second at every start
+    from scipy.spatial import ConvexHull, QhullError  # on demand: a quarter of a second at every start
 
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     try:

@@ -114,7 +114,7 @@ class NoisyDepth:
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
         """Starts an episode in a house whose geoms have this gloss (ngeom,)."""
-        from scipy.special import ndtri  # on demand: half a second at every start
+        from scipy.special import ndtri  # on demand: a quarter of a second at every start
 
         shares = np.append(self._config.hole_shares(gloss), 0.0)  # the last entry is for id -1, no geom
         self._hole_level = ndtri(shares).astype(np.float32)

@@ -61,7 +61,7 @@ def _levels(rng: np.random.Generator, shape: tuple[int, ...]) -> NDArray[np.uint
 
 @cache
 def _normal_quantiles() -> NDArray[np.float32]:
-    from scipy.special import ndtri  # on demand: half a second at every start
+    from scipy.special import ndtri  # on demand: a quarter of a second at every start
 
     return ndtri((np.arange(_LEVELS) + 0.5) / _LEVELS).astype(np.float32)
 

@@ -67,7 +67,7 @@ def footprint_of(
     model: mujoco.MjModel, data: mujoco.MjData, instance: Instance, floors: Sequence[Floor] = ()
 ) -> Footprint | None:
     """Returns the footprint of an instance; None where nothing of it is rendered."""
-    from scipy.spatial import KDTree  # on demand: half a second at every start
+    from scipy.spatial import KDTree  # on demand: a quarter of a second at every start
 
     rendered = rendered_geoms(model)
     geoms = [geom for geom in instance.geom_ids if rendered[geom]]
