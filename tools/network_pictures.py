@@ -16,7 +16,7 @@ from stubborn.segmentation.evaluation import GOAL_CHANNELS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "counter", "shelving", "appliances", "lighting")
+BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
 """Categories with columns of their own, besides the goals: what an object may be confused with."""
 DPI = 110
 
