@@ -141,7 +141,7 @@ class _Scan:
         if tag in ("include", "model", "flexcomp") and values.get("file"):
             self._follow(path, values["file"], count=tag != "flexcomp")
         if tag == "robot" and len(self._factors) == 2:
-            self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` program converts it.")
+            self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` converts it.")
         if tag == "attach":
             self._refuse("attach: a house is one file; other files are put into it by include.")
 
