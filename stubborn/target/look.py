@@ -41,6 +41,10 @@ class LookConfig:
     """Directions less than this apart are one view."""
     per_metre: float = 0.03
     """A doubtful track a metre farther away must be this much more probable to come first."""
+    patience_steps: int = 40
+    """A track is set aside after so many steps in which the robot pursued tracks and stayed within `patience_m`."""
+    patience_m: float = 1.0
+    """The distance that ends the count."""
     last_tries: tuple[tuple[int, float], ...] = ((120, 0.3), (60, 0.05))
     """(Steps left, probability): with so few steps left, the best track of at least this probability is tried: a wrong
     STOP costs no more than none."""

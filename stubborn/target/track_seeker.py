@@ -71,6 +71,7 @@ class TrackSeeker:
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
         self._went_nearer = False
+        self._pursuit: tuple[Pose, int] | None = None  # where and at which step the count of patience began
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
@@ -93,7 +94,17 @@ class TrackSeeker:
         return sighting.nearest(self.cells_of(navmap, self._chosen), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """See `Seeker`: accepted tracks come first, then the best doubtful one."""
+        """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress, another one."""
+        found = self._pursue(navmap, window, pose, step)
+        if found is not None and self._is_stuck(pose, step):
+            self.postpone(navmap, step)
+            self._chosen, self.pursued = self._to_approach(step), None
+            found = self._pursue(navmap, window, pose, step)
+        if found is None:
+            self._pursuit = None
+        return found
+
+    def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         last = self.config.look.last_try(step) <= 1.0 or step >= self.target.last_resort_step
         resort = LastResort.STOP if last else LastResort.NONE
         while self._chosen:
@@ -158,6 +169,16 @@ class TrackSeeker:
             return accepted
         due = [t for t in np.flatnonzero(self.probability >= least).tolist() if self._is_due(t)]
         return [max(due, key=lambda t: self.probability[t])] if due else []
+
+    def _is_stuck(self, pose: Pose, step: int) -> bool:
+        """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again."""
+        look = self.config.look
+        if self._pursuit is None or pose.distance_to(self._pursuit[0]) > look.patience_m:
+            self._pursuit = pose, step
+        stuck = step - self._pursuit[1] >= look.patience_steps
+        if stuck:
+            self._pursuit = pose, step
+        return stuck
 
     def _best_of(self, doubtful: list[int], pose: Pose) -> int:
         """Returns the pursued track, or the one with the highest probability less the cost of its distance."""

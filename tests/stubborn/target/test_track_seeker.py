@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, MPCAT40_ID, Action, Observation, RobotModel, Scores, SegmenterSpec
@@ -112,3 +113,21 @@ def test_before_a_stop_that_would_be_short_it_goes_one_forward_nearer_where_noth
     agent.navmap.seen_obstacle[:] = False
     assert nearer(0.85)
     assert not nearer(0.85)  # once
+
+
+def test_an_object_that_is_pursued_on_one_spot_is_set_aside_and_driving_begins_the_count_again(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    agent, seeker = agent_with(0.97, LookConfig(patience_steps=10, patience_m=1.0))
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    aside: list[int] = []
+    monkeypatch.setattr(seeker, "_pursue", lambda *_: None if aside else Approach(None, 0.0, (0, 0)))
+    monkeypatch.setattr(seeker, "postpone", lambda navmap, step: aside.append(step))
+
+    def pursues(x_m: float, step: int) -> bool:
+        return seeker.approach(agent.navmap, window, Pose(x_m, 0.0, 0.0), step) is not None
+
+    assert all(pursues(0.0, step) for step in range(100, 109))
+    assert all(pursues(1.1, step) for step in range(109, 119))  # it got somewhere
+    assert not pursues(1.1, 119)
+    assert aside == [119]
