@@ -3,7 +3,8 @@
 python tools/benchmarks/turns.py FOLDER PART,PART,...
 
 FOLDER holds that version. Of its code only what has long been there is used, so that old versions can be measured. Each
-line read from stdin is the name of a part; the answer is a line of JSON with the seconds of processor time.
+line read from stdin is the name of a part; the answer is a line of JSON with the seconds of processor time of
+one step, image, view, house or start.
 """
 
 from __future__ import annotations
@@ -27,10 +28,8 @@ if __name__ == "__main__":
 
 import numpy as np  # noqa: E402 - its threads are set above
 
-STEPS = 20
-"""Steps of a round of `step`."""
-FRAMES = 6
-VIEWS = 6
+STEPS, FRAMES, VIEWS = 20, 6, 6
+"""Numbers of steps, images and views in a round."""
 
 
 class Step:
@@ -63,7 +62,8 @@ class Step:
             acted_s = time.process_time()
             self._observation, *_ = self._env.step(action)
             agent_s, env_s = agent_s + acted_s - began_s, env_s + time.process_time() - acted_s
-        return {"a step, gt": agent_s + env_s, "of the agent": agent_s, "of the environment": env_s}
+        taken_s = {"a step, gt": agent_s + env_s, "of the agent": agent_s, "of the environment": env_s}
+        return {name: seconds / STEPS for name, seconds in taken_s.items()}
 
 
 class Images:
@@ -79,7 +79,7 @@ class Images:
         works = {"depth + semantic": ("depth", "semantic"), "rgb + depth + semantic": ("rgb", "depth", "semantic")}
         data, camera = self._scene.world.data, self._scene.camera
         return {
-            name: _cpu_s(lambda sensors=sensors: [camera.render(data, pose, sensors) for pose in poses])
+            name: _cpu_s(lambda sensors=sensors: [camera.render(data, pose, sensors) for pose in poses]) / FRAMES
             for name, sensors in works.items()
         }
 
@@ -103,7 +103,7 @@ class Views:
                 taken_s[f"views to disk, {profile}"] = _cpu_s(
                     lambda views=views, folder=folder: write_shard(Path(folder), "v", views, house="h", config={})
                 )
-        return taken_s
+        return {name: seconds / VIEWS for name, seconds in taken_s.items()}
 
 
 class House:
