@@ -117,7 +117,9 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
     for line in lines_of(tmp_path / "plain"):
         trajectory = read_trajectory(trajectory_file(tmp_path / "recorded", line["episode_id"]))
         assert trajectory.about["scores"] == line
-        assert cv2.imread(str(picture_file(tmp_path / "recorded", line["episode_id"]))).shape == (480, 640, 3)
+        picture = cv2.imread(str(picture_file(tmp_path / "recorded", line["episode_id"])))
+        assert picture is not None
+        assert picture.shape == (480, 640, 3)
         assert trajectory.num_steps == line["num_steps"]
         assert trajectory.moved_m.sum() == pytest.approx(line["path_length"], abs=1e-4)
         assert int(trajectory.collided.sum()) == line["collisions"]
