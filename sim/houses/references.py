@@ -2,8 +2,8 @@
 
 MuJoCo opens whatever path a file names: of an included file, a mesh, a texture. A file from elsewhere is data, so that
 it must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
-symbolic link. Textures may lie in `../textures` as well, which the houses of a split share. The user allows more with
-`--root FOLDER`, for packages whose files lie in folders beside each other.
+symbolic link. Textures may also lie in `../textures`, which the houses of a split share, and in the shipped folder. The
+user allows more with `--root FOLDER`, for packages whose files lie in folders beside each other.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
+from sim.paths import assets_dir
 from sim.reading import printable
 
 SHARED_TEXTURES = "textures"
@@ -60,7 +61,8 @@ class Allowed:
         except (OSError, ValueError, RuntimeError):
             raise self.error(f"it uses '{name}', which is no name of a file.") from None
         folder = self.file.parent
-        allowed = [folder, folder.parent / SHARED_TEXTURES, *([] if self.root is None else [self.root.resolve()])]
+        textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
+        allowed = [folder, *textures, *([] if self.root is None else [self.root.resolve()])]
         if not any(target.is_relative_to(each) for each in allowed):
             where = "its folder" if self.root is None else f"its folder and '{self.root}'"
             raise self.error(f"it uses '{name}', which is outside of {where}. {self._remedy(target)}")

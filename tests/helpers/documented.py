@@ -104,6 +104,10 @@ _IN_SCENE = (
     f"{_RUN} --house {{tmp}}/s/flat.xml --labels {{tmp}}/s/labels.json --episodes 1 --agent oracle --record"
     " --out {tmp}/run"
 )
+_OF_SCENE = "--house {tmp}/s/flat.xml --labels {tmp}/s/labels.json"
+_PACKED = f"{PYTHON} tools/make_episodes.py {_OF_SCENE} --episodes 2 --out {{tmp}}/split"
+_KITCHEN = "runs/worlds/gymnasium_robotics/envs/assets/kitchen_franka"
+_PACKAGE = Only("needs files of another package; tests/tools/test_foreign_houses.py has a scene of its own")
 _MODELS = (
     _FOREIGN.replace("foreign", "models") + 'write_folder(Path("{tmp}/source"), chairs=8)\'',
     f"{PYTHON} tools/import_furniture.py --source {{tmp}}/source --out {{tmp}}/models",
@@ -274,6 +278,24 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
     ),
+    f"{PYTHON} -m sim.report runs/may runs/june runs/july": (
+        _RECORDED,
+        f"{PYTHON} -m sim.report {{tmp}}/mine {{tmp}}/mine {{tmp}}/mine",
+    ),
+    # docs/gallery.md
+    **{
+        f"{PYTHON} tools/gallery.py --houses assets/mjcf_houses/{house}.xml --out runs/gallery": (
+            f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out {{tmp}}/gallery",
+        )
+        for house in ("val/val_03", "large/large_10", "hazards/hazards_02")
+    },
+    f"{PYTHON} tools/trap_report.py --out runs/traps --agents stubborn --traps glass_maze --headings 1": (
+        f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
+    ),
+    f"{_RUN} --semantics noisy --episodes 6 --record --video --out runs/six": (
+        f"{_RUN} --semantics noisy {_SMALL} --agent oracle --episodes 1 --record --video --out {{tmp}}/six",
+    ),
+    f"{PYTHON} -m sim.report runs/six": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
     # docs/performance.md
     f"{PYTHON} tools/bench.py --out runs/bench.json": (
         f"{PYTHON} tools/bench.py --quick --parts c --out {{tmp}}/bench.json",
@@ -418,6 +440,39 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
     f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
+    f"{PYTHON} tools/label_house.py --house flat.xml --out runs/flat.json --picture runs/flat.png": (
+        _SCENE,
+        f"{PYTHON} tools/label_house.py --house {{tmp}}/s/flat.xml --out {{tmp}}/flat.json --picture {{tmp}}/flat.png",
+    ),
+    f"{PYTHON} tools/label_house.py --house flat.xml --labels labels.json --picture runs/flat.png": (
+        _SCENE,
+        f"{PYTHON} tools/label_house.py {_OF_SCENE} --picture {{tmp}}/flat.png",
+    ),
+    f"{PYTHON} tools/gallery.py --house flat.xml --labels labels.json --out runs/flat_gallery": (
+        _SCENE,
+        f"{PYTHON} tools/gallery.py {_OF_SCENE} --out {{tmp}}/gallery",
+    ),
+    f"{PYTHON} tools/generate_views.py --house flat.xml --labels labels.json --views 500 --out runs/flat_views": (
+        _SCENE,
+        f"{PYTHON} tools/generate_views.py {_OF_SCENE} --views 4 --shrink 4 --profile fast --out {{tmp}}/views",
+    ),
+    f"{PYTHON} tools/make_episodes.py --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (
+        _SCENE,
+        _PACKED,
+    ),
+    f"{_RUN} --split runs/flat_split --episodes 20": (
+        _SCENE,
+        _PACKED,
+        f"{_RUN} --split {{tmp}}/split --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
+    " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
+    f"{_RUN} --house runs/worlds/robosuite/models/assets/arenas/pegs_arena.xml"
+    " --labels examples/worlds/pegs_arena.json --goal table --semantics gt --episodes 2": _PACKAGE,
+    f"{_RUN} --house runs/pitch/pitch.xml --labels examples/worlds/pitch.json --goal gym_equipment --semantics gt"
+    " --episodes 2": _PACKAGE,
+    f"{_RUN} --robot runs/car/car.xml --house examples/my_house.xml --goal sofa --semantics gt --episodes 1"
+    " --video": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
@@ -436,6 +491,11 @@ STAND_INS = (
     "flat.xml",
     "labels.json",
     "carrier.xml",
+    "runs/car/car.xml",
+    "runs/pitch/pitch.xml",
+    _KITCHEN,
+    f"{_KITCHEN}/kitchen_assets/kitchen_env_model.xml",
+    "runs/worlds/robosuite/models/assets/arenas/pegs_arena.xml",
     "rednet_semmap_mp3d_40.pth",
 )
 """Files of the reader's that the docs speak of and that are not there."""

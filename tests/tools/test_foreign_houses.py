@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sim import cli, run
 from sim.episodes.splits import load_split
@@ -28,6 +29,12 @@ def _small_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return write_scene(tmp_path_factory.mktemp("scene") / "elsewhere")
+
+
+def read(file: Path) -> NDArray:
+    picture = cv2.imread(str(file))
+    assert picture is not None
+    return picture
 
 
 def of(scene: tuple[Path, Path]) -> list[str]:
@@ -52,9 +59,7 @@ def test_proposed_labels_can_be_written_edited_and_checked(
     told = capsys.readouterr().out
     assert "Goals: cabinet, cushion, sofa, plant, stool." in told
     assert "'flat' can be used with these labels." in told
-    height, width = cv2.imread(str(picture)).shape[:2]
-    assert width == 2 * 280
-    assert height == 220
+    assert read(picture).shape == (220, 2 * 280, 3)
 
 
 def test_proposed_labels_never_replace_a_file(scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
@@ -84,9 +89,9 @@ def test_a_refused_scene_is_told_of_labels(scene: tuple[Path, Path], capsys: pyt
 def test_the_gallery_draws_a_house_without_rooms(scene: tuple[Path, Path], tmp_path: Path) -> None:
     assert cli.run(gallery.Args, gallery.main, [*of(scene), "--out", str(tmp_path)]) == 0
     assert sorted(file.name for file in tmp_path.iterdir()) == ["flat_top.png", "flat_views.png"]
-    top = cv2.imread(str(tmp_path / "flat_top.png"))
+    top = read(tmp_path / "flat_top.png")
     assert top.std() > 20.0
-    assert cv2.imread(str(tmp_path / "flat_views.png")).shape[1] >= 160
+    assert read(tmp_path / "flat_views.png").shape[1] >= 160
 
 
 def test_the_gallery_draws_a_house_with_nothing_to_look_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
