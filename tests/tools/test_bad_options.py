@@ -115,7 +115,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--views nowhere --weights FILE", "cannot be read"),
     ],
     "tools.gallery": [
-        ("--out OUT", "needs --houses FILE ... or --sheet"),
+        ("--out OUT", "needs --houses FILE ..., --house FILE or --sheet"),
         ("--out OUT --houses nowhere.xml", "no such file"),
         ("--out OUT --houses FILE", "not an MJCF file"),
         ("--out OUT --sheet --categories spoons", "spoons"),
