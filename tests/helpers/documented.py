@@ -400,10 +400,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py categories --semantics rednet --episodes 1 --workers 1 --agents random oracle "
-        "--out {tmp}/paper",
-    ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",

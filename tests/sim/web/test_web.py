@@ -241,7 +241,8 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
         assert browser.run("return document.querySelector('#driver').textContent") == "stubborn"
         browser.click('[data-action="0"]')
         ended = state_of(second, "ended")
-    assert "came too early" in ended["outcome"]["sentence"]  # a person's STOP is no false detection
+    told = ended["outcome"]["sentence"]  # a person's STOP is no false detection; the agent may have driven near the bed
+    assert "came too early" in told or "The STOP counts" in told
     assert browser.complaints() == []
 
 
