@@ -22,7 +22,7 @@ import threading
 import traceback
 import types
 import typing
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar
 
@@ -60,6 +60,18 @@ OutFolder = Annotated[Path, Written(folder=True)]
 
 class Terminated(KeyboardInterrupt):
     """SIGTERM: ends the command like Ctrl-C, so that its workers end and its unfinished files are removed."""
+
+
+def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
+    """Returns the names of a comma-separated option, in the order of `names`.
+
+    Raises:
+        ConfigError: an unknown name, or none.
+    """
+    there_are, wanted = list(names), [name.strip() for name in text.split(",") if name.strip()]
+    if not wanted or not set(wanted) <= set(there_are):
+        raise ConfigError(f"{option} must be some of {','.join(there_are)}, got '{text}'.")
+    return [name for name in there_are if name in wanted]
 
 
 def run(

@@ -25,7 +25,7 @@ def distance_within(mask, reach):
             squared[row - 1],
             squared[row],
             mask[row],
-        )  # the last row stands in for one before the first
+        )  # index -1, the last row, is used where there is none before
         for col in range(cols):
             gap = above[col] + one
             gap = gap if gap < beyond else beyond

@@ -67,7 +67,7 @@ class Args:
 def main(args: Args) -> int:
     """Measures the parts; returns 1 if a goal is missed (never with --quick)."""
     os.environ["LP_NUM_THREADS"] = "1"  # for figures and baselines; llvmpipe reads it when it starts
-    wanted = parse_parts(args.parts)
+    wanted = cli.chosen(args.parts, PARTS, option="--parts")
     if args.markdown is not None:
         report.around_marks(args.markdown)  # refused before the measurements
     console = display.make_console()
@@ -90,19 +90,6 @@ def main(args: Args) -> int:
     if args.markdown is not None:
         report.write_between_marks(args.markdown, report.to_markdown(figures, about, first, command_of(args)))
     return int(not args.quick and any(figure.met is False for figure in figures))
-
-
-def parse_parts(text: str) -> list[str]:
-    """Returns the letters of `--parts` in alphabetical order.
-
-    Raises:
-        ConfigError: an unknown letter, or none.
-    """
-    wanted = [part.strip() for part in text.split(",") if part.strip()]
-    unknown = [part for part in wanted if part not in PARTS]
-    if unknown or not wanted:
-        raise ConfigError(f"--parts must be letters out of {','.join(PARTS)}, got '{text}'.")
-    return [part for part in PARTS if part in wanted]
 
 
 def measured(part: str, setting: Setting, console: Console) -> list[Figure]:
@@ -128,7 +115,7 @@ def drifts(calibrations: Mapping[str, Calibration]) -> list[str]:
 
 def command_of(args: Args) -> str:
     """Returns the command that measures the same parts."""
-    parts = "" if parse_parts(args.parts) == list(PARTS) else f" --parts {args.parts}"
+    parts = "" if cli.chosen(args.parts, PARTS, option="--parts") == list(PARTS) else f" --parts {args.parts}"
     return "python tools/bench.py" + parts + (" --quick" if args.quick else "")
 
 

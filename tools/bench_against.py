@@ -73,7 +73,7 @@ class Compared:
 
 def main(args: Args) -> int:
     """Measures and prints the table; returns 0, since a slower version is no error."""
-    parts = parse_parts(args.parts)
+    parts = cli.chosen(args.parts, PARTS, option="--parts")
     commit = commit_of(args.against)
     with tempfile.TemporaryDirectory() as folder:
         unpack(commit, Path(folder))
@@ -91,19 +91,6 @@ def main(args: Args) -> int:
         }
         write_atomically(args.out, (json.dumps(content, indent=1) + "\n").encode())
     return 0
-
-
-def parse_parts(text: str) -> list[str]:
-    """Returns the names of `--parts`.
-
-    Raises:
-        ConfigError: an unknown name, or none.
-    """
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    unknown = [name for name in names if name not in PARTS]
-    if unknown or not names:
-        raise ConfigError(f"--parts must be names out of {','.join(PARTS)}, got '{text}'.")
-    return [name for name in PARTS if name in names]
 
 
 def commit_of(ref: str) -> str:

@@ -144,3 +144,10 @@ def test_a_signal_ends_a_command_in_order(number: int, status: int, capsys: pyte
     assert ended == [True]
     assert capsys.readouterr().err == "\nResume it.\n"
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+def test_names_of_an_option_come_in_their_order_and_unknown_ones_are_refused() -> None:
+    assert cli.chosen("d, a", "abcd", option="--parts") == ["a", "d"]
+    for text in ("z", "", "a,z"):
+        with pytest.raises(ConfigError, match="--parts must be some of a,b,c,d, got"):
+            cli.chosen(text, "abcd", option="--parts")

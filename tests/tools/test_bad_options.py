@@ -92,7 +92,7 @@ def test_every_number_and_path_of_a_command_is_checked_before_it_begins(
 BAD: dict[str, list[tuple[str, str]]] = {
     "sim.report": [("nowhere", "it has no config.json"), ("FILE", "config.json")],
     "tools.bench": [
-        ("--parts z", "--parts must be letters"),
+        ("--parts z", "--parts must be some of a,b,c"),
         ("--markdown nowhere.md", "cannot be read"),
         ("--markdown FILE", "cannot be read"),
     ],

@@ -8,7 +8,7 @@ import pytest
 
 from sim.interface import ConfigError
 from tools import bench_against
-from tools.bench_against import Worker, commit_of, in_turns, parse_parts, unpack
+from tools.bench_against import Worker, commit_of, in_turns, unpack
 
 pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reason="needs a git checkout")
 
@@ -24,13 +24,6 @@ def test_a_wrong_ref_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[st
 def test_what_is_no_commit_is_no_ref(ref: str) -> None:
     with pytest.raises(ConfigError, match="names no commit"):
         commit_of(ref)
-
-
-def test_parts_that_there_are_not_are_refused() -> None:
-    assert parse_parts("start, step") == ["step", "start"]
-    for text in ("walk", "", "step,walk"):
-        with pytest.raises(ConfigError, match="--parts must be names out of step,images"):
-            parse_parts(text)
 
 
 def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:

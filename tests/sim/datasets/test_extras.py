@@ -87,8 +87,8 @@ def test_the_objects_of_a_view_are_those_of_its_labels(scene: Scene, views: list
             assert scene.world.labels.instances[each["id"] - 1].name == each["name"]
             masks[mask] = each["category_id"]
             seen.add(each["name"])
-        things = np.isin(view.semantic, [MPCAT40_ID["sofa"], MPCAT40_ID["table"]])
-        assert np.array_equal(masks, np.where(things, view.semantic, 0))
+        furniture = np.isin(view.semantic, [MPCAT40_ID["sofa"], MPCAT40_ID["table"]])
+        assert np.array_equal(masks, np.where(furniture, view.semantic, 0))
     assert seen == {"sofa_00", "table_03"}
 
 
