@@ -27,7 +27,6 @@ from rich.console import Console
 from sim import cli
 from sim.analysis import display
 from sim.files import write_atomically
-from sim.interface import ConfigError
 from tools.benchmarks import growth, learning, making, rendering, report, scaling, stepping
 from tools.benchmarks.calibration import Calibration, Calibrator
 from tools.benchmarks.figures import Figure

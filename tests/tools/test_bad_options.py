@@ -98,7 +98,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "tools.bench_against": [
         ("--against nowhere", "names no commit"),
-        ("--against HEAD --parts walk", "--parts must be names"),
+        ("--against HEAD --parts walk", "--parts must be some of"),
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
     ],
     "tools.check_collisions": [("--run nowhere", "no results.jsonl")],
