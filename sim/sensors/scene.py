@@ -73,6 +73,7 @@ class GeomScene:
         flags[:] = 0
         flags[mujoco.mjtRndFlag.mjRND_SEGMENT] = 1
         flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = 1
+        flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
         mujoco.mjr_restoreBuffer(context)  # the last pass has bound its own frame buffer
         mujoco.mjr_render(rect, self.scene, context)
 

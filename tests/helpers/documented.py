@@ -400,10 +400,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
     ),
-    f"{PYTHON} tools/bench_against.py --against HEAD~10": (
+    f"{PYTHON} tools/bench_against.py --against 'HEAD~10'": (
         f"{PYTHON} tools/bench_against.py --against HEAD --parts start --rounds 1",
     ),
-    f"{PYTHON} tools/bench_against.py --against HEAD~10 --parts step --rounds 60": (
+    f"{PYTHON} tools/bench_against.py --against 'HEAD~10' --parts step --rounds 60": (
         f"{PYTHON} tools/bench_against.py --against HEAD --parts start --rounds 1",
     ),
     # docs/traps.md

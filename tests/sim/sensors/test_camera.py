@@ -88,6 +88,36 @@ def test_culling_changes_no_pixel(clutter: tuple[Eye, Eye]) -> None:
             np.testing.assert_array_equal(culled[sensor], whole[sensor], err_msg=f"{sensor} at {pose}")
 
 
+def test_the_back_of_an_open_mesh_is_in_no_image() -> None:
+    """A sheet of one face at x = 2 m, which the colour pass shows from its front only."""
+    corners = np.array([[0, -1, -1], [0, 1, -1], [0, 1, 1], [0, -1, 1]], float)
+    shown: dict[str, np.ndarray] = {}
+    for side, order in {"front": (0, 2, 1, 0, 3, 2), "back": (0, 1, 2, 0, 2, 3)}.items():
+        spec = room(8, 8).spec.copy()
+        spec.add_mesh(
+            name="sheet",
+            uservert=corners.ravel(),
+            userface=order,
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+        )
+        spec.worldbody.add_geom(
+            name="cabinet_00",
+            type=mujoco.mjtGeom.mjGEOM_MESH,
+            meshname="sheet",
+            pos=(2, 0, 1),
+            contype=0,
+            conaffinity=0,
+            rgba=(1, 0, 0, 1),
+        )
+        images = Eye(House(side, spec)).see(0, 0, 0, "rgb", "depth", "semantic")
+        shown[side] = images["semantic"] == MPCAT40_ID["cabinet"]
+        red = images["rgb"][..., 0] > 2 * images["rgb"][..., 1].astype(int)
+        np.testing.assert_array_equal(red, shown[side])
+        np.testing.assert_array_equal(np.isclose(images["depth"], 2.0, atol=1e-3), shown[side])
+    assert shown["front"].sum() > 10_000
+    assert not shown["back"].any()
+
+
 def test_in_the_good_profile_an_invisible_object_casts_its_shadow() -> None:
     """A cupboard behind the camera, under a lamp further back."""
     spec = with_box(room(8, 8), "cabinet_00", centre_m=(-1.6, 0.0, 1.9), half_m=(0.1, 0.5, 0.3)).spec.copy()
