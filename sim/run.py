@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from sim import cli
 from sim.analysis import display
-from sim.composition.agents import SPECS, find_agent
-from sim.composition.options import RunOptions, check_options
-from sim.composition.run_config import configuration_of, record_of
-from sim.composition.runner import error_line, plan_episodes
-from sim.episodes.splits import Episode, load_split
-from sim.evaluation.executors import make_executor
+from sim.composition.agents import SPECS
+from sim.composition.options import RunOptions
 from sim.evaluation.parallel import Shard
-from sim.evaluation.results import RunDirectory
-from sim.evaluation.workers import RunnerSpec
-from sim.houses.load import load_house
-from sim.paths import code_hash
 from stubborn.agents import EXPLORERS
 
 Args = RunOptions
@@ -38,6 +27,10 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
+    from sim.composition.checks import check_options  # these bring MuJoCo, which a list does not need
+    from sim.composition.playing import report_house, run_missing
+    from sim.composition.runner import plan_episodes
+
     check_options(options)
     if options.house is None and options.split == "test":
         print("Split test is for a last measurement: choose nothing by its results.", file=sys.stderr)
@@ -54,74 +47,6 @@ def main(options: RunOptions) -> int:
     return 1 if summary["errors"] else 0
 
 
-def run_missing(
-    options: RunOptions, episodes: Sequence[Episode], split: dict[str, Any], console: Console
-) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Runs the episodes that the folder `options.out` does not hold yet.
-
-    Args:
-        options: checked options; the folder may hold a run with the same ones, except for the number of episodes.
-        episodes: those of `plan_episodes`, or some of them.
-        split: what identifies their source, from `plan_episodes`.
-        console: for progress.
-
-    Returns:
-        All lines of the folder, and their summary.
-
-    Raises:
-        ConfigError: the folder cannot be written, or holds a run with another configuration.
-    """
-    assert options.out is not None
-    executor = make_executor(options.executor, workers=options.workers, address=options.address)
-    record = record_of(options, configuration_of(options), split)
-    run = RunDirectory(options.out, record)
-    try:
-        if run.healed:
-            console.print(run.healed)
-        _require_own_lines(options, run, episodes)
-        if options.retry_errors:
-            console.print(f"{run.drop_errors()} episodes that ended with an error are run again.")
-        done = {line["episode_id"] for line in run.lines}
-        todo = [episode for episode in episodes if episode.episode_id not in done]
-        segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
-        console.print(
-            f"{options.agent}{segmentation}, {len(episodes)} episodes of {split['name']} "
-            f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
-        )
-        _report_resumed(run, len(episodes), len(todo), console)
-        spec = RunnerSpec("sim.composition.runner:EpisodeRunner", options)
-        progress = display.ProgressReport(console, total=len(todo))
-        lines = executor.run(
-            spec, todo, on_death=lambda episode: _lost_line(options, episode), on_start=progress.started
-        )
-        for line in progress.over(lines) if todo else ():
-            run.append(line)
-        return run.lines, run.write_summary({"split": split})
-    finally:
-        run.discard_if_empty()
-        run.close()
-
-
-def _require_own_lines(options: RunOptions, run: RunDirectory, episodes: Sequence[Episode]) -> None:
-    """Raises ConfigError where the folder holds a line of another split, or one that contradicts its episode."""
-    known = {episode.episode_id: (episode.house, episode.goal) for episode in episodes}
-    others = [line for line in run.lines if line["episode_id"] not in known]
-    if others and options.house is None:  # of the same split, but not asked for now
-        known |= {each.episode_id: (each.house, each.goal) for each in load_split(options.split).episodes}
-    elif options.house is not None:
-        stem = re.escape(options.house.stem)
-        drawn = (line for line in others if re.fullmatch(rf"{stem}_\d{{4,}}", line["episode_id"]))
-        known |= {line["episode_id"]: (options.house.stem, options.goal or line["goal"]) for line in drawn}
-    run.require_of(known)
-
-
-def report_house(options: RunOptions, console: Console) -> None:
-    """Prints what was left out of a house with `--labels`, and what has no label."""
-    if options.house is not None and options.labels is not None:
-        for note in load_house(options.house, labels_path=options.labels, root=options.root).notes:
-            console.print(f"House '{options.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
-
-
 def agent_table() -> Table:
     """Returns the table that `--list-agents` prints: agents with their descriptions, and the explorers."""
     table = Table("agent", "description", box=None)
@@ -130,23 +55,6 @@ def agent_table() -> Table:
     table.add_section()
     table.add_row("--explorer", "for agents that take one: " + ", ".join(EXPLORERS))
     return table
-
-
-def _report_resumed(run: RunDirectory, total: int, todo: int, console: Console) -> None:
-    """Prints how many episodes the folder holds already, and whether other code ran them."""
-    if todo < total:
-        console.print(f"{total - todo} of them were there already, {todo} to go.")
-    others = run.record_code(code_hash()) if todo else []
-    if others:
-        console.print(
-            f"The episodes that were there were run by other code ({', '.join(others)}) than these ({code_hash()}).",
-            highlight=False,
-            soft_wrap=True,
-        )
-
-
-def _lost_line(options: RunOptions, episode: Episode) -> dict[str, Any]:
-    return error_line(options, episode, f"House '{episode.house}': the worker died twice in this episode.")
 
 
 def entry(argv: Sequence[str] | None = None) -> int:

@@ -31,11 +31,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 import tyro
 from rich.console import Console
 
-from sim import cli, run
+from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Line, Run, code_of, read_run
 from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
-from sim.composition.options import RunOptions, check_options
+from sim.composition.checks import check_options
+from sim.composition.options import RunOptions
+from sim.composition.playing import run_missing
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
@@ -136,7 +138,7 @@ def run_episodes(args: Args, setups: Sequence[AgentSetup], splits: Sequence[Spli
                 done = read_run(_folder(part.args, setup)).lines if _has_run(part.args, setup) else {}
                 if first and all(episode.episode_id in done for episode in chunk):
                     continue
-                run.run_missing(_run_args(part.args, setup), chunk, _identity(part.split), console)
+                run_missing(_run_args(part.args, setup), chunk, _identity(part.split), console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
 
 

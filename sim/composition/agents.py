@@ -9,18 +9,21 @@ import inspect
 import sys
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
-from sim.env.objectnav import ObjectNavEnv
-from sim.env.oracle import Oracle
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.target.verification import Verifier
 
+if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
+    from sim.env.objectnav import ObjectNavEnv
 
-def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Oracle:
+
+def _make_oracle(*, truth: ObjectNavEnv, **_: Any) -> Agent:
+    from sim.env.oracle import Oracle
+
     return Oracle(truth)
 
 

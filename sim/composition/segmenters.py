@@ -11,18 +11,20 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
-from sim.env.objectnav import ObjectNavEnv
 from sim.errors import ConfigError
 from sim.interface import Observation, Scores, Segmenter, SegmenterSpec
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
+
+if TYPE_CHECKING:
+    from sim.env.objectnav import ObjectNavEnv
 
 
 @dataclass(frozen=True, kw_only=True)

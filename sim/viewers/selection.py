@@ -7,7 +7,6 @@ from typing import Protocol
 
 from sim.errors import ConfigError
 from sim.interface import Segmenter
-from sim.viewers.video import VideoRecorder
 from sim.viewers.viewer import MapPainter, Viewer
 
 
@@ -64,6 +63,8 @@ def make(options: ViewerOptions, painter: MapPainter | None, segmenter: Segmente
     check(options)
     viewers: list[Viewer] = []
     if options.video and options.out is not None:
+        from sim.viewers.video import VideoRecorder
+
         viewers.append(VideoRecorder(options.out, painter, segmenter))
     if options.view:
         from sim.viewers.live import LiveView

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from sim import run
-from sim.composition.options import RunOptions, check_options
+from sim.composition.checks import check_options
+from sim.composition.options import RunOptions
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError

@@ -159,7 +159,7 @@ def test_tables_are_made_again_from_the_folders_without_running_anything(
         kept = ("agent", "semantics", "seed", "noise", "episodes", "split_identity", "versions")
         file.write_text(json.dumps({key: config[key] for key in kept}))
     page.unlink()
-    monkeypatch.setattr(run, "run_missing", lambda *_: pytest.fail("an episode was run"))
+    monkeypatch.setattr(reproduce, "run_missing", lambda *_: pytest.fail("an episode was run"))
     assert reproduce.main(replace(args, minutes=0.0)) == 0
     assert page.read_bytes() == before
 

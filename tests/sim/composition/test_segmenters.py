@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 import torch
 
-from sim.composition.options import RunOptions, check_options
+from sim.composition.checks import check_options
+from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.composition.segmenters import NetworkConfig, make_segmenter
 from sim.interface import CameraModel, ConfigError
