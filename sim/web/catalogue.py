@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from sim.composition.agents import SPECS
 from sim.composition.segmenters import KINDS
 from sim.episodes.splits import load_split, shipped_splits
 from sim.errors import ConfigError
+from sim.evaluation.last_view import picture_file
 from sim.evaluation.results import read_record, read_result_lines
 from sim.viewers.video import video_file
 from sim.web.controls import Wish
@@ -23,6 +24,8 @@ FIRST = ("val", "large", "hazards", "traps")
 MOST_RUNS = 100
 """The newest runs are listed."""
 REPORT = "report.html"
+_FILES: Mapping[str, Callable[[Path, str], Path]] = {"pictures": picture_file, "videos": video_file}
+"""Files of an episode that a report links to, by their folder."""
 _COLUMNS = (
     "episode_id", "house", "goal", "agent", "success", "spl", "num_steps", "collisions", "failure", "end_reason",
 )  # fmt: skip
@@ -113,6 +116,25 @@ class Runs:
             if self._inside(file):
                 return file
         raise ConfigError(f"Run '{name}' has no video of '{episode_id}'.")
+
+    def linked(self, name: str, kind: str, file_name: str) -> Path:
+        """Returns a picture or a video to which the report of a run links.
+
+        Args:
+            name: of the run.
+            kind: the folder in it, `pictures` or `videos`.
+            file_name: in that folder.
+
+        Raises:
+            ConfigError: no episode of the run has such a file.
+        """
+        run = self._run(name)
+        file_of = _FILES.get(kind)
+        for line in _lines(run) if file_of is not None else ():
+            file = file_of(run, line["episode_id"])
+            if file.name == file_name and self._inside(file):
+                return file
+        raise ConfigError(f"Run '{name}' has no file '{file_name}' in '{kind}'.")
 
     def report(self, name: str) -> Path:
         """Returns the report of a run.

@@ -1,7 +1,7 @@
 """The server of the page: HTTP for the page and for finished runs, a websocket for the running episode.
 
-It serves only files of this package, and videos and reports of the folder of runs. A request is refused unless its
-`Host` is one of the allowed names (DNS rebinding), and a websocket unless it comes from the page itself.
+It serves only files of this package, and reports, pictures and videos of the folder of runs. A request is refused
+unless its `Host` is one of the allowed names (DNS rebinding), and a websocket unless it comes from the page itself.
 """
 
 from __future__ import annotations
@@ -222,6 +222,11 @@ def make_app(hub: Hub, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
             lambda: FileResponse(runs.report(request.path_params["run"]), media_type="text/html", headers=headers)
         )
 
+    async def linked(request: Request) -> Response:
+        asked = (request.path_params[part] for part in ("run", "kind", "file"))
+        headers = {"cross-origin-resource-policy": "cross-origin"}  # a sandboxed report has another origin
+        return await _or_404(lambda: FileResponse(runs.linked(*asked), headers=headers))
+
     routes = [Route(address, _page_file(*about)) for address, about in PAGE_FILES.items()]
     routes += [
         Route("/api/choices", offered),
@@ -229,6 +234,7 @@ def make_app(hub: Hub, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
         Route("/api/runs/{run}", one_run),
         Route("/runs/{run}/video", video),
         Route("/runs/{run}/report.html", report),
+        Route("/runs/{run}/{kind}/{file}", linked),
     ]
     return Starlette(
         routes=[*routes, WebSocketRoute("/live", live)],

@@ -16,6 +16,8 @@ from typing import Any
 
 import pytest
 
+from sim import report
+from sim import run as sim_run
 from tests.helpers.browser import Browser, missing
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
@@ -260,6 +262,28 @@ def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Bro
     assert "found" in rows[0]
     assert [("Video" in row) for row in rows] == [True, False]
     assert browser.complaints() == []
+
+
+def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser) -> None:
+    run = tmp_path / "runs" / "real"
+    options = ["--split", "traps", "--agent", "oracle", "--semantics", "gt", "--episodes", "1", "--video", "--record"]
+    assert sim_run.entry([*options, "--out", str(run)]) == 0
+    assert report.main(report.Args(runs=(run,))) == 0
+    episode = json.loads((run / "results.jsonl").read_text())["episode_id"]
+    server = Server(run.parent)
+    try:
+        for name in (f"pictures/{episode}.jpg", f"videos/{episode}.mp4"):
+            assert server.get(f"/runs/real/{name}")[2] == (run / name).read_bytes()
+        for name in (f"trajectories/{episode}.npz", f"pictures/{episode}.mp4", "pictures/..%2fconfig.json"):
+            assert server.get(f"/runs/real/{name}")[0] == 404
+        browser.visit(f"{server.address}/runs/real/report.html#episode={episode}")
+        large = "return [...document.images].filter(i => i.src.includes('/pictures/') && i.naturalWidth >= 640).length"
+        wait_for(lambda: browser.run(large))
+        browser.run("const film = document.querySelector('video'); film.preload = 'auto'; film.load();")
+        wait_for(lambda: browser.run("return document.querySelector('video').readyState"))
+        assert browser.complaints() == []
+    finally:
+        server.kill()
 
 
 def test_nothing_is_wider_than_a_phone(server: Server, browser: Browser) -> None:
