@@ -4,7 +4,8 @@ python examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo
 
 The agent sees the direction of the goal, the depth in sixteen directions and whether it bumped into something; its
 reward is `sim.gym.ProgressReward`. Every 1,024 steps a row of `progress.csv` is written and printed: success and return
-of the last 100 episodes, and steps per second. At the end `policy.zip` is tried in new episodes, without exploration.
+of the last 100 episodes, and steps per second. At the end `curve.png` shows them, and `policy.zip` is tried in new
+episodes, without exploration.
 """
 
 import csv
@@ -21,6 +22,7 @@ import numpy as np
 import torch
 from gymnasium import spaces
 from gymnasium.wrappers import FilterObservation, FlattenObservation
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sim.gym
@@ -145,7 +147,7 @@ class Progress(BaseCallback):
     def __init__(self, file: Path, minutes: float) -> None:
         super().__init__()
         self._file, self._minutes = file, minutes
-        self._rows: list[dict[str, Any]] = []
+        self.rows: list[dict[str, Any]] = []
         self._began_s = self._last_s = time.perf_counter()
         self._last_steps = 0
 
@@ -160,13 +162,30 @@ class Progress(BaseCallback):
         row |= {"steps_per_s": round(rate, 1), "episodes": len(last)}
         for name, key in (("success", "success"), ("mean_return", "r"), ("mean_length", "l")):
             row[name] = round(float(np.mean([episode[key] for episode in last])), 3) if last else float("nan")
-        self._rows.append(row)
+        self.rows.append(row)
         print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
         text = io.StringIO()
         table = csv.DictWriter(text, list(row))
         table.writeheader()
-        table.writerows(self._rows)
+        table.writerows(self.rows)
         write_atomically(self._file, text.getvalue())
+
+
+def draw_curve(rows: list[dict[str, Any]], file: Path) -> None:
+    """Draws success and return of the last 100 episodes over the steps of the training."""
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.subplots()
+    steps = [row["steps"] for row in rows]
+    axes.plot(steps, [row["success"] for row in rows], color="tab:blue")
+    axes.set(xlabel="steps of the training, all environments", ylim=(0.0, 1.0))
+    axes.set_ylabel("success of the last 100 episodes", color="tab:blue")
+    returns = axes.twinx()
+    returns.plot(steps, [row["mean_return"] for row in rows], color="tab:orange")
+    returns.set_ylabel("their mean return", color="tab:orange")
+    axes.grid(alpha=0.3)
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=120)
+    write_atomically(file, content.getvalue())
 
 
 def success_of(policy: PPO, episodes: int, args: Args) -> float:
@@ -196,12 +215,15 @@ def main(args: Args) -> int:
     )  # fmt: skip
     with torch.no_grad():  # an untrained policy would call STOP in one of four steps
         cast(torch.Tensor, policy.policy.action_net.bias)[Action.STOP] = -3.0
-    policy.learn(args.steps, callback=Progress(args.out / "progress.csv", args.minutes))
+    progress = Progress(args.out / "progress.csv", args.minutes)
+    policy.learn(args.steps, callback=progress)
     envs.close()
+    draw_curve(progress.rows, args.out / "curve.png")
     content = io.BytesIO()
     policy.save(content)
     write_atomically(args.out / "policy.zip", content.getvalue())
     if args.trials:
+        print(f"trying the policy in {args.trials} new episodes", flush=True)
         print(f"success without exploration: {success_of(policy, args.trials, args):.2f} of {args.trials} new episodes")
     return 0
 

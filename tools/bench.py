@@ -27,7 +27,7 @@ from rich.console import Console
 from sim import cli
 from sim.analysis import display
 from sim.files import write_atomically
-from tools.benchmarks import growth, learning, making, rendering, report, scaling, stepping
+from tools.benchmarks import growth, learning, making, rendering, report, scaling, starting, stepping
 from tools.benchmarks.calibration import Calibration, Calibrator
 from tools.benchmarks.figures import Figure
 from tools.benchmarks.stages import QUICK, Amount, Setting
@@ -43,6 +43,7 @@ PARTS: Mapping[str, Callable[[Setting], list[Figure]]] = {
     "h": scaling.two_workers,
     "i": growth.growth,
     "j": learning.steps_of_training,
+    "k": starting.starts,
 }
 MAX_DRIFT = 1.15
 """A calibration that changes by a larger factor between two parts gives a warning."""
@@ -54,7 +55,7 @@ class Args:
 
     parts: str = ",".join(PARTS)
     """Letters with commas between: a, b rendering; c the environment's step; d the agent's; e episodes; f views;
-    g houses; h workers; i growth; j steps of a training."""
+    g houses; h workers; i growth; j steps of a training; k starts."""
     quick: bool = False
     """Measure as little as possible, to test that everything runs."""
     out: cli.OutFile | None = None

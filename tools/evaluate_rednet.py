@@ -62,8 +62,8 @@ class Args:
     """With --card: folders of the trainings that led to the network, first one first, for a picture of the curves."""
     block_px: cli.Count | None = None
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
-    threads: cli.Count = 2
-    """Number of threads of PyTorch."""
+    threads: cli.Count = 1
+    """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
 
 
 @dataclass

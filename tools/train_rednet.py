@@ -194,7 +194,7 @@ class Trainer:
         self.loading_s = 0.0
         """Time since the start of this process in which the step waited for views."""
         self.first_step = 0
-        self._printed_s = -math.inf
+        self._printed_s = 0.0
         self.total = args.steps
         args.out.mkdir(parents=True, exist_ok=True)
         self._resume()
@@ -204,6 +204,7 @@ class Trainer:
         start_s, last_saved_s = time.perf_counter() - self.spent_s, time.perf_counter()
         losses: list[float] = []
         self.first_step = self.step
+        self._printed_s = time.perf_counter()
         for rgb, depth, target in self._timed(self._batches()):
             if self.step >= self.total or self._time_is_up():
                 break
@@ -212,6 +213,8 @@ class Trainer:
             self.spent_s = time.perf_counter() - start_s
             if self.args.hours is not None and self.step % LOG_EVERY_STEPS == 0:
                 self.total = max(self.step, int(self.step * 3600 * self.args.hours / self.spent_s))
+            if time.perf_counter() - self._printed_s >= PRINT_EVERY_S:
+                self._print_loss(float(np.mean(losses)))
             if self.step % LOG_EVERY_STEPS == 0:
                 self._log(float(np.mean(losses)))
                 losses.clear()
@@ -221,7 +224,8 @@ class Trainer:
                 self._save_state()
                 last_saved_s = time.perf_counter()
         if losses:  # of the last steps, or of a training shorter than one row
-            self._log(float(np.mean(losses)), last=True)
+            self._log(float(np.mean(losses)))
+            self._print_loss(float(np.mean(losses)))
         if self.step % self.args.evaluate_every:
             self._evaluate()
         self._save_state()
@@ -270,6 +274,7 @@ class Trainer:
 
     def _evaluate(self) -> None:
         """Evaluates, writes a row, and saves the network if it is the best so far."""
+        print(f"step {self.step} of {self.total}: evaluating on {len(self.val)} views", flush=True)
         averaged = self._usable()
         iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
@@ -304,17 +309,20 @@ class Trainer:
             "torch": torch.__version__,
         }
 
-    def _log(self, loss: float, *, last: bool = False) -> None:
-        """Writes a row of the training curve, and prints it if nothing was printed for a while or it is the last."""
+    def _log(self, loss: float) -> None:
+        """Writes a row of the training curve."""
         rate = max(group["lr"] for group in self.optimiser.param_groups)
-        per_s = self.args.batch * self.step / max(self.spent_s, 1e-9)
         loader = self.args.batch * (self.step - self.first_step) / max(self.loading_s, 1e-9)
         row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
-        row |= {"rate": f"{rate:.2e}", "views_per_s": round(per_s, 2), "loader_views_per_s": round(loader, 1)}
-        _append(self.args.out / "train.csv", row)
-        if last or time.perf_counter() - self._printed_s >= PRINT_EVERY_S:
-            self._printed_s = time.perf_counter()
-            print(f"step {self.step} of {self.total}: loss {loss:.3f}, {per_s:.1f} views/s", flush=True)
+        row |= {"rate": f"{rate:.2e}", "views_per_s": round(self._views_per_s(), 2)}
+        _append(self.args.out / "train.csv", row | {"loader_views_per_s": round(loader, 1)})
+
+    def _print_loss(self, loss: float) -> None:
+        self._printed_s = time.perf_counter()
+        print(f"step {self.step} of {self.total}: loss {loss:.3f}, {self._views_per_s():.1f} views/s", flush=True)
+
+    def _views_per_s(self) -> float:
+        return self.args.batch * self.step / max(self.spent_s, 1e-9)
 
     def _save_state(self) -> None:
         """Writes the state of the run; the file is replaced in one step."""

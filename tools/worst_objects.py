@@ -49,8 +49,8 @@ class Args:
     """Weights of the network; None: the shipped ones."""
     count: cli.Count = 10
     """Number of objects."""
-    threads: cli.Count = 2
-    """Number of threads of PyTorch."""
+    threads: cli.Count = 1
+    """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
 
 
 @dataclass(frozen=True)

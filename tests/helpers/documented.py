@@ -178,6 +178,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=30 --episodes 1 {_SMALL}"
         " --out {tmp}/run",
     ),
+    f"{_RUN} --semantics gt --config robot.body.radius_m=0.25 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 5": (
+        f"{_RUN} --semantics gt --config robot.body.radius_m=0.25 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 1"
+        f" {_SMALL} --out {{tmp}}/run",
+    ),
     f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 5": (
         f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 1"
         f" {_SMALL} --semantics gt --out {{tmp}}/run",
@@ -216,6 +220,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
+    f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out runs/my_gallery": (
+        f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out {{tmp}}/gallery",
+    ),
     f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
     f"{PYTHON} tools/check_houses.py --pool heldout --seeds 200 --workers 2": (
         f"{PYTHON} tools/check_houses.py --pool heldout --seeds 1 --workers 1 --kind studio --views 2",
@@ -229,6 +236,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/furniture.md
     f"{PYTHON} examples/my_furniture.py runs/my_house.xml": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
+    ),
+    f"{PYTHON} tools/gallery.py --houses runs/my_house.xml --out runs/my_gallery": (
+        f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
+        f"{PYTHON} tools/gallery.py --houses {{tmp}}/my_house.xml --out {{tmp}}/gallery",
     ),
     f"{_RUN} --house runs/my_house.xml --goal stool --episodes 2": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
@@ -383,10 +394,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
-    f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --rate 1e-3 --views views_small "
-    "--val-views views_val --out runs/finer --hours 1": (
+    f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
+    "--rare-share 0.15 --val-block-px 2 --rate 8e-4 --views views_small --val-views views_val --out runs/finer "
+    "--hours 1": (
         _VIEWS,
-        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --rate 1e-3 --views {{tmp}}/views"
+        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --whole-share 0.5 --focus-share 0.5 "
+        "--rare-share 0.15 --val-block-px 2 --rate 8e-4 --views {tmp}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
     f"{PYTHON} tools/compare_networks.py --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "

@@ -107,7 +107,7 @@ def worker_memory(setting: Setting) -> list[Figure]:
     lines = list(run_in_pool(ProcessPool(spec), episodes, max_workers=1, on_death=_raise))
     settled = lines[min(len(lines) - 1, len(lines) // 5)]["resident_mb"]
     last, peak = lines[-1]["resident_mb"], lines[-1]["peak_mb"]
-    goal, flat = Goal(of="value", sign="<=", bound=700.0), Goal(of="ratio", sign="<=", bound=1.1)
+    goal, flat = Goal(of="value", sign="<=", bound=500.0), Goal(of="ratio", sign="<=", bound=1.1)
     begun = lines[0]["begun_mb"]
     return [
         _memory(f"memory of a worker, at most in {len(lines)} episodes", peak, begun, "before its first episode", goal),

@@ -49,11 +49,13 @@ class Amount:
     """Random steps of each size, set of sensors and vector of environments."""
     image_sizes: int = 4
     vectors: int = 5
+    starts: int = 9
+    """Starts of a command, and first steps in new houses."""
 
 
 QUICK = Amount(
     houses=1, poses=2, repeats=1, steps=6, episodes=1, views=2, made_houses=1, pieces=4, piece_steps=3, growth_steps=4,
-    memory_episodes=2, training_steps=5, image_sizes=1, vectors=1,
+    memory_episodes=2, training_steps=5, image_sizes=1, vectors=1, starts=1,
 )  # fmt: skip
 """Enough to test that everything runs; the figures mean nothing."""
 
