@@ -206,7 +206,7 @@ def test_the_example_house_has_the_example_furniture_and_the_catalogue_is_as_bef
 def test_the_example_house_by_hand_keeps_the_house_format() -> None:
     house = load_house(ROOT / "examples" / "my_house.xml")
     model = house.spec.compile()
-    assert read_labels(model).categories() == ("wall", "floor", "chair", "cushion", "sofa")
+    assert read_labels(model).categories() == ("wall", "floor", "chair", "cushion", "sofa", "ceiling")
     assert [room.kind for room in read_rooms(model)] == ["living_room"]
 
 

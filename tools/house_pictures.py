@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import colorsys
 import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import cv2
@@ -13,9 +14,11 @@ from numpy.typing import NDArray
 
 from sim.gl import mujoco
 from sim.houses.house import House, Room, read_rooms
-from sim.houses.labels import Instance, Labels, read_labels, rendered_geoms
-from sim.houses.proposals import geom_box
+from sim.houses.labels import VOID, Instance, Labels, read_labels, rendered_geoms
+from sim.houses.proposals import geom_box, void_objects
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel
+from sim.viewers.palette import PALETTE
+from sim.viewers.text import BOLD, text_width, write
 from sim.world.freespace import FreeSpace
 
 Picture = NDArray[np.uint8]
@@ -23,7 +26,18 @@ ViewPose = tuple[float, float, float, float]
 """x, y, height of the floor (metres) and yaw (degrees)."""
 VIEW_PX = (640, 480)
 TOP_PX = (1400, 1100)
-TOP_FOVY_DEG = 30.0
+TOP_FOVY_DEG = 12.0
+"""Field of view from above: small, so that walls hide little of the furniture that stands at them."""
+TOP_AMBIENT = 0.4
+"""Least ambient light from above: the walls of a house without any are not black."""
+NAME_SHARE = 0.02
+"""Height of a line of names from above, as a share of the picture's height."""
+MOST_MOVES = 12
+"""Most lines by which a name is moved so that it covers no other name."""
+EXTENT_M = 10.0
+"""Unit of the near and far plane in a model."""
+NEAR_FAR_M = (0.05, 200.0)
+"""Near and far plane of the pictures at the height of the robot's camera."""
 STOREY_GAP_M = 0.3
 """Height below an upper floor from which everything belongs to the upper storey: its slabs, the edges of its well."""
 BACKDROP = (0.86, 0.90, 0.95)
@@ -64,34 +78,87 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
     width, height = TOP_PX
     camera = camera_at((low + high) / 2, azimuth_deg=90.0, elevation_deg=-89.9)
     reach = max((high[1] - low[1] + 1.0) / 2, (high[0] - low[0] + 1.0) / 2 * height / width)
-    camera.distance = reach / math.tan(math.radians(TOP_FOVY_DEG / 2)) + 1.5
+    camera.distance = reach / math.tan(math.radians(TOP_FOVY_DEG / 2)) + (high[2] - low[2]) / 2
+    view = {"fovy_deg": TOP_FOVY_DEG, "near_far_m": (0.5 * camera.distance, 2.0 * camera.distance)}
+    light = model.vis.headlight
     if colours is None:
-        return render(model, camera, TOP_PX, fovy_deg=TOP_FOVY_DEG)
+        light.ambient, light.specular = np.maximum(light.ambient, TOP_AMBIENT), np.zeros(3)
+        return render(model, camera, TOP_PX, **view)
+    objects = void_objects(model, labels)
     model.geom_matid[:] = -1
     model.geom_rgba[:, :3] = colours[labels.geom_category] / 255.0
     model.geom_rgba[:, 3] = np.where(rendered_geoms(model), 1.0, 0.0)
-    picture = np.ascontiguousarray(render(model, camera, TOP_PX, fovy_deg=TOP_FOVY_DEG))
-    _write_names(picture, model, labels, np.array(camera.lookat), float(camera.distance))
+    model.light_active[:] = False
+    light.ambient, light.diffuse, light.specular = np.ones(3), np.zeros(3), np.zeros(3)  # unlit: plain colours
+    picture = np.ascontiguousarray(render(model, camera, TOP_PX, **view))
+    named = [
+        (f"{each.name}: {each.category}", each.geom_ids)
+        for each in labels.instances
+        if MPCAT40_ID[each.category] not in _STRUCTURE
+    ]
+    named += [(f"{name}: {VOID}", tuple(geoms)) for name, geoms in objects.items()]
+    _write_names(picture, model, named, np.array(camera.lookat), float(camera.distance))
     return picture
 
 
+def distinct_colours(categories: Sequence[str]) -> NDArray[np.uint8]:
+    """Returns uint8 (41, 3): colours that are far from each other for these categories; structure is grey.
+
+    `PALETTE` gives a category the same colour in every picture, so that some of its 41 colours are alike.
+    """
+    colours = PALETTE.copy()
+    furniture = [name for name in categories if MPCAT40_ID[name] not in _STRUCTURE]
+    for number, name in enumerate(furniture):
+        saturation, value = ((0.65, 1.0), (0.9, 0.75))[number % 2]
+        rgb = colorsys.hsv_to_rgb(number / len(furniture), saturation, value)
+        colours[MPCAT40_ID[name]] = np.rint(255.0 * np.array(rgb))
+    return colours
+
+
 def _write_names(
-    picture: Picture, model: mujoco.MjModel, labels: Labels, lookat: NDArray[np.float64], distance_m: float
+    picture: Picture,
+    model: mujoco.MjModel,
+    named: Iterable[tuple[str, Sequence[int]]],
+    lookat: NDArray[np.float64],
+    distance_m: float,
 ) -> None:
-    """Writes the name and the category of each instance onto a picture from above; walls and floors are not named."""
+    """Writes texts onto a picture from above: on their geoms, below small ones, lower where another text is already."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     height, width = picture.shape[:2]
     focal_px = 0.5 * height / math.tan(math.radians(TOP_FOVY_DEG / 2))
-    for instance in labels.instances:
-        if MPCAT40_ID[instance.category] in _STRUCTURE:
-            continue
-        x, y, z = data.geom_xpos[list(instance.geom_ids)].mean(axis=0)
+    line_px = max(8, round(NAME_SHARE * height))
+    taken: list[tuple[int, int, int]] = []  # left, right, base line
+    for text, geoms in named:
+        low, high = _box(model, data, geoms)
+        x, y, z = (low + high) / 2
         scale = focal_px / (lookat[2] + distance_m - z)
-        corner = (round(width / 2 + (x - lookat[0]) * scale) - 40, round(height / 2 - (y - lookat[1]) * scale))
-        text = f"{instance.name}: {instance.category}"
-        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (255, 255, 255), 4, cv2.LINE_AA)
-        cv2.putText(picture, text, corner, cv2.FONT_HERSHEY_SIMPLEX, 0.6, (20, 20, 20), 1, cv2.LINE_AA)
+        wide = text_width(text, line_px, BOLD)
+        left = int(np.clip(round(width / 2 + (x - lookat[0]) * scale - wide / 2), 2, max(2, width - wide - 2)))
+        half_px = round((high[1] - low[1]) / 2 * scale)
+        below_px = line_px // 3 if half_px > line_px else half_px + line_px
+        middle = round(height / 2 - (y - lookat[1]) * scale) + below_px
+        free = (
+            base
+            for base in range(middle, middle + MOST_MOVES * line_px, line_px)
+            if not _covers(taken, left, left + wide, base, line_px)
+        )
+        base = next(free, middle)
+        taken.append((left, left + wide, base))
+        _outlined(picture, text, (left, base), line_px)
+
+
+def _covers(taken: Iterable[tuple[int, int, int]], left: int, right: int, base: int, line_px: int) -> bool:
+    return any(left < other[1] and other[0] < right and abs(base - other[2]) < line_px for other in taken)
+
+
+def _outlined(picture: Picture, text: str, left_base: tuple[int, int], line_px: int) -> None:
+    """Writes dark text with a white outline: the same glyphs, moved by a part of their stroke."""
+    wide = max(1, line_px // 11)
+    white, dark = (255, 255, 255), (20, 20, 20)
+    for dx, dy in itertools.product((-wide, 0, wide), repeat=2):
+        write(picture, text, (left_base[0] + dx, left_base[1] + dy), picture.shape[1], line_px, white, BOLD)
+    write(picture, text, left_base, picture.shape[1], line_px, dark, BOLD)
 
 
 def storeys(house: House) -> list[House]:
@@ -176,8 +243,7 @@ def _look_at(
 
     The ray from the camera to the instance, at the camera's height where the instance has that height, hits it first.
     """
-    boxes = [geom_box(model, data, geom) for geom in instance.geom_ids]
-    low, high = np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)
+    low, high = _box(model, data, instance.geom_ids)
     middle, eye_m = (low + high) / 2, CameraModel().height_m
     aim = np.array([middle[0], middle[1], np.clip(eye_m, low[2] + 0.02, high[2] - 0.02)])
     away_m = np.hypot(*(places_m - aim[:2]).T)
@@ -226,7 +292,10 @@ def _view_lengths(model: mujoco.MjModel, data: mujoco.MjData, room: Room, x: flo
 
 
 def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns the lowest and highest corner (3,) of all rooms; without rooms, of the storey's grid of free space."""
+    """Returns the lowest and highest corner (3,) of all rooms.
+
+    Without rooms it is the part of the storey's grid of free space where something is visible.
+    """
     boxes = [box for room in read_rooms(model) for box in room.boxes]
     if boxes:
         centres, halves = np.array([box[0] for box in boxes]), np.array([box[1] for box in boxes])
@@ -235,7 +304,20 @@ def _extent(model: mujoco.MjModel, labels: Labels) -> tuple[NDArray[np.float64],
     mujoco.mj_kinematics(model, data)
     frame = FreeSpace(model, data, labels).frame
     low = np.array(frame.origin_xy_m)
-    return np.array([*low, 0.0]), np.array([*(low + np.array(frame.shape)[::-1] * frame.cell_m), CEILING_M])
+    high = low + np.array(frame.shape)[::-1] * frame.cell_m
+    visible = np.flatnonzero(rendered_geoms(model)).tolist()
+    if visible:
+        lowest, highest = _box(model, data, visible)
+        low, high = np.maximum(low, lowest[:2]), np.minimum(high, highest[:2])
+    return np.array([*low, 0.0]), np.array([*high, CEILING_M])
+
+
+def _box(
+    model: mujoco.MjModel, data: mujoco.MjData, geoms: Iterable[int]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the lowest and the highest corner (3,) of the box around geoms."""
+    boxes = [geom_box(model, data, geom) for geom in geoms]
+    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
 
 
 def add_backdrop(spec: mujoco.MjSpec) -> None:
@@ -257,21 +339,33 @@ def camera_at(lookat: NDArray[np.float64], *, azimuth_deg: float, elevation_deg:
     return camera
 
 
-def render(model: mujoco.MjModel, camera: mujoco.MjvCamera, size_px: tuple[int, int], *, fovy_deg: float) -> Picture:
+def render(
+    model: mujoco.MjModel,
+    camera: mujoco.MjvCamera,
+    size_px: tuple[int, int],
+    *,
+    fovy_deg: float,
+    near_far_m: tuple[float, float] = NEAR_FAR_M,
+) -> Picture:
     """Renders (h, w, 3) RGB with four samples per pixel and without shadows."""
-    return next(render_all(model, [camera], size_px, fovy_deg=fovy_deg))
+    return next(render_all(model, [camera], size_px, fovy_deg=fovy_deg, near_far_m=near_far_m))
 
 
 def render_all(
-    model: mujoco.MjModel, cameras: Iterable[mujoco.MjvCamera], size_px: tuple[int, int], *, fovy_deg: float
+    model: mujoco.MjModel,
+    cameras: Iterable[mujoco.MjvCamera],
+    size_px: tuple[int, int],
+    *,
+    fovy_deg: float,
+    near_far_m: tuple[float, float] = NEAR_FAR_M,
 ) -> Iterator[Picture]:
     """Yields a picture (h, w, 3) of each camera; the model's visual settings are changed."""
     width, height = size_px
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     model.vis.global_.fovy = fovy_deg
     model.vis.quality.shadowsize = 0
-    model.stat.extent = 10.0
-    model.vis.map.znear, model.vis.map.zfar = 0.005, 20.0
+    model.stat.extent = EXTENT_M
+    model.vis.map.znear, model.vis.map.zfar = (plane_m / EXTENT_M for plane_m in near_far_m)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     renderer = mujoco.Renderer(model, height, width)

@@ -29,14 +29,13 @@ from sim.files import write_atomically, write_picture
 from sim.gl import mujoco
 from sim.houses.foreign import remove_unsupported
 from sim.houses.house import House
-from sim.houses.labels import VOID, Labels, names_of_geom, read_labels, rendered_geoms
-from sim.houses.load import load_house, read_rules
+from sim.houses.labels import VOID, Labels, read_labels
+from sim.houses.load import load_house, read_rules, validate_house
 from sim.houses.mjcf import read_spec, require_sizes
-from sim.houses.proposals import geom_box, propose, rules_of, size_doubt
+from sim.houses.proposals import geom_box, propose, rules_of, size_doubt, void_objects
 from sim.houses.references import require_root
 from sim.interface import GOAL_CATEGORIES, MPCAT40
-from sim.viewers.palette import PALETTE
-from tools.house_pictures import draw_top
+from tools.house_pictures import distinct_colours, draw_top
 
 TABLE_WIDTH = 120
 """Letters of a line where the output is not a terminal."""
@@ -87,10 +86,12 @@ def main(args: Args) -> int:
         write_atomically(args.out, rules_text(rules))
         console.print(f"Wrote {len(rules)} rules to {args.out}. Edit the categories, then check them with --labels.")
     if args.picture is not None:
-        plain, coloured = draw_top(house), draw_top(house, colours=PALETTE)
+        plain, coloured = draw_top(house), draw_top(house, colours=distinct_colours(labels.categories()))
         write_picture(args.picture, np.hstack([plain, coloured]))
         console.print(f"Drew {args.picture}.", markup=False)
-    if args.labels is not None:
+    if args.labels is None:
+        _warn(console, house, model)
+    else:
         load_house(args.house, labels_path=args.labels, root=args.root)
         console.print(f"'{args.house.stem}' can be used with these labels.", markup=False)
     return 0
@@ -100,11 +101,7 @@ def rows_of(model: mujoco.MjModel, labels: Labels) -> list[Row]:
     """Returns the instances in the order of the categories, then the visible geoms without a label by their name."""
     rows = [Row(each.name, each.category, each.geom_ids) for each in labels.instances]
     rows.sort(key=lambda row: (MPCAT40.index(row.category), row.name))
-    unknown: dict[str, list[int]] = {}
-    for geom in np.flatnonzero(rendered_geoms(model) & (labels.geom_category == 0)).tolist():
-        name = next(name for name in reversed(names_of_geom(model, geom)) if name)
-        unknown.setdefault(name, []).append(geom)
-    return rows + [Row(name, VOID, tuple(geoms)) for name, geoms in unknown.items()]
+    return rows + [Row(name, VOID, tuple(geoms)) for name, geoms in void_objects(model, labels).items()]
 
 
 def table_of(model: mujoco.MjModel, rows: Sequence[Row]) -> Table:
@@ -130,14 +127,22 @@ def summary(labels: Labels) -> list[str]:
     found = (
         f"Goals: {', '.join(goals)}." if goals else "There is no goal: label one of " + ", ".join(GOAL_CATEGORIES) + "."
     )
-    void = f"{labels.void_geoms} visible geoms have no category (void)." if labels.void_geoms else ""
-    return [found, *([void] if void else [])]
+    void = "1 visible geom has" if labels.void_geoms == 1 else f"{labels.void_geoms} visible geoms have"
+    return [found, *([f"{void} no category (void)."] if labels.void_geoms else [])]
 
 
 def rules_text(rules: Mapping[str, str]) -> str:
     """Returns the JSON file of label rules, the unknown names last."""
     ordered = sorted(rules.items(), key=lambda rule: rule[1] == VOID)
     return json.dumps(dict(ordered), indent=2, ensure_ascii=False) + "\n"
+
+
+def _warn(console: Console, house: House, model: mujoco.MjModel) -> None:
+    """Prints why a run would refuse the scene with the proposed rules, if it would."""
+    try:
+        validate_house(house, model)
+    except HouseError as error:
+        console.print(f"WARNING: a run would refuse '{house.name}' with these labels: {error}", markup=False)
 
 
 def _check(args: Args) -> None:

@@ -27,6 +27,8 @@ from sim.viewers.text import write
 from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, tile
 
 WIDTH_PX = 400
+NO_RETURN_RGB = (150, 40, 40)
+"""Colour of depth 0: no return, or nearer than the sensor measures."""
 NAME_PX = 12
 
 
@@ -63,9 +65,10 @@ def main(args: Args) -> int:
 
 
 def draw(view: LabelledView) -> NDArray[np.uint8]:
-    """Returns an image of colour, depth (near is bright, no return is black) and labels, objects and normals."""
-    near = np.where(view.depth_m > 0.0, 255.0 - 230.0 * view.depth_m / max(float(view.depth_m.max()), 0.1), 0.0)
+    """Returns an image of colour, depth (near is bright, no return is red) and labels, objects and normals."""
+    near = 255.0 - 230.0 * view.depth_m / max(float(view.depth_m.max()), 0.1)
     grey = cv2.cvtColor(near.astype(np.uint8), cv2.COLOR_GRAY2RGB)
+    grey[view.depth_m == 0.0] = NO_RETURN_RGB
     size_px = WIDTH_PX, round(WIDTH_PX * view.rgb.shape[0] / view.rgb.shape[1])
     labels = cv2.resize(view.semantic, size_px, interpolation=cv2.INTER_NEAREST)
     panels = [cv2.resize(panel, size_px, interpolation=cv2.INTER_AREA) for panel in (view.rgb, grey)]

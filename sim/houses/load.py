@@ -103,19 +103,19 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
             )
     labels = read_labels(model, rules=house.rules, ignore_prefix="")
     try:
-        _require_floor(model, labels)
+        _require_floor(model, labels, has_rules=house.rules is not None)
     except HouseError as error:
         raise HouseError(" ".join([str(error), *void_notes(model, labels)])) from None
     return labels
 
 
-def _require_floor(model: mujoco.MjModel, labels: Labels) -> None:
+def _require_floor(model: mujoco.MjModel, labels: Labels, *, has_rules: bool) -> None:
     """Raises a HouseError when no collision geom is a floor at z = 0."""
     floors = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
     if floors.size == 0:
+        wanted = "get the category 'floor' from a label rule" if has_rules else "be labelled floor_<number>"
         raise HouseError(
-            "it has no floor: at least one collision geom (a plane or a box) must be labelled floor_<number>, with "
-            "its top at z = 0."
+            f"it has no floor: at least one collision geom (a plane or a box) must {wanted}, with its top at z = 0."
         )
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.labels import VOID, collidable_geoms, names_of_geom, rendered_geoms
+from sim.houses.labels import VOID, Labels, collidable_geoms, names_of_geom, rendered_geoms
 from sim.interface import MPCAT40
 
 WORDS: Mapping[str, tuple[str, ...]] = {
@@ -130,6 +130,18 @@ def rules_of(proposals: tuple[Proposal, ...]) -> dict[str, str]:
         for pattern in [_exact(name) for name in names] if alone else [_any_number(stem)]:
             rules[pattern] = category
     return rules
+
+
+def void_objects(model: mujoco.MjModel, labels: Labels) -> dict[str, list[int]]:
+    """Returns the visible geoms without a category by their name: the outermost one that holds no labelled geom."""
+    labelled = np.flatnonzero(labels.geom_category != 0).tolist()
+    around = {name for geom in labelled for name in names_of_geom(model, geom)}
+    objects: dict[str, list[int]] = {}
+    for geom in np.flatnonzero(rendered_geoms(model) & (labels.geom_category == 0)).tolist():
+        names = [name for name in names_of_geom(model, geom) if name]
+        outermost = next((name for name in reversed(names) if name not in around), names[0])
+        objects.setdefault(outermost, []).append(geom)
+    return objects
 
 
 def category_of_name(name: str) -> str | None:

@@ -22,6 +22,8 @@ PATH: Colour = (32, 84, 190)
 SHORTEST: Colour = (240, 140, 20)
 STOPPED: Colour = (204, 65, 37)
 ROBOT: Colour = (20, 20, 20)
+WHOLE_HOUSE_M = 14.0
+"""A storey of at most this width and depth is shown as a whole, a larger one as far as the robot can drive."""
 _MARGIN_CELLS = 8
 _STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
 """Length of a step to each neighbour of a cell; the cell itself is none."""
@@ -50,7 +52,10 @@ class TopView:
         return ""
 
     def paint(self, size_px: int) -> NDArray[np.uint8]:
-        """Returns an RGB image (size_px, size_px, 3) with the house in the middle, as large as fits."""
+        """Returns an RGB image (size_px, size_px, 3) with the house in the middle, as large as fits.
+
+        Of a house larger than `WHOLE_HOUSE_M` it shows the part where the robot can drive, and the goal.
+        """
         scene = self._env.scene
         world, task = scene.world, scene.task
         pose = world.pose
@@ -79,9 +84,8 @@ class TopView:
         space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
         cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
         cells[target.reached] = SUCCEEDS
-        rows, cols = (np.flatnonzero(space.free.any(axis=axis)) for axis in (1, 0))
-        row, col = max(int(rows[0]) - _MARGIN_CELLS, 0), max(int(cols[0]) - _MARGIN_CELLS, 0)
-        part = cells[row : int(rows[-1]) + 1 + _MARGIN_CELLS, col : int(cols[-1]) + 1 + _MARGIN_CELLS]
+        rows, cols = shown_cells(space, target)
+        row, col, part = rows.start, cols.start, cells[rows, cols]
         px_cell = size_px / max(part.shape[:2])
         width, height = min(round(part.shape[1] * px_cell), size_px), min(round(part.shape[0] * px_cell), size_px)
         self._scale = px_cell / space.frame.cell_m
@@ -107,6 +111,19 @@ class TopView:
         """Returns (n, 2) column and row of points (n, 2) in the world."""
         off = (np.asarray(points_m, np.float64) - self._corner_m) * self._scale * (1.0, -1.0)
         return (off + self._offset_px).round().astype(np.int32)
+
+
+def shown_cells(space: FreeSpace, target: Target) -> tuple[slice, slice]:
+    """Returns rows and columns of the part of a storey that the plan shows: all of it, or free space and goals."""
+    if max(space.frame.shape) * space.frame.cell_m <= WHOLE_HOUSE_M:
+        return slice(0, space.frame.shape[0]), slice(0, space.frame.shape[1])
+    free = np.argwhere(space.free)
+    pieces_m = [piece.vertices_m for footprint in target.region.footprints for piece in footprint.parts]
+    goals = [space.frame.to_cells(vertices_m) for vertices_m in pieces_m]
+    needed = np.vstack([free.min(axis=0), free.max(axis=0), *goals])
+    low = np.maximum(needed.min(axis=0) - _MARGIN_CELLS, 0).tolist()
+    high = np.minimum(needed.max(axis=0) + 1 + _MARGIN_CELLS, space.frame.shape).tolist()
+    return slice(low[0], high[0]), slice(low[1], high[1])
 
 
 def shortest_path_m(space: FreeSpace, target: Target, start_m: tuple[float, float]) -> NDArray[np.float64]:

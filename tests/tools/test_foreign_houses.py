@@ -12,12 +12,14 @@ from numpy.typing import NDArray
 
 from sim import cli, run
 from sim.episodes.splits import load_split
+from sim.gl import mujoco
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
 from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.foreign import SCENE, write_scene
 from tests.helpers.worlds import room
-from tools import gallery, generate_views, label_house, make_episodes
+from tools import gallery, generate_views, house_pictures, label_house, make_episodes
 
 
 @pytest.fixture(autouse=True)
@@ -70,6 +72,77 @@ def test_proposed_labels_never_replace_a_file(scene: tuple[Path, Path], capsys: 
     assert scene[1].read_bytes() == before
 
 
+def write_arm(folder: Path) -> Path:
+    """Writes a scene in which nothing is a floor: an arm above a table."""
+    (folder / "arm.xml").write_text(
+        '<mujoco><worldbody><geom name="table" type="plane" size="1 1 .1" pos="0 0 -.3"/><body name="arm">'
+        '<geom name="upper" type="sphere" size=".1"/></body></worldbody></mujoco>'
+    )
+    return folder / "arm.xml"
+
+
+def test_proposed_labels_without_a_floor_are_warned_of_with_the_word_for_rules(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--house", str(write_arm(tmp_path)), "--out", str(tmp_path / "arm.json")]
+    assert cli.run(label_house.Args, label_house.main, options) == 0
+    told = capsys.readouterr().out
+    assert "1 visible geom has no category (void)." in told
+    assert "WARNING: a run would refuse 'arm' with these labels: it has no floor" in told
+    assert "must get the category 'floor' from a label rule" in told
+
+
+def test_proposed_labels_that_suffice_are_not_warned_of(
+    scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.run(label_house.Args, label_house.main, ["--house", str(scene[0])]) == 0
+    assert "WARNING" not in capsys.readouterr().out
+
+
+def test_the_label_picture_names_void_objects_and_has_unlit_colours_that_differ(
+    scene: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texts: list[str] = []
+    monkeypatch.setattr(house_pictures, "_outlined", lambda picture, text, *rest: texts.append(text))
+    house = load_house(scene[0], labels_path=scene[1])
+    labels = read_labels(house.spec.copy().compile(), rules=house.rules)
+    colours = house_pictures.distinct_colours(labels.categories())
+    picture = house_pictures.draw_top(house, colours=colours)
+    assert {"Gadget: void", "Widget: void", "Couch.001: sofa"} <= set(texts)
+    found = {tuple(colour) for colour in picture.reshape(-1, 3).tolist()}
+    for category in ("sofa", "wall", "floor", "void"):
+        assert tuple(colours[MPCAT40_ID[category]].tolist()) in found, category
+
+
+def test_label_colours_are_far_from_each_other_and_from_structure() -> None:
+    categories = [*GOAL_CATEGORIES]
+    colours = house_pictures.distinct_colours(["wall", "floor", *categories]).astype(int)
+    used = colours[[MPCAT40_ID[name] for name in ("void", "wall", "floor", *categories)]]
+    away = np.linalg.norm(used[:, None] - used[None], axis=2) + 1000 * np.eye(len(used))
+    assert away.min() >= 40
+    sofa, table = (
+        house_pictures.distinct_colours(["sofa", "table", "chair"])[MPCAT40_ID[name]].astype(int)
+        for name in ("sofa", "table")
+    )
+    assert np.linalg.norm(sofa - table) >= 150
+
+
+def test_names_in_the_label_picture_do_not_cover_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    places: list[tuple[int, int]] = []
+    monkeypatch.setattr(house_pictures, "_outlined", lambda picture, text, left_base, line_px: places.append(left_base))
+    boxes = "".join(f'<geom name="lamp_{i}" size=".1" pos="0 0 {i}"/>' for i in range(4))
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody>{boxes}</worldbody></mujoco>")
+    picture = np.zeros((400, 400, 3), np.uint8)
+    house_pictures._write_names(picture, model, [(f"lamp_{i}", [i]) for i in range(4)], np.zeros(3), 50.0)
+    bases = sorted(base for _, base in places)
+    assert (np.diff(bases) >= 8).all()
+
+
+def test_inner_walls_of_a_house_without_ambient_light_are_not_black_from_above(tmp_path: Path) -> None:
+    top = house_pictures.draw_top(room(4, 4))
+    assert (top.max(axis=2) < 40).mean() < 0.01
+
+
 def test_labels_without_a_floor_are_refused_after_the_table(
     scene: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -79,6 +152,7 @@ def test_labels_without_a_floor_are_refused_after_the_table(
     captured = capsys.readouterr()
     assert "Couch.001" in captured.out
     assert "has no floor" in captured.err
+    assert "must get the category 'floor' from a label rule" in captured.err
 
 
 def test_a_refused_scene_is_told_of_labels(scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:

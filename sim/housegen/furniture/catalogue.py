@@ -14,6 +14,7 @@ import numpy as np
 from sim.errors import ConfigError
 from sim.housegen.furniture.item import Item, Mount, Pool
 from sim.housegen.furniture.reshape import may_reshape, reshaped
+from sim.housegen.furniture.uses import fault_of_uses
 from sim.housegen.furniture.workbench import Workbench
 from sim.interface import MPCAT40_ID
 
@@ -41,7 +42,7 @@ class Style:
     build: Callable[[Workbench], None]
     """Puts the geoms of one item on the workbench."""
     uses: tuple[str, ...] = ()
-    """Values of the hint `use` that the style satisfies."""
+    """Values of the hint `use` that the style satisfies; `sim.housegen.furniture.uses` lists those of each category."""
     mount: Mount = "floor"
     walk_over: bool = False
     """True: items lie flat on the floor, and other objects may stand on them."""
@@ -61,7 +62,8 @@ class Catalogue:
     """
 
     def __init__(self, styles: Iterable[Style]) -> None:
-        """Raises ConfigError for an unknown category or pool, and for two styles of one name in a category."""
+        """Raises ConfigError for an unknown category or pool, for uses by which no room asks for the category, and for
+        two styles of one name in a category."""
         by_category: dict[str, dict[str, Style]] = {}
         for style in styles:
             if style.category not in MPCAT40_ID:
@@ -70,6 +72,8 @@ class Catalogue:
                 raise ConfigError(
                     f"Style '{style.name}': no pool '{style.pool}'. There is: {', '.join(get_args(Pool))}."
                 )
+            if fault := fault_of_uses(style.category, style.uses):
+                raise ConfigError(f"Style '{style.name}': {fault}")
             same_category = by_category.setdefault(style.category, {})
             if style.name in same_category:
                 raise ConfigError(f"The catalogue has two styles '{style.name}' of category '{style.category}'.")

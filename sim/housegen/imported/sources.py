@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from sim.errors import ConfigError
 from sim.housegen.furniture.item import Mount
+from sim.housegen.furniture.uses import fault_of_uses
 from sim.housegen.imported.labels import Label, Size, label_of, label_of_category
 from sim.reading import convert, read_bytes, reason_of
 
@@ -192,6 +193,8 @@ def _row_entry(folder: Path, row: Mapping[str, Any]) -> Found:
     uses = row.get("uses") or ()
     uses = tuple(uses.split()) if isinstance(uses, str) else tuple(map(str, uses))
     label = label_of_category(str(row["category"]), uses, mount)
+    if label is not None and (fault := fault_of_uses(label.category, uses)):
+        return file, fault.removesuffix(".")
     if label is None or mount not in get_args(Mount):
         return file, f"no category '{row['category']}' in mpcat40, or no mount '{mount}'"
     c, s = math.cos(front), math.sin(front)

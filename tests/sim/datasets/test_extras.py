@@ -6,6 +6,7 @@ import itertools
 import json
 import tarfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -209,6 +210,15 @@ def test_views_become_one_coco_file(views: list[View], shards: Path, tmp_path: P
     stored = cv2.imread(str(tmp_path / "normals" / f"{views[0].key}.png"))
     assert stored is not None
     np.testing.assert_array_equal(stored[..., ::-1], views[0].normals)
+
+
+def test_a_sheet_shows_no_return_and_the_farthest_depth_in_different_colours(shards: Path) -> None:
+    view = next(read_shard(shards / "views-000000.tar"))
+    depth = np.full_like(view.depth_m, 5.0)
+    depth[:, : depth.shape[1] // 2] = 0.0
+    panel = show_views.draw(replace(view, depth_m=depth))[:, show_views.WIDTH_PX : 2 * show_views.WIDTH_PX]
+    assert tuple(panel[150, 100]) == show_views.NO_RETURN_RGB
+    assert tuple(panel[150, 300]) == (25, 25, 25)
 
 
 def test_a_sheet_shows_objects_and_normals_where_there_are_some(views: list[View], shards: Path) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from sim.housegen import furniture, generate
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
+from sim.housegen.furniture.uses import USES
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -58,6 +61,46 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
         CATALOGUE.with_styles(stool("block"), stool("block"))
     with pytest.raises(ConfigError, match=f"two styles '{CATALOGUE.styles('stool')[0].name}' of category 'stool'"):
         CATALOGUE.with_styles(stool(CATALOGUE.styles("stool")[0].name))
+
+
+@pytest.mark.parametrize(
+    ("category", "uses", "told"),
+    [
+        (
+            "chair",
+            ("dining", "diningg"),
+            "'block': category 'chair' has no use 'diningg'. There is: dining, office, arm.",
+        ),
+        ("chair", (), "rooms ask for a 'chair' by its use. There is: dining, office, arm."),
+        ("chair", "dining", r"must be a tuple of strings, such as \('dining',\)"),
+        ("bed", ("double",), "category 'bed' has no uses, but `uses` has 'double'"),
+    ],
+)
+def test_uses_by_which_no_room_asks_are_refused_with_those_that_exist(category, uses, told):
+    with pytest.raises(ConfigError, match=told):
+        CATALOGUE.with_styles(Style(category, "block", "train", build_block, uses=uses))
+
+
+def test_uses_are_optional_where_rooms_ask_without_one_and_free_in_new_categories():
+    for category, uses in (("sofa", ()), ("bed", ()), ("stairs", ("steep",))):
+        block = Style(category, "block", "train", build_block, uses=uses)
+        assert block in CATALOGUE.with_styles(block).styles(category)
+
+
+def test_the_page_on_furniture_lists_the_allowed_uses():
+    page = (Path(__file__).parents[3] / "docs" / "furniture.md").read_text()
+    rows = {
+        "" if uses == "none" else uses: names.split(", ")
+        for names, uses in re.findall(r"^\| (.*) \| (.*) \|$", page, re.M)
+    }
+    for category, uses in USES.items():
+        assert category in rows[", ".join(uses)], category
+
+
+def test_every_allowed_use_has_a_shipped_style_and_every_category_is_listed():
+    assert set(USES) == set(CATALOGUE.categories)
+    for category, uses in USES.items():
+        assert set(uses) == {use for style in CATALOGUE.styles(category) for use in style.uses}, category
 
 
 def test_a_replacement_of_another_category_is_refused():

@@ -255,6 +255,16 @@ def test_bad_entries_of_a_catalogue_are_left_out_with_a_reason(tmp_path: Path) -
         assert any(part in reason for reason in found), part
 
 
+def test_models_with_uses_by_which_no_room_asks_are_left_out_with_those_that_exist(tmp_path: Path) -> None:
+    table = write_folder(tmp_path, chairs=2) / "models.csv"
+    table.write_text(table.read_text().replace("chair0.obj,chair,dining", "chair0.obj,chair,diningg"))
+    found = list(read_source(tmp_path))
+    assert [each[1] for each in found if not isinstance(each, Entry)] == [
+        "category 'chair' has no use 'diningg'. There is: dining, office, arm"
+    ]
+    assert len(entries_of(tmp_path)) == 2
+
+
 def test_a_truncated_zip_is_left_out(tmp_path: Path) -> None:
     file = write_catalogue(tmp_path / "a.sh3f", [properties("a", "/chair.obj")], {"chair.obj": obj_text(CHAIR)})
     content = bytearray(file.read_bytes())
