@@ -16,6 +16,8 @@ import io
 import math
 import os
 import re
+import shlex
+import shutil
 import signal
 import sys
 import threading
@@ -74,6 +76,31 @@ def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     return [name for name in there_are if name in wanted]
 
 
+def python() -> str:
+    """Returns the interpreter as the user would type it: `.venv/bin/python` in the folder above, `python` on the path.
+
+    Links are not followed: the interpreter of a virtual environment is one.
+    """
+    interpreter = Path(sys.executable or "python")
+    with contextlib.suppress(ValueError, OSError):  # OSError: the current folder was removed
+        return str(interpreter.relative_to(Path.cwd()))
+    found = shutil.which("python")
+    return "python" if found is not None and Path(found) == interpreter else str(interpreter)
+
+
+def command(*words: object) -> str:
+    """Returns a command of this interpreter to be copied into a shell, for example of `-m`, `sim.report`, a folder."""
+    return shlex.join([python(), *map(str, words)])
+
+
+def program() -> str:
+    """Returns the command that runs now, without its options: `.venv/bin/python -m sim.web`."""
+    spec = getattr(sys.modules["__main__"], "__spec__", None)
+    if spec is not None:
+        return command("-m", spec.name.removesuffix(".__main__"))
+    return command(sys.argv[0]) if sys.argv[0].endswith(".py") else Path(sys.argv[0]).name
+
+
 def run(
     args_type: type[ArgsT],
     main: Callable[[ArgsT], int],
@@ -125,7 +152,8 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
     description = f"{(args_type.__doc__ or '').strip()}\n\n{DEBUG_HELP}"
     try:
         with contextlib.redirect_stderr(messages):
-            return tyro.cli(args_type, args=argv, description=description, config=(tyro.conf.FlagCreatePairsOff,))
+            options = (tyro.conf.FlagCreatePairsOff,)
+            return tyro.cli(args_type, prog=program(), args=argv, description=description, config=options)
     except SystemExit as stop:
         if stop.code in (0, None):
             raise

@@ -45,7 +45,8 @@ def main(args: Args) -> int:
     require_writable(out, name="--out", folder=False)
     console = display.make_console()
     console.print(
-        f"{max(len(run.lines) for run in runs)} episodes; each house takes about a second, each goal in it a tenth."
+        f"{display.counted(max(len(run.lines) for run in runs), 'episode')}; "
+        "each house takes about a second, each goal in it a tenth."
     )
     command = shlex.join(["python", "-m", "sim.report", *map(str, args.runs)])
     write_atomically(out, build_page(runs, out_folder=out.parent, command=command))

@@ -6,15 +6,17 @@
 
 One row per episode: the camera image, the true categories, those of the network, and its score of the goal (white 0,
 red 1). No episode is run again: the house is rendered from the recorded pose, without sensor noise and with movable
-objects at their start positions.
+objects at their start positions. One cause of failure is drawn; the last line of the output names the others.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -23,6 +25,7 @@ from numpy.typing import NDArray
 
 from sim import cli
 from sim.analysis.comparison import read_run
+from sim.analysis.display import counted
 from sim.analysis.report.drawings import split_of
 from sim.composition.segmenters import weights_file
 from sim.files import write_picture
@@ -39,6 +42,8 @@ from stubborn.segmentation.network import NetworkSegmenter
 Picture = NDArray[np.uint8]
 PANEL_PX = 320
 CAPTION_PX = 22
+HEADINGS = ("camera", "true categories", "categories of the network", "score of the goal")
+"""Titles of the panels, above the first row."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,22 +64,19 @@ def main(args: Args) -> int:
     """Draws the sheet and prints a sentence per row; returns the exit status, 1 if there is no such failure."""
     if args.cause not in CAUSES:
         raise ConfigError(f"--cause must be one of {', '.join(CAUSES)}, got '{args.cause}'.")
-    if args.count < 1:
-        raise ConfigError(f"--count must be at least 1, got {args.count}.")
     run = read_run(args.run)
     if run.config.get("semantics") != "rednet":
         raise ConfigError(f"'{args.run}' was run with --semantics {run.config.get('semantics')}, not with rednet.")
     weights = run.config.get("weights")
     network = NetworkSegmenter.from_file(weights_file(Path(weights) if weights else None))
     split = split_of(run)
-    picked = [
-        line
-        for line in run.lines.values()
-        if line["failure"] == args.cause and trajectory_file(run.path, line["episode_id"]).is_file()
-    ][: args.count]
+    failed = [line for line in run.lines.values() if line["failure"] is not None and line["end_reason"] != "error"]
+    recorded = [line for line in failed if trajectory_file(run.path, line["episode_id"]).is_file()]
+    picked = [line for line in recorded if line["failure"] == args.cause]
     if not picked:
-        print(f"No recorded episode of '{args.run}' failed by {args.cause}.")
+        print(f"No recorded episode of '{args.run}' failed by {args.cause}.{_others(recorded, args.cause)}")
         return 1
+    found, picked = len(picked), picked[: args.count]
     rows: list[Picture] = []
     for line in sorted(picked, key=lambda line: line["house"]):
         trajectory = read_trajectory(trajectory_file(run.path, line["episode_id"]))
@@ -84,9 +86,20 @@ def main(args: Args) -> int:
         about = f"{line['episode_id']} {line['goal']}, step {step}: {words}"
         print(about)
         rows.append(_captioned(row, about))
-    write_picture(args.out, tile(rows, columns=1))
-    print(f"{len(rows)} episodes in {args.out}")
+    write_picture(args.out, np.vstack([_headings(rows[0].shape[1]), tile(rows, columns=1)], dtype=np.uint8))
+    of = f" of {found} (--count {found} draws all)" if found > len(rows) else ""
+    drawn = f"{counted(len(rows), 'episode')}{of} that failed by {args.cause}, in {args.out}."
+    print(f"{drawn}{_others(recorded, args.cause)}")
     return 0
+
+
+def _others(recorded: Sequence[Mapping[str, Any]], cause: str) -> str:
+    """Returns a sentence on the recorded failures by other causes; "" where there is none."""
+    others = Counter(line["failure"] for line in recorded if line["failure"] != cause)
+    if not others:
+        return ""
+    named = ", ".join(f"--cause {name} ({count})" for name, count in others.most_common())
+    return f" Failures by other causes are drawn with {named}."
 
 
 def decisive_step(trajectory: Trajectory) -> int:
@@ -129,6 +142,15 @@ def in_words(semantic: NDArray[np.uint8], score: NDArray[np.float32]) -> str:
     shares = np.bincount(true, minlength=len(MPCAT40)) / true.size
     named = [f"{MPCAT40[i]} {shares[i]:.0%}" for i in np.argsort(-shares)[:3] if shares[i] >= 0.05]
     return f"taken for it: {', '.join(named)}"
+
+
+def _headings(width: int) -> Picture:
+    """Returns a strip with the titles of the panels."""
+    strip = np.full((CAPTION_PX, width, 3), 255, np.uint8)
+    for place, words in enumerate(HEADINGS):
+        left = place * width // len(HEADINGS) + 6
+        cv2.putText(strip, words, (left, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 1, cv2.LINE_AA)
+    return strip
 
 
 def _captioned(row: Picture, words: str) -> Picture:

@@ -6,6 +6,7 @@ import contextlib
 import functools
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -15,6 +16,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from sim import cli
+from sim.errors import debug
 from sim.evaluation.results import SUMMARY_METRICS
 from sim.reading import printable
 
@@ -130,16 +133,25 @@ def print_where_to_look(console: Console, out: Path, *, video: bool) -> None:
     say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
     if video:
         say(f"Videos are in {out}/videos.")
-    say(f"A page about this run: python -m sim.report {out}")
-    say("Watch an agent in the browser, or drive yourself: python -m sim.web")
+    say(f"A page about this run: {cli.command('-m', 'sim.report', out)}")
+    say(f"Watch an agent in the browser, or drive yourself: {cli.command('-m', 'sim.web')}")
 
 
 def describe(line: Line) -> str:
     """Returns one sentence about an episode."""
-    outcome = "found" if line["success"] else f"not found ({line['end_reason']}, {line['failure']})"
-    return (
-        f"{line['episode_id']}: {line['goal']} {outcome} after {line['num_steps']} steps, {line['wall_time_s']:.0f} s"
-    )
+    if line["success"]:
+        outcome = "found"
+    elif _is_error(line):
+        outcome = "ended with an error"
+    else:
+        outcome = f"not found ({line['end_reason']}, {line['failure']})"
+    goal, steps = line["goal"].replace("_", " "), counted(line["num_steps"], "step")
+    return f"{line['episode_id']}: {goal} {outcome} after {steps}, {line['wall_time_s']:.0f} s"
+
+
+def counted(number: int, noun: str) -> str:
+    """Returns a number with its noun: "1 episode", "2 episodes"."""
+    return f"{number} {noun}" + "s" * (number != 1)
 
 
 def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str, Any]) -> None:
@@ -147,11 +159,30 @@ def print_results(console: Console, lines: Sequence[Line], summary: Mapping[str,
     if len(lines) <= MOST_EPISODES_SHOWN:
         console.print(_episode_table(lines))
     console.print(_summary_table(summary))
-    if summary["failures"]:
-        console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in summary["failures"].items()))
+    causes = Counter(_cause(line) for line in lines if _cause(line) is not None)
+    if causes:
+        console.print("Failed by " + ", ".join(f"{cause}: {count}" for cause, count in causes.most_common()))
     for line in lines:
         if line.get("error"):
             console.print(f"error in {line['episode_id']}: {line['error']}", markup=False, soft_wrap=True)
+    if any(map(_is_error, lines)) and not debug():
+        console.print(
+            "--debug shows the traceback of an error; --retry-errors with the same --out runs these episodes again.",
+            highlight=False,
+            soft_wrap=True,
+        )
+
+
+def _is_error(line: Line) -> bool:
+    return line.get("end_reason") == "error"
+
+
+def _cause(line: Line) -> str | None:
+    """Returns the cause of a failure, `error` where the episode broke; None where none was recorded, as for a success.
+
+    `results.jsonl` has `misc` for an error, because the causes are those of the paper.
+    """
+    return "error" if _is_error(line) else line.get("failure")
 
 
 def _episode_table(lines: Sequence[Line]) -> Table:
@@ -164,8 +195,8 @@ def _episode_table(lines: Sequence[Line]) -> Table:
     for line in sorted(lines, key=lambda line: line["episode_id"]):
         table.add_row(
             line["episode_id"],
-            line["goal"],
-            "yes" if line["success"] else f"no: {line['failure']}",
+            line["goal"].replace("_", " "),
+            "yes" if line["success"] else f"no: {_cause(line)}",
             _number(line["spl"]),
             str(line["num_steps"]),
             _number(line["path_length"]),
@@ -178,9 +209,9 @@ def _episode_table(lines: Sequence[Line]) -> Table:
 
 
 def _summary_table(summary: Mapping[str, Any]) -> Table:
-    houses = f"{summary['houses']} house" + "s" * (summary["houses"] != 1)
     caption = f"Intervals resample {summary['ci95_resamples']}."
-    table = Table(title=f"{summary['episodes']} episodes in {houses}", caption=caption)
+    title = f"{counted(summary['episodes'], 'episode')} in {counted(summary['houses'], 'house')}"
+    table = Table(title=title, caption=caption)
     table.add_column("metric")
     table.add_column("mean", justify="right")
     table.add_column("95 % interval", justify="right")

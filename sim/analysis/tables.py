@@ -13,6 +13,8 @@ from sim.evaluation.bootstrap import Estimate
 
 RESOLVED, UNRESOLVED = "resolved", "unresolved"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
+LEAST_PAIRS = 2
+"""A single pair is only a difference: its bootstrap interval has no width."""
 ONE_HOUSE = "*"
 """Marks an interval over the episodes of one house."""
 ONE_HOUSE_NOTE = f"{ONE_HOUSE} One house: the interval is over its episodes and says nothing about other houses."
@@ -47,9 +49,9 @@ class Cell:
 
     @property
     def interval_text(self) -> str:
-        """`[8.0, 16.0]`, with an asterisk if it is over the episodes of one house; "" without a value."""
+        """`[8.0, 16.0]`, with an asterisk if it is over one house; "" without a value and for a single pair."""
         low, high = self.estimate.low, self.estimate.high
-        if low is None or high is None:
+        if low is None or high is None or (self.difference and self.estimate.count < LEAST_PAIRS):
             return ""
         return f"[{self._number(low)}, {self._number(high)}]" + ONE_HOUSE * (self.estimate.houses == 1)
 
@@ -80,7 +82,7 @@ class ResultTable:
     def footnotes(self) -> tuple[str, ...]:
         """The notes, and the meaning of the asterisk if a cell has one."""
         cells = [cell for _, row in self.rows for cell in row if isinstance(cell, Cell)]
-        return (*self.notes, *((ONE_HOUSE_NOTE,) if any(cell.estimate.houses == 1 for cell in cells) else ()))
+        return (*self.notes, *((ONE_HOUSE_NOTE,) if any(ONE_HOUSE in cell.interval_text for cell in cells) else ()))
 
 
 def to_rich(table: ResultTable) -> Table:

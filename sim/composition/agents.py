@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from sim.errors import AgentError, ConfigError, ObjectNavError
+from sim.evaluation.own_code import place_of
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
 from stubborn.exploration.explorer import ExplorerConfig
@@ -121,7 +122,8 @@ def build_agent(
     except (Exception, SystemExit) as error:
         if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
             raise
-        raise ConfigError(f"Agent '{name}' cannot be built: {type(error).__name__}: {error}") from error
+        told = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
 
 
 def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
@@ -132,7 +134,8 @@ def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
     except ModuleNotFoundError as error:
         raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
     except (Exception, SystemExit) as error:  # the user's code
-        told = f"{type(error).__name__}: {error}"
+        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
+        told = f"{type(error).__name__}: {error}{place}"
         raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
     try:
         return vars(module)[attribute]

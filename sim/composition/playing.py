@@ -52,7 +52,7 @@ def run_missing(
         todo = [episode for episode in episodes if episode.episode_id not in done]
         segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
         console.print(
-            f"{options.agent}{segmentation}, {len(episodes)} episodes of {split['name']} "
+            f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
         _report_resumed(run, len(episodes), len(todo), console)

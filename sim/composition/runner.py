@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import traceback
 from dataclasses import dataclass
 from typing import Any
@@ -13,11 +14,11 @@ from sim.composition.options import RunOptions, start_pose
 from sim.composition.run_config import RunConfig, configuration_of, sensors_of, truth_images, verifier_of, versions
 from sim.composition.segmenters import NoSegmentation, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
-from sim.interface import Agent, AgentSpec, Segmenter
+from sim.interface import GOAL_CATEGORIES, Agent, AgentSpec, Segmenter
 from sim.sensors.sensor import Sensor
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
@@ -144,13 +145,7 @@ def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[l
     try:
         split = env.split
         if options.house is None:
-            episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
-            if options.episodes > len(episodes):
-                raise ConfigError(
-                    f"--episodes {options.episodes}: split '{split.name}' has {len(episodes)} episodes"
-                    + (f" with goal '{options.goal}'." if options.goal else ".")
-                )
-            episodes = episodes[: options.episodes]
+            episodes = _first_episodes(split, options)
         else:
             episodes = [
                 env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}")
@@ -159,6 +154,29 @@ def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[l
     finally:
         env.close()
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the first episodes of a split, as many as the options ask for, with their goal if they name one.
+
+    Raises:
+        ConfigError: the split has fewer, or none with this goal.
+    """
+    goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
+    if options.goal is not None and options.goal not in goals:
+        near = difflib.get_close_matches(options.goal, goals, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+        )
+    episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    if options.episodes > len(episodes):
+        with_goal = f" with goal '{options.goal}'" if options.goal else ""
+        raise ConfigError(
+            f"--episodes must be at most {len(episodes)}, got {options.episodes}: split '{split.name}' has no more "
+            f"episodes{with_goal}."
+        )
+    return episodes[: options.episodes]
 
 
 def error_line(options: RunOptions, episode: Episode, error: str) -> dict[str, Any]:

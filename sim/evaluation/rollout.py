@@ -17,6 +17,7 @@ import numpy as np
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
+from sim.evaluation.own_code import place_of
 from sim.interface import Action, Agent, Observation, StatesConfidence
 from sim.task.trajectory import trajectory_file, write_trajectory
 from sim.viewers.viewer import Moment, Viewer
@@ -137,7 +138,7 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     """Returns what a call of the agent returns.
 
     Raises:
-        AgentError: it raised an error, or called `exit`; the message begins with `where`.
+        AgentError: it raised an error, or called `exit`; the message begins with `where` and ends with file and line.
     """
     try:
         return call()
@@ -145,7 +146,7 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
         if debug():
             traceback.print_exc()
         told = " ".join(str(error).split()) or "no message"
-        raise AgentError(f"{where}: {type(error).__name__}: {told}") from error
+        raise AgentError(f"{where}: {type(error).__name__}: {told}{place_of(error, below=__file__)}") from error
 
 
 def next_action(agent: Agent, observation: Observation, where: str) -> Action:

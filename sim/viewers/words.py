@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim.interface import Action, SuccessRule
+from sim.task.metrics import TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
 
 ACTION_WORDS: Mapping[Action, str] = {
     Action.STOP: "stop",
@@ -14,9 +15,11 @@ ACTION_WORDS: Mapping[Action, str] = {
     Action.TURN_LEFT: "turn left",
     Action.TURN_RIGHT: "turn right",
 }
+TRAPPED = f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position"
+"""The meaning of `trapped` (`sim.task.failures`), as videos and reports word it."""
 _CAUSES: Mapping[str, str] = {
     "missed_detection": "The goal was in sight, but the agent drove on.",
-    "trapped": "The robot was trapped within one metre.",
+    "trapped": f"The robot was trapped: {TRAPPED}.",
     "loop": "The robot drove in a loop.",
     "explore": "The goal was never in sight.",
     "stairs": "The goal is on another storey.",

@@ -32,6 +32,8 @@ class Args:
     """Address to listen on. Everybody who can reach it can see and drive the robot: there is no password."""
     name: tuple[str, ...] = ()
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
+    weights: Path | None = None
+    """Your network in place of the shipped one, for segmentation by rednet."""
     runs: Path = Path("runs")
     """Folder of the runs that the page shows."""
 
@@ -43,6 +45,10 @@ def main(args: Args) -> int:
         raise ConfigError(f"sim.web needs {', '.join(missing)}: pip install -e '.[web]'.")
     if not 0 <= args.port <= 65535:
         raise ConfigError(f"--port must lie between 0 and 65535, got {args.port}.")
+    if args.weights is not None:
+        from sim.composition.segmenters import weights_file
+
+        weights_file(args.weights)
     listening = _listen(args.host, args.port)  # before the imports, which take seconds
     import uvicorn
 
@@ -51,7 +57,7 @@ def main(args: Args) -> int:
 
     port = listening.getsockname()[1]
     hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
-    app = make_app(Hub(), Runs(args.runs), hosts=hosts)
+    app = make_app(Hub(args.weights), Runs(args.runs), hosts=hosts)
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )

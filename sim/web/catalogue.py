@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from sim import cli
 from sim.composition.agents import SPECS
 from sim.composition.segmenters import KINDS
 from sim.episodes.splits import load_split, shipped_splits
@@ -53,6 +54,7 @@ class Choices:
             "agents": {name: spec.description for name, spec in SPECS.items()},
             "uses_segmentation": {name: spec.uses_segmentation for name, spec in SPECS.items()},
             "semantics": {name: kind.description for name, kind in KINDS.items()},
+            "run_command": cli.command("-m", "sim.run", "--video"),
         }
 
     def wish(self, message: dict[str, Any]) -> Wish:
@@ -130,10 +132,11 @@ class Runs:
         """
         run = self._run(name)
         file_of = _FILES.get(kind)
-        for line in _lines(run) if file_of is not None else ():
-            file = file_of(run, line["episode_id"])
-            if file.name == file_name and self._inside(file):
-                return file
+        if file_of is not None:
+            for line in _lines(run):
+                file = file_of(run, line["episode_id"])
+                if file.name == file_name and self._inside(file):
+                    return file
         raise ConfigError(f"Run '{name}' has no file '{file_name}' in '{kind}'.")
 
     def report(self, name: str) -> Path:
@@ -144,7 +147,7 @@ class Runs:
         """
         file = self._run(name) / REPORT
         if not self._inside(file):
-            raise ConfigError(f"Run '{name}' has no report; python -m sim.report makes it.")
+            raise ConfigError(f"Run '{name}' has no report; {cli.command('-m', 'sim.report', file.parent)} makes it.")
         return file
 
     def _newest(self) -> list[Path]:
@@ -176,6 +179,7 @@ class Runs:
             "split": (record.get("split_identity") or {}).get("name"),
             "episodes": len(lines),
             "found": sum(bool(line.get("success")) for line in lines),
+            "errors": sum(line.get("end_reason") == "error" for line in lines),
             "spl": sum(float(line.get("spl") or 0.0) for line in lines) / max(1, len(lines)),
             "report": self._inside(run / REPORT),
         }

@@ -56,9 +56,10 @@ class Client:
 class Hub:
     """Hands the newest state and frame of the session to all clients; slow ones miss frames (`Audience`)."""
 
-    def __init__(self) -> None:
+    def __init__(self, weights: Path | None = None) -> None:
+        """Makes a session whose network has these weights; the shipped ones when None."""
         self.clients: set[Client] = set()
-        self.session = Session(self)
+        self.session = Session(self, weights)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._told: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
         self._frame: Frame | None = None

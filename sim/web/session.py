@@ -6,6 +6,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 from sim.cli import USAGE_ERRORS
@@ -53,9 +54,15 @@ class Audience(Protocol):
 class Session:
     """Plays one episode after the other, as users ask for them; all users see the same one."""
 
-    def __init__(self, audience: Audience) -> None:
+    def __init__(self, audience: Audience, weights: Path | None = None) -> None:
+        """Makes a session; `start` starts it.
+
+        Args:
+            audience: is told what there is to show.
+            weights: of the network of `rednet`; the shipped one when None.
+        """
         self.controls = Controls()
-        self._audience = audience
+        self._audience, self._weights = audience, weights
         self._parts: Parts | None = None
         self._pictures: Pictures | None = None
         self._made_for: tuple[str, str, str] | None = None
@@ -109,7 +116,8 @@ class Session:
         key = (wish.split, wish.agent, wish.semantics)
         if self._parts is None or self._pictures is None or key != self._made_for:
             self._free()
-            options = RunOptions(agent=wish.agent, semantics=wish.semantics, split=wish.split)
+            weights = self._weights if wish.semantics == "rednet" else None
+            options = RunOptions(agent=wish.agent, semantics=wish.semantics, weights=weights, split=wish.split)
             self._parts = build_parts(options, watched=True)
             self._pictures, self._made_for = Pictures(self._parts), key
         return self._parts, self._pictures

@@ -14,6 +14,7 @@ from typing import Any
 
 BINARIES = ("chromium", "chromium-browser", "google-chrome")
 ENTER = "\ue007"
+ESCAPE = "\ue00c"
 _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 
 

@@ -178,8 +178,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=30 --episodes 1 {_SMALL}"
         " --out {tmp}/run",
     ),
-    f"{_RUN} --semantics gt --config robot.body.radius_m=0.25 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 5": (
-        f"{_RUN} --semantics gt --config robot.body.radius_m=0.25 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 1"
+    f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 5": (
+        f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 1"
         f" {_SMALL} --out {{tmp}}/run",
     ),
     f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 5": (

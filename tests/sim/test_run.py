@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -273,3 +274,13 @@ def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_video() -> N
     assert "sim.composition.agents" in told
     for package in ("'mujoco'", "'torch'", "'av'", "'OpenGL'"):
         assert package not in told
+
+
+def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry(["--goal", "toilett"]) == 2
+    told = capsys.readouterr().err
+    assert "--goal 'toilett'" in told
+    assert "Did you mean 'toilet'? It has: chair, table," in told
+    assert "--episodes" not in told
+    assert entry(["--goal", "toilet", "--episodes", "9999"]) == 2
+    assert re.search(r"--episodes must be at most \d+, got 9999: .* with goal 'toilet'", capsys.readouterr().err)

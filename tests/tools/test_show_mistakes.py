@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,10 +38,12 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(played: Path, capsys: py
     told = capsys.readouterr().out.splitlines()
     assert sorted(line.split(" ")[0] for line in told[:2]) == sorted(read_run(played / "run").lines)
     assert told[0].startswith("lounge_0000 sofa, step 1: ")
-    assert told[2] == f"2 episodes in {out}"
+    assert told[2] == f"2 episodes that failed by false_detection, in {out}."
     sheet = np.asarray(cv2.imread(str(out)))[..., ::-1]
     height_px = show_mistakes.PANEL_PX * 480 // 640 + show_mistakes.CAPTION_PX
-    assert sheet.shape == (2 * height_px, 4 * show_mistakes.PANEL_PX, 3)
+    assert sheet.shape == (2 * height_px + show_mistakes.CAPTION_PX, 4 * show_mistakes.PANEL_PX, 3)
+    headings = sheet[: show_mistakes.CAPTION_PX].reshape(show_mistakes.CAPTION_PX, 4, show_mistakes.PANEL_PX, 3)
+    assert (headings.min(axis=(0, 2, 3)) < 100).all()  # each panel has one
     trajectory = read_trajectory(trajectory_file(played / "run", "lounge_0000"))
     house = read_run(played / "run").config["house"]
     images = show_mistakes.render_at(
@@ -50,8 +53,24 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(played: Path, capsys: py
     ahead = images["semantic"][270, 320]
     assert ahead == MPCAT40_ID["sofa"]
     column = show_mistakes.PANEL_PX + show_mistakes.PANEL_PX // 2  # the true categories are the second panel
-    row = show_mistakes.CAPTION_PX + 270 * show_mistakes.PANEL_PX // 640
+    row = 2 * show_mistakes.CAPTION_PX + 270 * show_mistakes.PANEL_PX // 640
     assert sheet[row, column].tolist() == PALETTE[ahead].tolist()
+
+
+def test_what_is_not_drawn_is_told_with_the_option_that_draws_it(
+    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(played / "run", tmp_path / "run")
+    first, second = (json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines())
+    others = [first, second | {"failure": "stopped_short"}]
+    (tmp_path / "run" / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in others))
+    args = Args(run=tmp_path / "run", out=tmp_path / "a.png")
+    assert show_mistakes.main(args) == 0
+    assert capsys.readouterr().out.endswith(" Failures by other causes are drawn with --cause stopped_short (1).\n")
+    assert show_mistakes.main(replace(args, cause="explore")) == 1
+    assert "--cause false_detection (1), --cause stopped_short (1)." in capsys.readouterr().out
+    assert show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", count=1)) == 0
+    assert "1 episode of 2 (--count 2 draws all) that failed by false_detection" in capsys.readouterr().out
 
 
 def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(played: Path) -> None:

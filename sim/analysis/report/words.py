@@ -19,15 +19,16 @@ from sim.task.failures import (
     first_looping_step,
     first_trapped_step,
 )
-from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
+from sim.task.metrics import EXPLORED_SHARE, TRAPPED_WINDOW_STEPS
 from sim.task.trajectory import Trajectory
+from sim.viewers.words import TRAPPED, in_words
 
 MEANING: Mapping[str, str] = {
     "false_detection": "The agent called STOP at an object that is not the goal.",
     "stopped_short": "The agent faced the goal and called STOP too far from it, or behind a wall.",
     "missed_detection": "The goal was in view and the agent did not go to it.",
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
-    "trapped": f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position.",
+    "trapped": f"{TRAPPED}.",
     "explore": "The goal never came into view before the steps ran out.",
     "stairs": "The goal is on another storey, or the robot drove over an edge.",
     "misc": "No other rule applies: ran out of steps on the path to the goal, or an error.",
@@ -71,7 +72,7 @@ def explain(line: Line, trajectory: Trajectory | None) -> str:
     sentences = [reason(line, trajectory).strip()]
     current = cause_of_failure(trajectory) if trajectory.end_reason is not None else None
     if not trajectory.success and current is not None and current != result:
-        sentences.append(f"By the rules of the code that wrote this report the cause is {_plain(current)}.")
+        sentences.append(f"By the rules of the code that wrote this report the cause is {in_words(current)}.")
     return " ".join(sentences)
 
 
@@ -89,7 +90,7 @@ def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
     trapped, looping = first_trapped_step(trajectory.positions_m), first_looping_step(trajectory)
     if trapped is not None:
         until = trapped + TRAPPED_WINDOW_STEPS
-        found.append(Mark("trapped", trapped, until, f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m"))
+        found.append(Mark("trapped", trapped, until, TRAPPED))
     if looping is not None:
         until = looping + LOOP_STEPS
         found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
@@ -117,8 +118,8 @@ def _missed_detection(line: Line, trajectory: Trajectory) -> str:
 
 def _trapped(line: Line, trajectory: Trajectory) -> str:
     step = first_trapped_step(trajectory.positions_m)
-    stayed = f"the robot stayed within {TRAPPED_RADIUS_M:g} m for {TRAPPED_WINDOW_STEPS} steps"
-    return f"From step {step} on {stayed}. {_view(line, trajectory)}"
+    since = "" if step is None else f", from step {step} on"  # None: the cause comes from rules of another version
+    return f"The robot was trapped: {TRAPPED}{since}. {_view(line, trajectory)}"
 
 
 def _loop(line: Line, trajectory: Trajectory) -> str:
@@ -214,8 +215,4 @@ def _nearest(trajectory: Trajectory) -> tuple[int, float] | None:
 
 
 def _goal(line: Line) -> str:
-    return _plain(str(line["goal"]))
-
-
-def _plain(name: str) -> str:
-    return name.replace("_", " ")
+    return in_words(str(line["goal"]))

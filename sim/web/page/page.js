@@ -8,14 +8,18 @@ const KEYS = {ArrowUp: 1, w: 1, ArrowLeft: 2, a: 2, ArrowRight: 3, d: 3, x: 0};
 const RETRY_MS = [300, 600, 1200, 2500];
 
 let socket = null;
+let left = false;  // another page is shown; the browser may keep this one for its Back button
 let failures = 0;
 let choices = null;
+let closed = false;  // the outcome of this episode: a state that comes again does not open it again
 let state = {phase: "idle", driver: "agent", paused: false, per_s: 2};
 
 // --- connection ---------------------------------------------------------------------------------------------------
 
 function connect() {
-  socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+  if (left || (socket && socket.readyState <= WebSocket.OPEN)) return;
+  const opened = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+  socket = opened;
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
     failures = 0;
@@ -24,9 +28,22 @@ function connect() {
   };
   socket.onmessage = (event) => (typeof event.data === "string" ? told(JSON.parse(event.data)) : shown(event.data));
   socket.onclose = () => {
+    if (left || opened !== socket) return;
     linked("connection lost, trying again", true);
     setTimeout(reconnect, RETRY_MS[Math.min(failures++, RETRY_MS.length - 1)]);
   };
+}
+
+// The browser would keep the connection of a page that it keeps, and the server would count that page as open.
+function leave() {
+  left = true;
+  if (socket) socket.close();
+}
+
+function comeBack(event) {
+  if (!event.persisted) return;
+  left = false;
+  connect();
 }
 
 async function reconnect() {
@@ -76,16 +93,27 @@ function told(news) {
   for (const button of document.querySelectorAll(".pad button")) button.disabled = !playing;
   linked(news.clients > 1 ? `connected, ${news.clients} pages` : "connected", false);
   const outcome = news.phase === "ended" ? news.outcome : null;
-  $("outcome").hidden = !outcome;
+  if (!outcome) closed = false;
+  $("outcome").hidden = !outcome || closed;
   if (outcome) {
     $("outcome").className = `card outcome ${outcome.found ? "found" : "missed"}`;
     $("outcome-headline").textContent = outcome.headline;
     $("outcome-sentence").textContent = outcome.sentence;
+    if (closed) $("doing").textContent = outcome.sentence;
   }
   if (news.legends) {
     fill($("map-legend"), news.legends.map.map(([name, colour]) => legendItem(name, colour)));
     fill($("plan-legend"), news.legends.plan.map(([name, colour]) => legendItem(name, colour)));
   }
+}
+
+function closeOutcome() {
+  if ($("outcome").hidden) return;
+  const focused = $("outcome").contains(document.activeElement);
+  closed = true;
+  $("outcome").hidden = true;
+  $("doing").textContent = $("outcome-sentence").textContent;
+  if (focused) $("start").focus({preventScroll: true});
 }
 
 async function shown(buffer) {
@@ -187,6 +215,7 @@ async function choose() {
   options($("split"), Object.keys(choices.splits));
   options($("agent"), Object.keys(choices.agents), "stubborn");
   options($("semantics"), Object.keys(choices.semantics), "rednet");
+  $("run-command").textContent = choices.run_command;
   chosenSplit();
   chosenAgent();
 }
@@ -200,7 +229,8 @@ async function listRuns() {
     const item = document.createElement("li"), button = document.createElement("button"), about = document.createElement("small");
     button.type = "button";
     button.append(run.name, about);
-    about.textContent = `${run.agent ?? "?"}, ${run.split ?? "?"}: ${run.found} of ${run.episodes} found, SPL ${run.spl.toFixed(2)}`;
+    const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
+    about.textContent = `${run.agent ?? "?"}, ${run.split ?? "?"}: ${run.found} of ${run.episodes} found${errors}, SPL ${run.spl.toFixed(2)}`;
     button.addEventListener("click", () => openRun(run));
     item.append(button);
     return item;
@@ -223,7 +253,7 @@ async function openRun(run) {
 
 function episodeRow(line, address) {
   const row = document.createElement("tr");
-  const outcome = line.success ? "found" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
+  const outcome = line.success ? "found" : line.end_reason === "error" ? "error" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
   for (const [words, kind] of [[line.episode_id, ""], [(line.goal ?? "").replaceAll("_", " "), ""], [outcome, line.success ? "good" : "bad"], [line.num_steps ?? "", "number"], [Number(line.spl ?? 0).toFixed(2), "number"]]) {
     const cell = document.createElement("td");
     cell.textContent = words;
@@ -290,8 +320,11 @@ function hold(button) {
   button.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 
-document.addEventListener("keydown", key);
+document.addEventListener("keydown", (event) => (event.key === "Escape" ? closeOutcome() : key(event)));
+$("close-outcome").addEventListener("click", closeOutcome);
 document.addEventListener("visibilitychange", showWanted);
+addEventListener("pagehide", leave);
+addEventListener("pageshow", comeBack);
 $("choose").addEventListener("submit", (event) => { event.preventDefault(); start("agent"); });
 $("start-driving").addEventListener("click", () => start("person"));
 $("split").addEventListener("change", chosenSplit);

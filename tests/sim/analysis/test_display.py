@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import io
 import re
+import shlex
+import subprocess
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from rich.table import Table
 
-from sim.analysis.display import PlainConsole, ProgressReport
+from sim.analysis.display import PlainConsole, ProgressReport, describe, print_results, print_where_to_look
 from sim.episodes.splits import Episode
+from sim.evaluation.results import summarise
 from sim.geometry.pose import Pose
 
 
@@ -67,5 +71,37 @@ def test_a_pipe_gets_a_line_when_an_episode_begins_while_it_runs_and_when_it_end
     assert first == "e0 begins: looking for tv monitor in house val_00"
     assert running
     assert all(re.fullmatch(r"\[0/1\] running: e0 for \d+ s", each) for each in running)
-    assert last == "[1/1] e0: tv_monitor found after 3 steps, 1 s"
+    assert last == "[1/1] e0: tv monitor found after 3 steps, 1 s"
     assert "progress" not in {thread.name for thread in threading.enumerate()}
+
+
+BROKEN = {
+    "episode_id": "e0", "house": "h", "goal": "chest_of_drawers", "success": 0.0, "spl": 0.0, "num_steps": 1,
+    "path_length": 0.0, "shortest_path": None, "distance_to_goal": None, "collisions": 0, "steps_per_s": 1.0,
+    "wall_time_s": 0.4, "failure": "misc", "end_reason": "error", "error": "Agent 'mine:make', step 1: KeyError",
+}  # fmt: skip
+"""The line of an episode that an error of the agent has ended."""
+
+
+def test_an_error_is_called_one_and_the_option_that_shows_where_is_named() -> None:
+    stream = io.StringIO()
+    print_results(PlainConsole(file=stream, width=120), [BROKEN], summarise([BROKEN]))
+    shown = stream.getvalue()
+    assert "misc" not in shown
+    assert "no: error" in shown
+    assert "Failed by error: 1" in shown
+    assert "1 episode in 1 house" in shown
+    assert "--debug shows the traceback" in shown
+    assert describe(BROKEN) == "e0: chest of drawers ended with an error after 1 step, 0 s"
+
+
+def test_the_printed_commands_start_as_they_are_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")  # outside of the virtual environment
+    print_where_to_look(PlainConsole(width=120), tmp_path / "a run", video=False)
+    report, web = re.findall(r": (\S*python -m .*)", capsys.readouterr().out)
+    assert shlex.split(report)[1:] == ["-m", "sim.report", str(tmp_path / "a run")]
+    assert shlex.split(web)[1:] == ["-m", "sim.web"]
+    code = [shlex.split(web)[0], "-c", "import sim"]
+    assert subprocess.run(code, check=False, timeout=60).returncode == 0

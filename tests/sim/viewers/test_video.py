@@ -23,12 +23,24 @@ from sim.houses.labels import geoms_of
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.robot.body import PREFIX
 from sim.run import entry
+from sim.task.ground_truth import GroundTruth
 from sim.viewers import overlay, video
 from sim.viewers.chase import ChaseView
-from sim.viewers.topview import BLOCKED, FREE, INSTANCE, OBSTACLE, SHORTEST, SUCCEEDS, TopView, shortest_path_m
+from sim.viewers.topview import (
+    BLOCKED,
+    FREE,
+    INSTANCE,
+    OBSTACLE,
+    SHORTEST,
+    SUCCEEDS,
+    TopView,
+    shortest_path_m,
+    shown_cells,
+)
 from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, perceive, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.viewers.words import Outcome, explain_end
+from sim.world.world import World
 from stubborn.draw import AgentMapPainter
 from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
@@ -333,6 +345,19 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
     assert sofa[0] == pytest.approx(150, abs=8)
 
 
+@pytest.mark.parametrize(("east_m", "whole"), [(10.0, True), (20.0, False)])
+def test_the_plan_shows_a_small_house_whole_and_a_goal_behind_furniture(east_m: float, whole: bool) -> None:
+    furnished = with_box(room(east_m, 4), "cabinet_00", centre_m=(east_m / 2 - 0.5, 0, 0.9), half_m=(0.5, 2.0, 0.9))
+    house = with_box(furnished, "sofa_00", centre_m=(east_m / 2 - 0.1, 0, 2.0), half_m=(0.1, 0.8, 0.2))
+    truth = GroundTruth(World(house))
+    space, target = truth.space(), truth.target("sofa")
+    rows, cols = shown_cells(space, target)
+    x_m, _ = space.frame.axes()
+    assert (rows.stop - rows.start, cols.stop - cols.start) <= space.frame.shape
+    assert x_m[cols][-1] > east_m / 2 - 0.05
+    assert ((rows.stop - rows.start, cols.stop - cols.start) == space.frame.shape) == whole
+
+
 def test_a_video_that_the_disk_cannot_hold_is_an_error_and_no_file(tmp_path: Path) -> None:
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
     frames = np.random.default_rng(0).integers(0, 256, (3, 96, 128, 3), np.uint8)
@@ -375,6 +400,12 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
         ({"end_reason": "stop", "failure": "misc"}, 0.8, True, "but a wall or a door hides it"),
         ({"end_reason": "stop", "failure": "false_detection"}, None, True, "there is no chair on this storey"),
         ({"end_reason": "max_steps", "failure": "explore"}, 3.0, True, "used up. The goal was never in sight."),
+        (
+            {"end_reason": "max_steps", "failure": "trapped"},
+            3.0,
+            True,
+            "All 9 steps are used up. The robot was trapped: 100 steps within 1 m of one position.",
+        ),
         ({"end_reason": "fallen", "failure": "stairs"}, 3.0, True, "drove over an edge"),
     ],
 )

@@ -18,13 +18,18 @@ import pytest
 
 from sim import report
 from sim import run as sim_run
-from tests.helpers.browser import Browser, missing
+from sim.composition.options import RunOptions
+from sim.errors import ConfigError
+from tests.helpers.browser import ESCAPE, Browser, missing
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
 pytest.importorskip("uvicorn", reason="no uvicorn: pip install -e '.[web]'")
 client = pytest.importorskip("websockets.sync.client", reason="no websockets: pip install -e '.[web]'")
 
 from websockets.exceptions import WebSocketException  # noqa: E402
+
+from sim.web import session  # noqa: E402
+from sim.web.controls import Wish  # noqa: E402
 
 WISH = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "semantics": "gt"}
 LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0, "num_steps": 9}
@@ -65,7 +70,9 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("web")
     run = folder / "runs" / "mine"
     (run / "videos").mkdir(parents=True)
-    (run / "results.jsonl").write_text(json.dumps(LINE) + "\n" + json.dumps(LINE | {"episode_id": "e/1"}) + "\n")
+    broken = {"episode_id": "e/2", "success": 0.0, "failure": "misc", "end_reason": "error", "error": "It broke."}
+    lines = [LINE, LINE | {"episode_id": "e/1"}, LINE | broken]
+    (run / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     (run / "config.json").write_text(json.dumps({"agent": "stubborn", "semantics": "gt"}))
     (run / "videos" / "e%2F0.mp4").write_bytes(b"a video")
     (folder / "secret.mp4").write_bytes(b"a secret")
@@ -200,6 +207,14 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
     wait_for(lambda: browser.run("return document.body.dataset.phase") == "ended")
     assert browser.run("return document.getElementById('outcome-headline').textContent").startswith("Found after")
     wait_for(lambda: browser.run("return document.querySelector('#facts').textContent.includes(', stop,')"))
+    closing = "return document.getElementById('outcome').hidden"
+    assert not browser.run(closing)
+    browser.click("#close-outcome")
+    assert browser.run(closing)
+    assert browser.run("return document.getElementById('doing').textContent").startswith("The STOP counts")
+    with server.connect():  # another page tells this one the same end again
+        wait_for(lambda: "2 pages" in browser.run("return document.getElementById('link').textContent"))
+        assert browser.run(closing)
     drawn = browser.run("""
         return [...document.querySelectorAll("figure")].filter((figure) => {
             const canvas = figure.querySelector("canvas");
@@ -253,14 +268,82 @@ def frame_now(browser: Browser) -> int:
     return int(browser.run("return document.body.dataset.step ?? -1"))
 
 
+def test_escape_closes_the_outcome_of_each_episode(server: Server, browser: Browser) -> None:
+    browser.visit(server.address)
+    hidden = "return document.getElementById('outcome').hidden"
+    with server.connect() as second:
+        for _ in range(2):
+            second.send(json.dumps({"do": "speed", "per_s": 60}))
+            second.send(json.dumps({"do": "start", **WISH, "agent": "random"}))
+            state_of(second, "playing")
+            second.send(json.dumps({"do": "act", "action": 0}))
+            wait_for(lambda: browser.run(hidden) is False)
+            browser.keys("body", ESCAPE)
+            assert browser.run(hidden)
+            state_of(second, "ended")
+
+
+def test_a_page_that_was_left_is_not_counted_and_the_back_button_brings_it_back(
+    server: Server, browser: Browser, tmp_path: Path
+) -> None:
+    link = "return document.querySelector('#link').textContent"
+    browser.visit(server.address)
+    wait_for(lambda: browser.run(link) == "connected")
+    (tmp_path / "other.html").write_text("<title>other</title>")
+    browser.open(tmp_path / "other.html")
+    browser.visit(f"{server.address}/#again")
+    wait_for(lambda: browser.run(link).startswith("connected"))
+    time.sleep(0.3)  # a page that were counted would be told at once
+    assert browser.run(link) == "connected"
+    browser.run("history.go(-2)")
+    wait_for(lambda: browser.run("return location.hash") == "")
+    wait_for(lambda: browser.run(link) == "connected")
+
+
+def test_a_network_of_your_own_is_used_and_one_that_is_not_there_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[RunOptions] = []
+
+    def build(options: RunOptions, *, watched: bool) -> None:
+        asked.append(options)
+        raise ConfigError("enough")
+
+    monkeypatch.setattr(session, "build_parts", build)
+    playing = session.Session(Silent(), tmp_path / "mine.safetensors")
+    for semantics in ("rednet", "gt"):
+        with pytest.raises(ConfigError, match="enough"):
+            playing._play(Wish(split="traps", house="wedged_spawn", goal="bed", agent="stubborn", semantics=semantics))
+    assert [options.weights for options in asked] == [tmp_path / "mine.safetensors", None]
+    command = [sys.executable, "-m", "sim.web", "--port", "0", "--weights", str(tmp_path / "none.safetensors")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (2, f"error: No weights at '{tmp_path / 'none.safetensors'}'.\n")
+
+
+class Silent:
+    """An audience that nobody belongs to."""
+
+    def wanted(self) -> frozenset[str]:
+        return frozenset()
+
+    def show(self, frame: session.Frame) -> None:
+        pass
+
+    def tell(self, state: Any) -> None:
+        pass
+
+
 def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     browser.click("#tab-runs")
     wait_for(lambda: browser.run("return document.querySelectorAll('#run-list button').length") == 1)
+    assert "2 of 3 found, 1 error, SPL" in browser.run("return document.querySelector('#run-list').innerText")
     browser.click("#run-list button")
     rows = wait_for(lambda: browser.run("return [...document.querySelectorAll('#episodes tr')].map(r => r.innerText)"))
     assert "found" in rows[0]
-    assert [("Video" in row) for row in rows] == [True, False]
+    assert [("Video" in row) for row in rows] == [True, False, False]
+    assert "error" in rows[2]
+    assert "misc" not in rows[2]
     assert browser.complaints() == []
 
 

@@ -121,9 +121,9 @@
 
   function makeVideo(episode, run) {
     if (!episode.videos[run]) return [];
-    const [src, poster] = [episode.videos[run], episode.pictures[run]];
-    const attributes = { controls: "", preload: poster ? "none" : "metadata", src, "aria-label": `Video of ${episode.id}` };
-    const player = html("video", poster ? { ...attributes, poster } : attributes);
+    const src = episode.videos[run];
+    // The browser shows the first frame: the picture of the end stands beside it.
+    const player = html("video", { controls: "", preload: "metadata", src, "aria-label": `Video of ${episode.id}` });
     const words = html("figcaption", {}, html("a", { href: src }, "Open the file of the video"));
     player.addEventListener("error", () => {
       player.remove();
@@ -248,12 +248,12 @@
       if (goal) late.push(shape);
       else picture.append(shape);
     }
+    if (data.areas[episode.area]) picture.append(svg("path", { class: "area", d: data.areas[episode.area] }));
+    picture.append(...late);
     for (const [name, x, y, width] of plan.rooms) {
       const size = Math.min(2.1 * unit, (1.75 * width) / name.length);
       picture.append(svg("text", { class: "room", x, y, "font-size": size }, name));
     }
-    if (data.areas[episode.area]) picture.append(svg("path", { class: "area", d: data.areas[episode.area] }));
-    picture.append(...late);
   }
 
   function drawTrail(picture, path) {
