@@ -36,14 +36,17 @@ def main(options: RunOptions) -> int:
         print("Split test is for a last measurement: choose nothing by its results.", file=sys.stderr)
     episodes, split = plan_episodes(options)
     report_house(options, console)
-    options = replace(options, out=options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S"))
+    options = replace(
+        options, episodes=len(episodes), out=options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
+    )
     if options.shard is not None and options.out is not None:
         shard = Shard.parse(options.shard)
         episodes, options = shard.select(episodes), replace(options, out=options.out / shard.folder)
     lines, summary = run_missing(options, episodes, split, console)
     display.print_results(console, lines, summary)
     assert options.out is not None
-    display.print_where_to_look(console, options.out, video=options.video)
+    failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
+    display.print_where_to_look(console, options.out, video=options.video, failed=next(failures, None))
     return 1 if summary["errors"] else 0
 
 

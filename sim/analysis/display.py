@@ -127,12 +127,21 @@ def _goal(episode: Started) -> str:
     return episode.goal.replace("_", " ")
 
 
-def print_where_to_look(console: Console, out: Path, *, video: bool) -> None:
-    """Prints where the results of a run are, and the commands that show them."""
+def print_where_to_look(console: Console, out: Path, *, video: bool, failed: str | None = None) -> None:
+    """Prints where the results of a run are, and the commands that show them.
+
+    Args:
+        console: prints.
+        out: folder of the run.
+        video: whether its episodes were filmed.
+        failed: ID of a failed episode of a split; None: there is none.
+    """
     say = functools.partial(console.print, highlight=False, soft_wrap=True)
     say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
     if video:
         say(f"Videos are in {out}/videos.")
+    elif failed is not None:
+        say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER.")
     say(f"A page about this run: {cli.command('-m', 'sim.report', out)}")
     say(f"Watch an agent in the browser, or drive yourself: {cli.command('-m', 'sim.web')}")
 

@@ -21,6 +21,8 @@ def check_options(options: RunOptions) -> None:
             raise ConfigError(f"--{name} must be at least {smallest}, got {value}.")
     if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
         raise ConfigError("--labels, --root and --start-deg need --house.")
+    if options.only and options.house is not None:
+        raise ConfigError("--only names episodes of a split; with --house, episodes are drawn.")
     selection.check(options)
     if options.shard is not None:
         Shard.parse(options.shard)

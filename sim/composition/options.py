@@ -43,6 +43,8 @@ class RunOptions:
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     episodes: cli.Count = 5
     """The first N episodes of the split; with --house, N episodes are drawn."""
+    only: tuple[str, ...] = ()
+    """IDs of episodes of the split: these in place of the first N, for example a failure to film."""
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
     workers: cli.Count = 1

@@ -145,7 +145,7 @@ def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[l
     try:
         split = env.split
         if options.house is None:
-            episodes = _first_episodes(split, options)
+            episodes = _named_episodes(split, options) if options.only else _first_episodes(split, options)
         else:
             episodes = [
                 env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}")
@@ -154,6 +154,23 @@ def plan_episodes(options: RunOptions, spec: AgentSpec | None = None) -> tuple[l
     finally:
         env.close()
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the episodes that the option `only` names, in the order of the split.
+
+    Raises:
+        ConfigError: the split has no such episode, or it has another goal than the one that the options name.
+    """
+    of_goal = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    ids = [episode.episode_id for episode in of_goal]
+    for name in options.only:
+        if name not in ids:
+            near = difflib.get_close_matches(name, ids, n=1)
+            hint = f" Did you mean '{near[0]}'?" if near else ""
+            with_goal = f" with goal '{options.goal}'" if options.goal else ""
+            raise ConfigError(f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{hint}")
+    return [episode for episode in of_goal if episode.episode_id in options.only]
 
 
 def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:

@@ -94,7 +94,8 @@ def _stopped_for_the_goal(trajectory: Trajectory) -> bool:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None or nearest_m > STOPPED_AT_GOAL_M:
         return False
-    looked = trajectory.goal_share[~np.isnan(trajectory.goal_share)]
+    before_stop = trajectory.goal_share[:-1]  # the frame after the STOP shows the same as the one before
+    looked = before_stop[~np.isnan(before_stop)]
     return bool(np.any(looked[-FACED_FRAMES:] >= EXPLORED_SHARE))
 
 

@@ -428,6 +428,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/watching.md
     f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
+    f"{_RUN} --only val_0018 val_0003 --video --out runs/two": (
+        f"{_RUN} --only chair_legs_0 --split traps --agent oracle --semantics gt --video --out {{tmp}}/two",
+    ),
     f"{_RUN} --video --noise harsh --split traps --episodes 2": (
         f"{_RUN} --video --noise harsh --split traps --episodes 1 --agent oracle --out {{tmp}}/traps",
     ),

@@ -276,6 +276,22 @@ def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_video() -> N
         assert package not in told
 
 
+def test_only_the_named_episodes_of_a_split_are_run_and_others_can_follow(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--split", "traps", "--agent", "random", "--config", "task.max_steps=2", "--out", str(tmp_path / "run")]
+    assert entry([*options, "--only", "narrow_gap_1", "chair_legs_2"]) == 0
+    assert [line["episode_id"] for line in lines_of(tmp_path / "run")] == ["chair_legs_2", "narrow_gap_1"]
+    assert "the same command with --only chair_legs_2 --video" in capsys.readouterr().out
+    assert entry([*options, "--only", "narrow_gap_1", "low_slab_0"]) == 0
+    assert len(lines_of(tmp_path / "run")) == 3
+    assert entry([*options, "--only", "narow_gap_1"]) == 2
+    told = "error: --only 'narow_gap_1': split 'traps' has no such episode. Did you mean 'narrow_gap_1'?"
+    assert capsys.readouterr().err.strip() == told
+    assert entry(["--house", "examples/my_house.xml", "--only", "narrow_gap_1"]) == 2
+    assert "--only names episodes of a split" in capsys.readouterr().err
+
+
 def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(["--goal", "toilett"]) == 2
     told = capsys.readouterr().err

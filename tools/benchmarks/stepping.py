@@ -14,7 +14,6 @@ from sim.task.objectnav import Task
 from sim.world.world import World
 from stubborn.mapping.mapper import Mapper
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.segmentation.network import NetworkSegmenter
 from tools.benchmarks.figures import Figure, Goal, stopwatch
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent
 
@@ -27,10 +26,7 @@ _WORLD = {
     "rendering": [(Camera, "render")],
     "task": [(Task, "observe")],
 }
-_AGENT = {
-    "mapping": [(Mapper, "add_depth"), (Mapper, "add_scores")],
-    "detection": [(GroundTruthSegmenter, "scores"), (NetworkSegmenter, "scores")],
-}
+_MAPPING = [(Mapper, "add_depth"), (Mapper, "add_scores")]
 
 
 def environment_step(setting: Setting) -> list[Figure]:
@@ -99,7 +95,7 @@ def _split_steps(
     )
     rig = Rig(env, stubborn_agent(env, semantics=semantics), env.split.episodes)
     whole: list[float] = []
-    with stopwatch(_AGENT if of_agent else _WORLD) as ms:
+    with stopwatch(_parts_of_agent(semantics) if of_agent else _WORLD) as ms:
         parts: dict[str, list[float]] = {name: [] for name in ms}
         rig.step()
         while len(whole) < setting.amount.steps:
@@ -115,6 +111,14 @@ def _split_steps(
                 parts[name].append(taken - before[name])
     env.close()
     return np.array(whole), {name: np.array(taken) for name, taken in parts.items()}, float(np.median(fixed_ms))
+
+
+def _parts_of_agent(semantics: str) -> dict[str, list[tuple[type, str]]]:
+    if semantics == "gt":
+        return {"mapping": _MAPPING, "detection": [(GroundTruthSegmenter, "scores")]}
+    from stubborn.segmentation.network import NetworkSegmenter  # PyTorch, which the workers of part (i) must not hold
+
+    return {"mapping": _MAPPING, "detection": [(NetworkSegmenter, "scores")]}
 
 
 def _against(part: str, what: str, ms: np.ndarray, baseline: float, against: str, goal: Goal | None = None) -> Figure:

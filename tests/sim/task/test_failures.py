@@ -83,15 +83,20 @@ def test_a_stop_slightly_too_far_from_the_goal_in_view_is_no_false_detection(nea
     assert cause_of_failure(walk(line(30), end="stop", seen_at=29, nearest_instance_m=nearest_m)) == cause
 
 
-@pytest.mark.parametrize("seen_at", [3, 26])
+@pytest.mark.parametrize(("seen_at", "cause"), [(26, "stopped_short"), (25, "false_detection")])
+def test_the_frame_of_the_stop_and_three_before_count(seen_at: int, cause: str) -> None:
+    assert cause_of_failure(walk(line(30), end="stop", seen_at=seen_at, nearest_instance_m=1.2)) == cause
+
+
+@pytest.mark.parametrize("seen_at", [3, 25])
 def test_a_stop_near_an_instance_that_the_robot_does_not_face_is_a_false_detection(seen_at: int) -> None:
     assert cause_of_failure(walk(line(30), end="stop", seen_at=seen_at, nearest_instance_m=0.4)) == "false_detection"
 
 
 def test_a_frame_that_was_not_rendered_does_not_count_among_those_faced() -> None:
-    episode = walk(line(30), end="stop", seen_at=26, nearest_instance_m=1.2)
+    episode = walk(line(30), end="stop", seen_at=25, nearest_instance_m=1.2)
     share = episode.goal_share.copy()
-    share[-1] = np.nan
+    share[28] = np.nan
     assert cause_of_failure(replace(episode, goal_share=share)) == "stopped_short"
 
 
