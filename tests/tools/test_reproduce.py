@@ -241,7 +241,7 @@ def test_several_splits_take_turns_and_share_a_page(
     both = replace(args, table="splits", splits=(str(split), str(other)))
     assert reproduce.main(both) == 0
     told = capsys.readouterr().out
-    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes of (tiny|small)", told)
+    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes? of (tiny|small)", told)
     assert order == [(agent, of) for _ in range(2) for of in ("tiny", "small") for agent in ("oracle", "my_agent:make")]
     names = {file.name for file in (args.out / "tables").glob("splits_*.md")}
     agents = "gt_oracle+examples.my_agent_make"
