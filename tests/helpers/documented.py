@@ -144,6 +144,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
     ),
     # docs/index.md
+    f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --episodes 40 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
     f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
