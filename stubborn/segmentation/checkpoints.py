@@ -146,7 +146,7 @@ def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mappin
     Raises:
         ConfigError: the file is broken, expands to more than `MAX_CHECKPOINT_BYTES`, or holds no table.
     """
-    if zipfile.is_zipfile(file):
+    if _is_zip(file):
         require_small_zip(file, what="Weights", most=MAX_CHECKPOINT_BYTES)
     try:
         content = torch.load(file, map_location=device, weights_only=True)
@@ -156,6 +156,13 @@ def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mappin
     if not isinstance(content, Mapping):
         raise ConfigError(f"Weights '{file}' hold a {type(content).__name__}, not a table of tensors.")
     return content
+
+
+def _is_zip(file: Path) -> bool:
+    try:
+        return zipfile.is_zipfile(file)
+    except zipfile.BadZipFile:  # it is one, in several parts
+        return True
 
 
 def _config(file: Path, metadata: dict[str, Any]) -> Architecture:

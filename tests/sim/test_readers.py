@@ -6,6 +6,7 @@ import contextlib
 import gzip
 import io
 import json
+import struct
 import tarfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from sim.configuration import read_settings
 from sim.datasets.shards import ShardNote, read_note
 from sim.episodes import habitat
 from sim.episodes.splits import read_unreachable
-from sim.errors import ObjectNavError
+from sim.errors import ConfigError, ObjectNavError
 from sim.evaluation.results import read_record, read_result_lines
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
@@ -234,3 +235,10 @@ def test_any_content_gives_a_result_or_a_message(reader: Reader, tmp_path: Path)
             reader.read(file)
 
     check()
+
+
+def test_weights_in_a_zip_of_several_parts_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "a.pth"
+    file.write_bytes(struct.pack("<4sLQL", b"PK\x06\x07", 1, 0, 2) + struct.pack("<4s4H2LH", b"PK\x05\x06", *7 * [0]))
+    with pytest.raises(ConfigError, match="span multiple disks"):
+        read_checkpoint(file)
