@@ -36,9 +36,8 @@ def main(options: RunOptions) -> int:
         print("Split test is for a last measurement: choose nothing by its results.", file=sys.stderr)
     episodes, split = plan_episodes(options)
     report_house(options, console)
-    options = replace(
-        options, episodes=len(episodes), out=options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
-    )
+    out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
+    options = replace(options, episodes=len(episodes), out=out)
     if options.shard is not None and options.out is not None:
         shard = Shard.parse(options.shard)
         episodes, options = shard.select(episodes), replace(options, out=options.out / shard.folder)

@@ -321,7 +321,7 @@ def test_a_network_of_your_own_is_used_and_one_that_is_not_there_is_refused(
 
 
 class Silent:
-    """An audience that nobody belongs to."""
+    """An audience without clients."""
 
     def wanted(self) -> frozenset[str]:
         return frozenset()
