@@ -26,7 +26,7 @@ from sim.interface import (
     wrap_angle,
 )
 from stubborn.exploration.corners import CornerConfig
-from stubborn.exploration.explorer import Explorer, ExplorerConfig, Ground, run_explorer
+from stubborn.exploration.explorer import Explorer, ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.object_layers import ObjectLayers
@@ -158,6 +158,10 @@ class StubbornAgent:
         """Returns the confidence in the candidate that was accepted last; see `sim.interface.StatesConfidence`."""
         return self.seeker.confidence
 
+    def stop_target_xy_m(self) -> tuple[float, float] | None:
+        """Returns the centre of the candidate's cell for which it stops; see `sim.interface.StatesTarget`."""
+        return None if self.approach is None else self._centre_xy_m(self.approach.cell)
+
     def _learn_from_last_action(self, before: Pose, pose: Pose) -> None:
         """Marks the ground that was driven over, and a collision where the last forward failed."""
         config, moved_m = self.config.collisions, pose.distance_to(before)
@@ -175,6 +179,8 @@ class StubbornAgent:
         scores = self.segmenter.scores(observation, self.goal)
         rim_px = 0 if exact_depth and self.segmenter.spec.exact_outlines else self.config.mapping.rim_px
         sighting = self.mapper.add_scores(self.navmap, depth, scores, pose, self.step, rim_px=rim_px)
+        if isinstance(self.explorer, ReadsSemantics):
+            self.mapper.add_goals(self.navmap, depth, self.segmenter.posteriors(observation), pose)
         self.seeker.observe(self.navmap, observation, pose, self.step)
         return sighting
 
@@ -183,6 +189,7 @@ class StubbornAgent:
         self.route, self.approach = None, None
         cell = self.seeker.in_reach(self.navmap, sighting)
         if cell is not None and self.seeker.judge(self.navmap, cell):
+            self.approach = self._approach_in_reach(cell, pose)
             return Action.STOP
         escape = self.untrap.next_action()
         if escape is not None:
@@ -191,7 +198,7 @@ class StubbornAgent:
         self.approach = self.seeker.approach(self.navmap, window, pose, self.step)
         if self.approach is None:
             choice = run_explorer(
-                self.explorer, Ground(self.navmap, window, pose, self.policies.exploration, self.planner)
+                self.explorer, Ground(self.navmap, window, pose, self.policies.exploration, self.planner, self.goal)
             )
         elif self.approach.route is None:
             choice = self._inspect(self.approach, pose)
@@ -222,6 +229,16 @@ class StubbornAgent:
                 return Action.MOVE_FORWARD if nearer else Action.STOP
             self.seeker.postpone(self.navmap, self.step)
         return Action.TURN_LEFT
+
+    def _approach_in_reach(self, cell: tuple[int, int], pose: Pose) -> Approach:
+        """Returns the approach to a candidate that is near enough to stop at once."""
+        x_m, y_m = self._centre_xy_m(cell)
+        return Approach(None, math.atan2(y_m - pose.y_m, x_m - pose.x_m), cell)
+
+    def _centre_xy_m(self, cell: tuple[int, int]) -> tuple[float, float]:
+        """Returns the centre of a cell of the map, in the start frame."""
+        x_m, y_m = self.navmap.frame.centres(*cell)
+        return float(x_m), float(y_m)
 
     def _local_window(self, pose: Pose) -> Window:
         """Returns the local window, which is moved with the robot every few steps."""

@@ -96,3 +96,25 @@ def highest_scores(flat, target, other, in_view, target_of, other_of):
     for i in range(flat.size):
         if target[i] == target_of[flat[i]] and other[i] > other_of[flat[i]]:
             other_of[flat[i]] = other[i]
+
+
+@njit(cache=True)
+def goal_bits(posteriors, channels, first, every, least):
+    """Returns a uint32 image (rows / every, cols / every) with bit g where goal category g is probable.
+
+    Args:
+        posteriors: (classes, rows, cols) float32.
+        channels: (goals,) the channel of each goal category.
+        first: the first row and column that is used; then every `every`-th.
+        every: see above.
+        least: a probability above this sets the bit.
+    """
+    _, rows, cols = posteriors.shape
+    bits = np.zeros(((rows - first + every - 1) // every, (cols - first + every - 1) // every), np.uint32)
+    for goal in range(channels.size):
+        bit, channel = np.uint32(1) << np.uint32(goal), posteriors[channels[goal]]
+        for i in range(bits.shape[0]):
+            for j in range(bits.shape[1]):
+                if channel[first + i * every, first + j * every] > least:
+                    bits[i, j] |= bit
+    return bits

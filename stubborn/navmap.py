@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int8, Int16, UInt16
+from jaxtyping import Bool, Float32, Int8, Int16, UInt16, UInt32
 
 from sim.geometry.grid import GridFrame, Window
 
 _LAYERS: Mapping[str, type] = MappingProxyType(
     {  # the widest first, so that each is aligned
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
+        "goals_seen": np.uint32,
         **{"frames_in_view": np.uint16, "found_step": np.int16},
         **dict.fromkeys(("obstacle_evidence", "drop_evidence"), np.int8),
         **dict.fromkeys(("seen_obstacle", "seen_at_eye_level", "pessimistic_marks", "optimistic_marks"), np.bool_),
@@ -73,6 +74,9 @@ class NavMap:
     """Sum over frames of the unit vector from a target point to the camera, x component: the side that was seen."""
     shown_y: Float32[np.ndarray, "rows cols"]
     """The y component of the same sum."""
+    goals_seen: UInt32[np.ndarray, "rows cols"]
+    """Bit g is set where goal category g of `sim.interface.GOAL_CATEGORIES` was seen; for explorers that read it
+    (`stubborn.exploration.explorer.ReadsSemantics`), else 0."""
     rejected: Bool[np.ndarray, "rows cols"]
     """True: verification rejected a candidate here; it never counts again in this episode."""
     set_aside: Bool[np.ndarray, "rows cols"]

@@ -172,7 +172,7 @@ def test_the_explorer_on_the_page_of_agents_leads_to_the_farthest_reachable_cell
     navmap = NavMap.empty(frame)
     layers, planner = (CollisionLayer.NONE,), Planner(PlanningConfig(), visited_ground)
     whole = frame.part(slice(None), slice(None))
-    route = run_explorer(explorer, Ground(navmap, whole, Pose(0.0, 0.0, 0.0), layers, planner))
+    route = run_explorer(explorer, Ground(navmap, whole, Pose(0.0, 0.0, 0.0), layers, planner, "chair"))
     assert isinstance(route, Route)
     assert route.length_m > 3.0  # a corner of the map is 3.5 m away
 

@@ -35,7 +35,9 @@ class TwinAgent(StubbornAgent):
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the look from the present pose into the map, and returns the target points in it."""
         assert self._episode is not None
-        look = self._episode.camera.look(self._episode.robot.pose, self._episode.goal, self.navmap, pose, self.step)
+        look = self._episode.camera.look(
+            self._episode.robot.pose, self._episode.goal, self.navmap, pose, self.step, self.navmap.goals_seen
+        )
         self._episode.see(look)
         return note_sighting(self, look, pose)
 

@@ -153,8 +153,6 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         )
         self.navmap = NavMap.empty(self._frame)
         """The agent's map."""
-        self.goals_seen = np.zeros(self._frame.shape, np.uint32)
-        """(rows, cols) of the map: bit g is set where goal category g was in view."""
         self._untrap = Untrap(self.config.untrap.failed_forwards)
         self._last: Action | None = None
         self._mark_driven(self.episode.pose)
@@ -256,7 +254,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         """Enters the frame from the present pose into the map."""
         episode = self.episode
         look = episode.camera.look(
-            episode.robot.pose, episode.goal, self.navmap, episode.pose, episode.num_steps, self.goals_seen
+            episode.robot.pose, episode.goal, self.navmap, episode.pose, episode.num_steps, self.navmap.goals_seen
         )
         episode.see(look)
 
@@ -272,7 +270,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
                 layers[number] = getattr(self.navmap, name)[window.index]
         return {
             "layers": layers.view(np.uint8),
-            "goals_seen": self.goals_seen[window.index].copy(),
+            "goals_seen": self.navmap.goals_seen[window.index].copy(),
             "pose": np.array([pose.x_m, pose.y_m, pose.yaw_rad], np.float32),
             "objectgoal": np.array([GOAL_CATEGORIES.index(self.episode.goal)], np.int64),
         }

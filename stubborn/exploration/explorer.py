@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool
@@ -48,6 +48,13 @@ class Explorer(Protocol):
 
 
 @runtime_checkable
+class ReadsSemantics(Protocol):
+    """An explorer that reads `NavMap.goals_seen`; for others the agent saves the time to fill it."""
+
+    reads_semantics: Literal[True]
+
+
+@runtime_checkable
 class ExplorerConfig(Protocol):
     """A frozen dataclass with the parameters of an explorer."""
 
@@ -70,6 +77,8 @@ class Ground:
     """Collision layers to plan on, in order of preference."""
     planner: Planner
     """The agent's planner, for the methods of this class."""
+    goal: str
+    """The goal category."""
 
     def free_space(
         self,

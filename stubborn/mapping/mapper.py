@@ -6,16 +6,19 @@ from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32, Int, Int32
+from jaxtyping import Bool, Float32, Int, Int32, UInt32
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
+from stubborn.frame_kernels import goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 from stubborn.mapping.projection import GroundPoints, Rays, sight_window_cells
 from stubborn.navmap import NavMap
+
+_GOAL_CHANNELS = np.array([MPCAT40_ID[goal] - 1 for goal in GOAL_CATEGORIES], np.int64)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +145,7 @@ class Mapper:
         """
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
-        rays, score_pick = self._rays_for(scores)
+        rays, score_pick = self._rays_for(scores.target.shape)
         target = scores.target[score_pick]
         d, confirmed = self._confirm(target, rays.sample(depth))
         confirmed &= self._inner(scores.target, rim_px)[score_pick] | (target <= self.config.candidate_score)
@@ -161,6 +164,27 @@ class Mapper:
         sure = confirmed & (scores.target[score_pick] > self.config.candidate_score)
         self._drop_candidates(navmap.view(window), d, sure, rays, camera_pose)
         return _note_sighting(navmap, window, np.unique(flat[found]), pose)
+
+    def add_goals(
+        self,
+        navmap: NavMap,
+        depth: Float32[np.ndarray, "height_px width_px"],
+        posteriors: Float32[np.ndarray, "classes h w"],
+        pose: Pose,
+    ) -> None:
+        """Enters the goal categories that one frame shows with a probability above `candidate_score`."""
+        camera_pose = self._camera_pose(pose)
+        window = self._sight_window(navmap, camera_pose)
+        rays, pick = self._rays_for(posteriors.shape[1:])
+        bits: UInt32[np.ndarray, "h w"] = goal_bits(
+            posteriors, _GOAL_CHANNELS, pick[0].start, pick[0].step, np.float32(self.config.candidate_score)
+        )
+        if not bits.any():
+            return
+        points = rays.project(rays.sample(depth), bits != 0, camera_pose, window)
+        low = points.height_m <= self.config.score_max_height_m
+        seen = navmap.goals_seen[window.index]
+        np.bitwise_or.at(seen, (points.rows[low], points.cols[low]), bits[points.valid][low])
 
     def _confirm(
         self, target: Float32[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
@@ -214,9 +238,9 @@ class Mapper:
         cells = sight_window_cells(self.camera, navmap.frame.cell_m)
         return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
 
-    def _rays_for(self, scores: Scores) -> tuple[Rays, tuple[slice, slice]]:
-        """Returns the rays of the score pixels that are used, and the slices that pick these from the score images."""
-        height, width = scores.target.shape
+    def _rays_for(self, shape: tuple[int, ...]) -> tuple[Rays, tuple[slice, slice]]:
+        """Returns the rays of the score pixels that are used, and the slices that pick these from score images."""
+        height, width = shape
         block_px = self.camera.width_px // max(width, 1)
         if (height * block_px, width * block_px) != (self.camera.height_px, self.camera.width_px):
             raise ConfigError(

@@ -24,9 +24,10 @@ def ground(
     pose: Pose = START,
     window: Window | None = None,
     layers: tuple[CollisionLayer, ...] = BOTH_LAYERS,
+    goal: str = "chair",
 ) -> Ground:
     """Returns the ground of a map; by default the local window is the whole map."""
-    return Ground(navmap, window or whole(navmap), pose, layers, PLANNER)
+    return Ground(navmap, window or whole(navmap), pose, layers, PLANNER, goal)
 
 
 def route_of(explorer: Explorer, on: Ground) -> Route:
