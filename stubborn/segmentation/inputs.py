@@ -1,6 +1,6 @@
-"""The kinds of second input of a network beside colour: the depth of the published RedNet, or geometric channels.
+"""The kinds of second input of a network beside colour: the depth of the published RedNet, geometric channels, or both.
 
-Both are computed from the whole image before any crop. A network names the kind that it takes; training and the agent
+All are computed from the whole image before any crop. A network names the kind that it takes; training and the agent
 use the same functions.
 """
 
@@ -18,7 +18,7 @@ from sim.interface import CameraModel
 from stubborn.segmentation import geometry
 from stubborn.segmentation.preprocess import normalise_depth, pad_edges
 
-InputKind = Literal["depth", "geometry"]
+InputKind = Literal["depth", "geometry", "depth-geometry"]
 
 
 class SecondInput(Protocol):
@@ -109,5 +109,41 @@ class GeometryInput:
         return pad_edges(geometry.normalised(channels))
 
 
-INPUTS: Mapping[InputKind, SecondInput] = MappingProxyType({"depth": DepthInput(), "geometry": GeometryInput()})
+class DepthGeometryInput:
+    """Depth, then the geometric channels: a network that took depth can be trained further with them."""
+
+    channels = DepthInput.channels + GeometryInput.channels
+
+    def __init__(self) -> None:
+        self._parts = (DepthInput(), GeometryInput())
+
+    def of(self, depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w 7"]:
+        """Returns depth in metres and the geometric channels."""
+        return np.concatenate([part.of(depth_m, camera) for part in self._parts], axis=2)
+
+    def mirrored(self, channels: Float32[np.ndarray, "h w 7"]) -> Float32[np.ndarray, "h w 7"]:
+        """Returns the channels of the mirrored scene."""
+        return np.concatenate([part.mirrored(own) for part, own in self._each(channels)], axis=2)
+
+    def zoomed(
+        self, channels: Float32[np.ndarray, "h w 7"], width_px: int, height_px: int, enlargement: float
+    ) -> Float32[np.ndarray, "rows cols 7"]:
+        """Returns a window in which distances and inverse depth fit its enlargement."""
+        parts = [part.zoomed(own, width_px, height_px, enlargement) for part, own in self._each(channels)]
+        return np.concatenate(parts, axis=2)
+
+    def normalised(
+        self, channels: Float32[np.ndarray, "h w 7"], camera: CameraModel
+    ) -> Float32[np.ndarray, "7 padded_h padded_w"]:
+        """Returns the normalised channels."""
+        return np.concatenate([part.normalised(own, camera) for part, own in self._each(channels)])
+
+    def _each(self, channels: Float32[np.ndarray, "h w 7"]) -> zip[tuple[SecondInput, Float32[np.ndarray, "h w c"]]]:
+        """Returns each part with its channels."""
+        return zip(self._parts, np.split(channels, [DepthInput.channels], axis=2), strict=True)
+
+
+INPUTS: Mapping[InputKind, SecondInput] = MappingProxyType(
+    {"depth": DepthInput(), "geometry": GeometryInput(), "depth-geometry": DepthGeometryInput()}
+)
 """Kinds of second input by name."""

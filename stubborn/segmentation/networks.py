@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
+import torch
+
 from sim.interface import ConfigError
 from stubborn.segmentation.rednet import COMPACT, PUBLISHED, RedNet, RedNetConfig
 from stubborn.segmentation.unet import MobileEncoder, UNet, UNetConfig
@@ -21,6 +23,7 @@ NETWORKS: Mapping[str, Architecture] = MappingProxyType(
     {
         "compact": COMPACT,
         "compact-geometry": replace(COMPACT, second="geometry"),
+        "compact-both": replace(COMPACT, second="depth-geometry"),
         "published": PUBLISHED,
         "unet": UNetConfig(),
         "lite0": UNetConfig(encoder="lite0", widths=(8, 16, 24, 48, 96), decoder=(16, 32, 48, 80)),
@@ -32,6 +35,23 @@ NETWORKS: Mapping[str, Architecture] = MappingProxyType(
 def build_network(config: Architecture) -> Network:
     """Returns a network with random weights."""
     return UNet(config) if isinstance(config, UNetConfig) else RedNet(config)
+
+
+def with_geometry(network: RedNet) -> RedNet:
+    """Returns a network that takes the geometric channels besides depth, with the same weights and the same output.
+
+    The weights of the new channels are zero: training starts from what the network knows.
+
+    Raises:
+        ConfigError: the network's second input is not depth.
+    """
+    if network.config.second != "depth":
+        raise ConfigError(f"The network already has the input {network.config.second!r}.")
+    wider, weights = RedNet(replace(network.config, second="depth-geometry")), network.state_dict()
+    stem = torch.zeros_like(wider.conv1_d.weight)
+    stem[:, : network.conv1_d.in_channels] = network.conv1_d.weight.detach()
+    wider.load_state_dict(weights | {"conv1_d.weight": stem})
+    return wider.train(network.training)
 
 
 def family(network: Network) -> str:

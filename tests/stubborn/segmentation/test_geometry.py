@@ -86,3 +86,18 @@ def test_a_crop_and_an_infinite_range_are_refused() -> None:
         geometry_image(np.ones((480, 320), np.float32), CameraModel())
     with pytest.raises(ConfigError, match="finite number"):
         geometry_image(np.ones((48, 64), np.float32), CameraModel(max_depth_m=math.inf))
+
+
+def test_depth_and_geometry_together_are_the_two_kinds_side_by_side() -> None:
+    depth = np.random.default_rng(1).uniform(0.5, 5.0, (48, 64)).astype(np.float32)
+    camera = CameraModel()
+    one, other, both = (INPUTS[kind] for kind in ("depth", "geometry", "depth-geometry"))
+    channels = both.of(depth, camera)
+    changes = (
+        lambda second, image: second.mirrored(image),
+        lambda second, image: second.zoomed(image[8:32, 8:40], 64, 48, 2.0),
+        lambda second, image: second.normalised(image, camera).transpose(1, 2, 0),
+    )
+    for change in changes:
+        apart = [change(second, second.of(depth, camera)) for second in (one, other)]
+        np.testing.assert_array_equal(change(both, channels), np.concatenate(apart, axis=2))

@@ -13,8 +13,8 @@ from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.network import NetworkSegmenter
-from stubborn.segmentation.networks import NETWORKS, build_network, load_imagenet
-from stubborn.segmentation.rednet import CLASSES, folded
+from stubborn.segmentation.networks import NETWORKS, build_network, load_imagenet, with_geometry
+from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig, folded
 from stubborn.segmentation.unet import UNetConfig
 
 SMALL = {
@@ -44,6 +44,25 @@ def test_a_u_net_is_stored_with_its_configuration(tmp_path: Path, kind: str) -> 
     assert metadata == {"block_px": 2}
     with torch.inference_mode():
         assert torch.equal(model(rgb, second), loaded(rgb, second))
+
+
+def test_a_network_that_gets_the_geometric_channels_keeps_its_output() -> None:
+    torch.manual_seed(0)
+    small = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1))
+    model = RedNet(small).eval()
+    wider = with_geometry(model)
+    depth_m, rgb = np.random.default_rng(0).uniform(0.5, 5.0, (64, 64)).astype(np.float32), torch.randn(1, 3, 64, 64)
+    camera = CameraModel(width_px=64, height_px=64)
+    inputs = [
+        torch.from_numpy(INPUTS[kind].normalised(INPUTS[kind].of(depth_m, camera), camera))[None]
+        for kind in ("depth", "depth-geometry")
+    ]
+    assert [second.shape[1] for second in inputs] == [1, 7]
+    with torch.inference_mode():
+        torch.testing.assert_close(wider(rgb, inputs[1]), model(rgb, inputs[0]))
+    assert not wider.training
+    with pytest.raises(ConfigError, match="already has the input 'depth-geometry'"):
+        with_geometry(wider)
 
 
 @pytest.mark.parametrize("kind", SMALL)
