@@ -26,7 +26,7 @@ from sim.geometry.pose import wrap_angle
 __all__ = [
     "FORWARD_M", "GOAL_CATEGORIES", "MAX_STEPS", "MPCAT40", "MPCAT40_ID", "POSE_SENSORS", "SENSORS", "TURN_RAD",
     "Action", "Agent", "AgentFactory", "AgentSpec", "CameraModel", "ConfigError", "Observation", "RobotModel", "Scores",
-    "Segmenter", "SegmenterSpec", "StatesConfidence", "SuccessRule", "wrap_angle",
+    "Segmenter", "SegmenterSpec", "StatesConfidence", "StatesTarget", "SuccessRule", "wrap_angle",
 ]  # fmt: skip
 
 
@@ -255,6 +255,18 @@ class StatesConfidence(Protocol):
 
     def stop_confidence(self) -> float | None:
         """Returns a probability or score in [0, 1]; None: it has none. Called after `act` has returned STOP."""
+        ...
+
+
+@runtime_checkable
+class StatesTarget(Protocol):
+    """An agent that tells for which place it stops; whether a wrong STOP was for the goal is then measured."""
+
+    def stop_target_xy_m(self) -> tuple[float, float] | None:
+        """Returns a point of the object for which the agent stops, in plan; None: it does not know one.
+
+        x forward and y left of the start pose, as in `gps`. Called after `act` has returned STOP.
+        """
         ...
 
 

@@ -159,8 +159,11 @@ class StubbornAgent:
         return self.seeker.confidence
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns the centre of the candidate's cell for which it stops; see `sim.interface.StatesTarget`."""
-        return None if self.approach is None else self._centre_xy_m(self.approach.cell)
+        """Returns where the candidate that was accepted last scores highest; see `sim.interface.StatesTarget`."""
+        if self.seeker.accepted_cell is None:
+            return None
+        x_m, y_m = self.navmap.frame.centres(*self.seeker.accepted_cell)
+        return float(x_m), float(y_m)
 
     def _learn_from_last_action(self, before: Pose, pose: Pose) -> None:
         """Marks the ground that was driven over, and a collision where the last forward failed."""
@@ -189,7 +192,6 @@ class StubbornAgent:
         self.route, self.approach = None, None
         cell = self.seeker.in_reach(self.navmap, sighting)
         if cell is not None and self.seeker.judge(self.navmap, cell):
-            self.approach = self._approach_in_reach(cell, pose)
             return Action.STOP
         escape = self.untrap.next_action()
         if escape is not None:
@@ -229,16 +231,6 @@ class StubbornAgent:
                 return Action.MOVE_FORWARD if nearer else Action.STOP
             self.seeker.postpone(self.navmap, self.step)
         return Action.TURN_LEFT
-
-    def _approach_in_reach(self, cell: tuple[int, int], pose: Pose) -> Approach:
-        """Returns the approach to a candidate that is near enough to stop at once."""
-        x_m, y_m = self._centre_xy_m(cell)
-        return Approach(None, math.atan2(y_m - pose.y_m, x_m - pose.x_m), cell)
-
-    def _centre_xy_m(self, cell: tuple[int, int]) -> tuple[float, float]:
-        """Returns the centre of a cell of the map, in the start frame."""
-        x_m, y_m = self.navmap.frame.centres(*cell)
-        return float(x_m), float(y_m)
 
     def _local_window(self, pose: Pose) -> Window:
         """Returns the local window, which is moved with the robot every few steps."""

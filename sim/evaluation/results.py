@@ -76,6 +76,8 @@ class ResultLine(msgspec.Struct):
     area_per_metre: float | None = None  # code of before November 2026 divided by paths of nothing
     trapped: Measured = None
     stop_confidence: Measured = None
+    stop_target_xy_m: tuple[Number, Number] | None = None
+    stop_target_to_goal_m: Measured = None
     wall_time_s: Measured = None
     steps_per_s: Measured = None
 

@@ -18,8 +18,9 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
 from sim.evaluation.own_code import place_of
-from sim.interface import Action, Agent, Observation, StatesConfidence
-from sim.task.trajectory import trajectory_file, write_trajectory
+from sim.geometry.pose import Pose
+from sim.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
+from sim.task.trajectory import FARTHEST_M, trajectory_file, write_trajectory
 from sim.viewers.viewer import Moment, Viewer
 
 TIMES = ("wall_time_s", "steps_per_s")
@@ -111,11 +112,26 @@ class _Played:
         action = next_action(self.agent, self.observation, where)
         if action is Action.STOP:
             self.confidence = confidence_of(self.agent, where)
+            self._record_target(target_of(self.agent, where))
         images = self.env.truth_images
         moment = Moment(step=self.steps + 1, observation=self.observation, images=images, action=action)
         for viewer in self.viewers:
             viewer.decided(moment)
         return action
+
+    def _record_target(self, target_xy_m: tuple[float, float] | None) -> None:
+        """Records, in the world frame, the place for which the agent stops.
+
+        It is taken relative to the pose that the agent was told, and put there from the true one: noise of `gps` and
+        `compass` then does not count as a wrong place.
+        """
+        if target_xy_m is None:
+            return
+        scene, observation = self.env.scene, self.observation
+        told = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
+        ahead = Pose(*target_xy_m, 0.0).relative_to(told)
+        x_m, y_m = scene.world.pose.place_of(ahead.x_m, ahead.y_m)
+        scene.task.stops_for(round(x_m, 6), round(y_m, 6))
 
     def _carry_out(self, action: Action) -> None:
         self.observation, _, terminated, truncated, self.info = self.env.step(action)
@@ -131,6 +147,7 @@ class _Played:
         line = {key: _plain(value) for key, value in self.info.items() if key != "collided"}
         line.setdefault("first_seen_step", None)  # `info` has it from the first sight on
         line["stop_confidence"] = self.confidence
+        line |= self.env.scene.task.stop_target()
         return line if self.error is None else line | broken_metrics(self.error)
 
 
@@ -179,6 +196,30 @@ def confidence_of(agent: Agent, where: str) -> float | None:
             f"{where}: stop_confidence() returned {reprlib.repr(given)}; it is a number in [0, 1], or None."
         )
     return round(float(given), 6)
+
+
+def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
+    """Returns the place for which the agent stops, x and y in the start frame; None where it does not tell.
+
+    Raises:
+        AgentError: `stop_target_xy_m` failed, or returned something else; the message begins with `where`.
+    """
+    if not isinstance(agent, StatesTarget):
+        return None
+    given = ask(where, agent.stop_target_xy_m)
+    if given is None:
+        return None
+    try:
+        place = np.asarray(given, np.float64)
+    except (TypeError, ValueError):
+        place = np.zeros(0)
+    if place.shape != (2,) or not (np.abs(place) <= FARTHEST_M).all():
+        raise AgentError(
+            f"{where}: stop_target_xy_m() returned {reprlib.repr(given)}; it is a pair of numbers, at most "
+            f"{FARTHEST_M:g} m from 0, or None."
+        )
+    x_m, y_m = place.tolist()
+    return x_m, y_m
 
 
 def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about: Mapping[str, Any]) -> None:

@@ -27,6 +27,11 @@ class Pose:
         """Returns the x and y of the point that far in front of the robot."""
         return self.x_m + distance_m * math.cos(self.yaw_rad), self.y_m + distance_m * math.sin(self.yaw_rad)
 
+    def place_of(self, forward_m: float, left_m: float) -> tuple[float, float]:
+        """Returns the x and y of a point given relative to this pose, as by `relative_to`."""
+        c, s = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
+        return self.x_m + c * forward_m - s * left_m, self.y_m + s * forward_m + c * left_m
+
     def relative_to(self, start: Pose) -> Pose:
         """Returns this pose in the start's frame: x forward, y left, yaw in (-pi, pi]."""
         dx, dy = self.x_m - start.x_m, self.y_m - start.y_m

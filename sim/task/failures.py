@@ -5,13 +5,14 @@ paper counts as `misc`; here rules judge what the world recorded, so they can be
 The first rule that applies decides:
 
 1. `misc`: the physics broke. `stairs`: the robot drove over an edge.
-2. The agent called STOP. `stopped_short`: an instance of the goal is within `STOPPED_AT_GOAL_M` in plan, and the goal
-   covered 0.8 % of one of the last `FACED_FRAMES` frames; then the agent is assumed to have stopped for it, but too far
-   from it or behind a wall. Else `false_detection`: what the robot faced was not the goal, however near an instance is.
-   An agent that gives up, or stops at random, is a false detection, because the record does not distinguish them; one
-   that stops for another object beside a true instance in view counts as `stopped_short`. This rule comes before
-   `stairs`, as in the paper: the agent that has 7 % stairs among its failures with true segmentation has 0.4 % with
-   its own.
+2. The agent called STOP. `stopped_short`: it stopped for the goal, but too far from it or behind a wall. An agent that
+   states for which place it stops (`sim.interface.StatesTarget`) did so if that place is within `TARGET_ON_GOAL_M` of
+   the footprint of an instance. One that states none is assumed to have done so if an instance is within
+   `STOPPED_AT_GOAL_M` in plan, and the goal covered 0.8 % of one of the last `FACED_FRAMES` frames; this counts a STOP
+   for another object beside an instance in view as `stopped_short`, too. Else `false_detection`, however near an
+   instance is; an agent that gives up, or stops at random, is one, because the record does not distinguish them. This
+   rule comes before `stairs`, as in the paper: the agent that has 7 % stairs among its failures with true segmentation
+   has 0.4 % with its own.
 3. `stairs`: the storey of the start has no instance.
 4. `missed_detection`: the goal covered 0.8 % of a frame, and from then on, before rules 5 and 6 applied, the agent had
    an opportunity: it was where a STOP would have succeeded and continued for `PATIENCE_STEPS`; or it never came within
@@ -40,8 +41,11 @@ from sim.task.trajectory import Trajectory
 Cause = Literal["false_detection", "stopped_short", "missed_detection", "loop", "trapped", "explore", "stairs", "misc"]
 CAUSES: tuple[str, ...] = get_args(Cause)
 """The causes in the order of the paper's table, `stopped_short` after `false_detection`."""
+TARGET_ON_GOAL_M = 0.3
+"""A stated place within this distance of an instance is of that instance: maps have cells, and outlines have errors."""
 STOPPED_AT_GOAL_M = 1.5
-"""An agent that stops within this distance of an instance that it faces is assumed to have stopped for it."""
+"""An agent that states no place and stops within this distance of an instance that it faces is assumed to have stopped
+for it."""
 FACED_FRAMES = 4
 """The last frames in which the agent can have seen what it stopped for: the one of the STOP, and three actions before,
 because a low object is below the image when the robot has come near it."""
@@ -90,7 +94,10 @@ def cause_of_failure(trajectory: Trajectory) -> Cause | None:
 
 
 def _stopped_for_the_goal(trajectory: Trajectory) -> bool:
-    """Returns whether the robot stopped near an instance of the goal that it had just seen."""
+    """Returns whether the agent stopped for an instance: by its statement, else near one that it had just seen."""
+    if trajectory.stop_target_xy_m is not None:
+        off_m = trajectory.stop_target_to_goal_m
+        return off_m is not None and off_m <= TARGET_ON_GOAL_M
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None or nearest_m > STOPPED_AT_GOAL_M:
         return False

@@ -50,6 +50,8 @@ class _Record:
     end_reason: EndReason | None = None
     nearest_instance_m: float | None = None
     """Set at the end; see `sim.task.trajectory`."""
+    stop_target_xy_m: tuple[float, float] | None = None
+    stop_target_to_goal_m: float | None = None
     failure: Cause | None = None
 
 
@@ -132,6 +134,15 @@ class Task:
         elif self.num_steps >= self.config.max_steps:
             self._end("max_steps")
 
+    def stops_for(self, x_m: float, y_m: float) -> None:
+        """Records the place in the world for which the agent is about to stop, as it states.
+
+        The cause of a wrong STOP depends on it; to be called before `observe` of the STOP.
+        """
+        record, floor_z_m = self._running, self.world.pose.floor_z_m
+        record.stop_target_xy_m = x_m, y_m
+        record.stop_target_to_goal_m = self.truth.nearest_now_m(record.goal, x_m, y_m, floor_z_m)
+
     @property
     def goal(self) -> str:
         """The category that the episode asks for."""
@@ -206,11 +217,24 @@ class Task:
             "end_reason": record.end_reason,
         }
 
+    def stop_target(self) -> dict[str, Any]:
+        """Returns the place for which the agent stopped and its distance to the goal, as in a result line."""
+        record = self._running
+        place = record.stop_target_xy_m
+        return {
+            "stop_target_xy_m": None if place is None else list(place),
+            "stop_target_to_goal_m": record.stop_target_to_goal_m,
+        }
+
     def trajectory(self) -> Trajectory:
         """Returns the trajectory of the episode so far."""
         record = self._running
         return record.recorder.trajectory(
-            success=record.success, end_reason=record.end_reason, nearest_instance_m=record.nearest_instance_m
+            success=record.success,
+            end_reason=record.end_reason,
+            nearest_instance_m=record.nearest_instance_m,
+            stop_target_xy_m=record.stop_target_xy_m,
+            stop_target_to_goal_m=record.stop_target_to_goal_m,
         )
 
     def _end(self, reason: EndReason) -> None:

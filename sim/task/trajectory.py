@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
-from sim.reading import MAX_BYTES, Metres, parse_json, reason_of, require_small_zip
+from sim.reading import MAX_BYTES, Metres, Number, parse_json, reason_of, require_small_zip
 from sim.robot.drive import Ended, Motion
 from sim.task.metrics import EXPLORED_SHARE
 
@@ -63,6 +63,10 @@ class Trajectory:
     success: bool
     end_reason: str | None
     """`stop`, `max_steps`, `fallen` or `error`; None: the episode still runs."""
+    stop_target_xy_m: tuple[float, float] | None = None
+    """Place in the world for which the agent stopped, as it stated; None: no STOP, or it stated none."""
+    stop_target_to_goal_m: float | None = None
+    """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 
@@ -98,7 +102,9 @@ _ARRAYS: Mapping[str, tuple[type, int, int]] = {
     "distance_m": (np.float32, 1, 1),
 }
 """Dtype, number of axes, and number of entries beyond the number of actions."""
-_SCALARS = ("goal_on_storey", "nearest_instance_m", "success", "end_reason")
+_SCALARS = (
+    "goal_on_storey", "nearest_instance_m", "success", "end_reason", "stop_target_xy_m", "stop_target_to_goal_m",
+)  # fmt: skip
 
 
 class Recorder:
@@ -123,7 +129,13 @@ class Recorder:
         self._distances_m.append(_or_nan(distance_m))
 
     def trajectory(
-        self, *, success: bool = False, end_reason: str | None = None, nearest_instance_m: float | None = None
+        self,
+        *,
+        success: bool = False,
+        end_reason: str | None = None,
+        nearest_instance_m: float | None = None,
+        stop_target_xy_m: tuple[float, float] | None = None,
+        stop_target_to_goal_m: float | None = None,
     ) -> Trajectory:
         """Returns the trajectory so far."""
         stops = [
@@ -145,6 +157,8 @@ class Recorder:
             nearest_instance_m=nearest_instance_m,
             success=success,
             end_reason=end_reason,
+            stop_target_xy_m=stop_target_xy_m,
+            stop_target_to_goal_m=stop_target_to_goal_m,
         )
 
 
@@ -214,6 +228,8 @@ class _Scalars(msgspec.Struct):
     nearest_instance_m: Metres | None
     success: bool
     end_reason: Literal["stop", "max_steps", "fallen", "error"] | None
+    stop_target_xy_m: tuple[Number, Number] | None = None  # older versions write neither
+    stop_target_to_goal_m: Number | None = None
 
 
 class _Header(msgspec.Struct):

@@ -85,12 +85,15 @@ def _success(line: Mapping[str, Any], goal: str, rule: SuccessRule, nearest_m: f
 
 
 def _wrong_stop(line: Mapping[str, Any], goal: str, rule: SuccessRule, nearest_m: float | None, detects: bool) -> str:
-    name = in_words(goal)
+    name, off_m = in_words(goal), line.get("stop_target_to_goal_m")
+    mistaken = detects and line.get("failure") == "false_detection"
     if nearest_m is None:
         return f"The STOP does not count: there is no {name} on this storey."
+    if mistaken and off_m is not None:
+        return f"False detection: the agent stopped for something {off_m:.1f} m from the nearest {name}."
     if nearest_m <= rule.distance_m:
         return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
     far = f"the nearest {name} is {nearest_m:.1f} m away, and at most {rule.distance_m:g} m counts"
-    if detects and line.get("failure") == "false_detection":
+    if mistaken:
         return f"False detection: the agent took another object for the {name}; {far}."
     return f"The STOP came too early: {far}."

@@ -16,7 +16,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
 from sim.evaluation.rollout import episode_seed, play_episode
-from sim.interface import Action, Agent, Observation, Overridable
+from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
 from sim.viewers.viewer import Moment
 from sim.viewers.words import ACTION_WORDS, explain_end, in_words, with_article
 from sim.web.controls import Controls, Interrupted, Wish
@@ -163,6 +163,11 @@ class SharedAgent:
             self._inner.overridden(action)
         self._last, self.stopped_by_person = action, by_person and action == Action.STOP
         return action
+
+    def stop_target_xy_m(self) -> tuple[float, float] | None:
+        """Returns the place for which the agent stops; None where a person does, or where it states none."""
+        inner = self._inner
+        return inner.stop_target_xy_m() if isinstance(inner, StatesTarget) and not self.stopped_by_person else None
 
     def show_end(self) -> None:
         """Shows the world after the last action."""

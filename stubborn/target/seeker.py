@@ -29,6 +29,8 @@ class Seeker(Protocol):
 
     confidence: float | None
     """Probability or score in [0, 1] of the candidate that `judge` accepted last; None: it has accepted none."""
+    accepted_cell: tuple[int, int] | None
+    """Map cell where that candidate scores highest; its other cells may show what is beside it."""
 
     def reset(self, goal: str) -> None:
         """Forgets the last episode."""
@@ -106,6 +108,8 @@ class TargetSeeker:
         self._wait_steps = self.config.retry_after_steps
         self.confidence: float | None = None
         """See `Seeker`: the verifier's probability, or the candidate's highest score if it has none."""
+        self.accepted_cell: tuple[int, int] | None = None
+        """See `Seeker`: the cell that is verified."""
         self._far = False  # whether the candidate pursued needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
 
@@ -194,10 +198,13 @@ class TargetSeeker:
             return False
         instance = parts.labels == number
         # The cells at its edge, which are nearest, also show what is beside it: the cell seen best represents it.
-        features = features_of(view, _seen_best(view, instance))
+        best = _seen_best(view, instance)
+        features = features_of(view, best)
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
         if (found_late and not parts.touches_rejected[number]) or self.verifier.accepts(self.goal, features):
             self.confidence = self._rated(features)
+            row, col = divmod(best, view.frame.shape[1])
+            self.accepted_cell = row + whole.rows.start, col + whole.cols.start
             return True
         margin_cells = self.config.rejection_margin_m / navmap.frame.cell_m
         view.rejected[distance_to(instance) <= margin_cells + 1e-3] = True

@@ -67,6 +67,8 @@ class TrackSeeker:
         """The doubtful track that is looked at."""
         self.confidence: float | None = None
         """See `Seeker`: the probability of the track."""
+        self.accepted_cell: tuple[int, int] | None = None
+        """See `Seeker`."""
         self._chosen: list[int] = []  # tracks that are approached as accepted
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
@@ -128,7 +130,9 @@ class TrackSeeker:
         """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
         if self._chosen:
             at_cell = [t for t in self._chosen if self.cells_of(navmap, [t])[cell]]
-            self.confidence = float(self.probability[at_cell or self._chosen].max())
+            track = max(at_cell or self._chosen, key=lambda t: self.probability[t])
+            self.confidence = float(self.probability[track])
+            self.accepted_cell = self._best_cell(navmap, track)
             return True
         if self.pursued is not None:
             self.verdicts.looked(self.pursued)
@@ -160,6 +164,12 @@ class TrackSeeker:
             scored = mask & (navmap.score_max[index] > self.candidate_score)
             result[index] |= scored if scored.any() else mask
         return result
+
+    def _best_cell(self, navmap: NavMap, track: int) -> tuple[int, int]:
+        """Returns the map cell of a track with the highest cumulative score."""
+        index, mask = self._of_episode().footprint(track)
+        row, col = divmod(int(np.argmax(np.where(mask, navmap.score_sum[index], -1.0))), mask.shape[1])
+        return int(index[0].start) + row, int(index[1].start) + col
 
     def _to_approach(self, step: int) -> list[int]:
         """Returns the accepted tracks; near the end of the episode, without any, the most probable one."""

@@ -25,7 +25,7 @@ from sim.viewers.words import TRAPPED, in_words
 
 MEANING: Mapping[str, str] = {
     "false_detection": "The agent called STOP at an object that is not the goal.",
-    "stopped_short": "The agent faced the goal and called STOP too far from it, or behind a wall.",
+    "stopped_short": "The agent stopped for the goal, but too far from it or behind a wall.",
     "missed_detection": "The goal was in view and the agent did not go to it.",
     "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
     "trapped": f"{TRAPPED}.",
@@ -105,8 +105,8 @@ def _found(line: Line, trajectory: Trajectory) -> str:
 
 
 def _false_detection(line: Line, trajectory: Trajectory) -> str:
-    distance = _distance_to_instance(_goal(line), trajectory)
-    return f"Called STOP at step {trajectory.num_steps}: {distance}. {_view(line, trajectory)}"
+    distance = f"{_target(_goal(line), trajectory)}{_distance_to_instance(_goal(line), trajectory)}"
+    return f"Called STOP at step {trajectory.num_steps}{distance}. {_view(line, trajectory)}"
 
 
 def _missed_detection(line: Line, trajectory: Trajectory) -> str:
@@ -183,8 +183,16 @@ def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None:
         return f"no {goal} is on this storey"
+    if trajectory.stop_target_xy_m is not None:
+        return f"the robot is {nearest_m:.1f} m from the nearest {goal}"
     limit = f", which is more than {STOPPED_AT_GOAL_M:g} m" if nearest_m > STOPPED_AT_GOAL_M else ""
     return f"the nearest {goal} is {nearest_m:.1f} m away{limit}"
+
+
+def _target(goal: str, trajectory: Trajectory) -> str:
+    """Returns how far the object for which the agent stopped is from the goal, if that is known; the colon after it."""
+    off_m = trajectory.stop_target_to_goal_m
+    return ": " if off_m is None else f" for something {off_m:.1f} m from the nearest {goal}; "
 
 
 def _end(line: Line, trajectory: Trajectory) -> str:

@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -354,6 +355,22 @@ def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> No
     assert [mark.kind for mark in marks(line, unseen)][-1] == "end"
     other = explain(line | {"failure": "loop"}, unseen)
     assert "By the rules of the code that wrote this report the cause is explore." in other
+
+
+def test_a_wrong_stop_is_told_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
+    _, folder = pair
+    line = _lines(folder)[0] | {"failure": "false_detection", "end_reason": "stop"}
+    whole = read_trajectory(trajectory_file(folder, line["episode_id"]))
+    wrong = replace(whole, success=False, end_reason="stop", nearest_instance_m=0.9)
+    aimed = replace(wrong, stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=1.84)
+    begin = f"Called STOP at step {whole.num_steps}"
+    assert explain(line, wrong).startswith(f"{begin}: the nearest sofa is 0.9 m away. The sofa was in view")
+    assert explain(line, aimed).startswith(
+        f"{begin} for something 1.8 m from the nearest sofa; the robot is 0.9 m from the nearest sofa. The sofa was"
+    )
+    short = replace(aimed, stop_target_to_goal_m=0.1, nearest_instance_m=1.7)
+    words = explain(line | {"failure": "stopped_short"}, short)
+    assert words.startswith(f"{begin} short of the goal: the robot is 1.7 m from the nearest sofa.")
 
 
 def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Path]) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.evaluation.results import RunDirectory, summarise
+from sim.evaluation.results import RunDirectory, read_result_lines, summarise
 from sim.interface import ConfigError
 
 CONFIG = {"agent": "stubborn", "episodes": 5, "workers": 1}
@@ -180,6 +180,8 @@ def write_lines(folder: Path, *lines: dict | str) -> None:
         ([line(1, success="yes")], "line 1, field 'success': expected"),
         ([line(1, success=2.0)], "line 1, field 'success'"),
         ([line(1, spl=[1.0])], "field 'spl'"),
+        ([line(1, stop_target_xy_m=[1.0])], "field 'stop_target_xy_m'"),
+        ([line(1, stop_target_to_goal_m="near")], "field 'stop_target_to_goal_m'"),
         ([line(1, end_reason="tired")], "field 'end_reason': invalid enum value 'tired'"),
         ([{"episode_id": "e1"}], "line 1: object missing required field house"),
         (['{"spl": NaN}'], "line 1 is not JSON"),
@@ -208,6 +210,14 @@ def test_lines_of_another_split_are_refused(episodes: dict, told: str | None, tm
     with contextlib.nullcontext() if told is None else pytest.raises(ConfigError, match=told):
         run.require_of(episodes)
     run.close()
+
+
+def test_the_place_of_a_stop_is_read_back_and_is_none_in_lines_of_older_versions(tmp_path: Path) -> None:
+    stated = {"stop_target_xy_m": [1.5, -2.0], "stop_target_to_goal_m": 0.25}
+    write_lines(tmp_path, line(1, **stated), line(2))
+    first, second = read_result_lines(tmp_path / "results.jsonl").values
+    assert {key: first[key] for key in stated} == stated
+    assert {key: second[key] for key in stated} == dict.fromkeys(stated)
 
 
 def test_a_dropped_line_is_said(tmp_path: Path) -> None:

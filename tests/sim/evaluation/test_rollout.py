@@ -20,6 +20,7 @@ from sim.evaluation.rollout import episode_seed, play_episode
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
 from sim.run import entry
+from sim.sensors.noise import NoiseConfig, PoseNoise
 from tests.helpers.worlds import ledge, room, with_box
 
 SMALL = CameraModel(width_px=64, height_px=48)
@@ -84,6 +85,78 @@ def test_a_confidence_that_is_no_share_ends_the_episode_as_an_error(env: ObjectN
     line = play_episode(env, Sure([Action.STOP], given), EPISODE, seed=0, name="x:mine")
     assert line["end_reason"] == "error"
     assert "'x:mine', step 1: stop_confidence() returned" in line["error"]
+
+
+class Aimed(Script):
+    """A script that states for which place it stops."""
+
+    def __init__(self, actions: list[Action], place: Any) -> None:
+        super().__init__(actions)
+        self.place = place
+
+    def act(self, observation: Any) -> Action:
+        self.told = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
+        return super().act(observation)
+
+    def stop_target_xy_m(self) -> Any:
+        return self.place() if callable(self.place) else self.place
+
+
+AHEAD_AND_STOP = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP]
+
+
+@pytest.mark.parametrize("given", [(1.5, 0.5), [1.5, 0.5], np.array([1.5, 0.5], np.float32)])
+def test_a_line_has_the_place_for_which_the_agent_stops_in_the_world(env: ObjectNavEnv, given: Any) -> None:
+    episode = replace(EPISODE, start=Pose(-1.0, 1.0, math.pi / 2))
+    line = play_episode(env, Aimed(AHEAD_AND_STOP, given), episode, seed=0)
+    assert json.loads(json.dumps(line, allow_nan=False)) == line
+    assert line["stop_target_xy_m"] == pytest.approx([-1.5, 2.5], abs=1e-5)  # 1.5 m along y, 0.5 m to the left
+    assert line["stop_target_to_goal_m"] == pytest.approx(math.hypot(3.6, 1.7), abs=1e-3)  # corner at (2.1, 0.8)
+    assert line["failure"] == "false_detection"
+
+
+@pytest.mark.parametrize(
+    ("agent", "end"),
+    [
+        (Script([Action.STOP]), "stop"),
+        (Aimed([Action.STOP], None), "stop"),
+        (Aimed([Action.TURN_LEFT] * 3, (1.0, 0.0)), "max_steps"),
+    ],
+)
+def test_a_line_without_a_stop_or_a_place_says_so(env: ObjectNavEnv, agent: Any, end: str) -> None:
+    env.task_config = replace(env.task_config, max_steps=3)
+    line = play_episode(env, agent, EPISODE, seed=0)
+    assert line["end_reason"] == end
+    assert line["stop_target_xy_m"] is None
+    assert line["stop_target_to_goal_m"] is None
+
+
+def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
+    file = tmp_path / "sofa_room.xml"
+    file.write_text(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml())
+    noise = NoiseConfig(pose=PoseNoise(gps_walk_m=0.3, compass_walk_rad=0.1))
+    env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL, noise=noise)
+    agent = Aimed(AHEAD_AND_STOP, lambda: agent.told.place_of(2.0, 1.0))
+    line = play_episode(env, agent, EPISODE, seed=0)
+    true = env.scene.world.pose
+    env.close()
+    assert agent.told.distance_to(true.relative_to(EPISODE.start)) > 0.2
+    assert line["stop_target_xy_m"] == pytest.approx(true.place_of(2.0, 1.0), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    "given", [1.5, "12", (1.0,), (1.0, 2.0, 3.0), (math.nan, 0.0), (0.0, 2e4), (None, 1.0), {1: 2}]
+)
+def test_a_place_that_is_no_pair_of_numbers_ends_the_episode_as_an_error(env: ObjectNavEnv, given: Any) -> None:
+    line = play_episode(env, Aimed([Action.STOP], given), EPISODE, seed=0, name="x:mine")
+    assert line["end_reason"] == "error"
+    assert "'x:mine', step 1: stop_target_xy_m() returned" in line["error"]
+    assert line["stop_target_xy_m"] is None
+
+
+def test_a_stop_target_that_breaks_names_agent_and_step(env: ObjectNavEnv) -> None:
+    line = play_episode(env, Aimed([Action.STOP], lambda: {}["sofa"]), EPISODE, seed=0, name="x:mine")
+    assert "'x:mine', step 1: KeyError: 'sofa'" in line["error"]
 
 
 def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_house_and_step(env: ObjectNavEnv) -> None:

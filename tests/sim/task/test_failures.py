@@ -104,6 +104,24 @@ def test_a_stop_beside_an_instance_behind_a_wall_that_was_never_seen_is_a_false_
     assert cause_of_failure(walk(line(30), end="stop", nearest_instance_m=0.4)) == "false_detection"
 
 
+@pytest.mark.parametrize(
+    ("off_m", "cause"), [(0.0, "stopped_short"), (0.3, "stopped_short"), (0.31, "false_detection")]
+)
+@pytest.mark.parametrize(("nearest_m", "seen_at"), [(0.9, 29), (0.9, None), (2.5, 29), (2.5, None)])
+def test_a_stated_place_decides_whether_a_wrong_stop_was_for_the_goal(
+    off_m: float, cause: str, nearest_m: float, seen_at: int | None
+) -> None:
+    stated = {"stop_target_xy_m": (1.0, 2.0), "stop_target_to_goal_m": off_m}
+    assert (
+        cause_of_failure(walk(line(30), end="stop", seen_at=seen_at, nearest_instance_m=nearest_m, **stated)) == cause
+    )
+
+
+def test_a_stated_place_on_a_storey_without_instance_is_a_false_detection() -> None:
+    stated = {"stop_target_xy_m": (1.0, 2.0), "stop_target_to_goal_m": None, "nearest_instance_m": None}
+    assert cause_of_failure(walk(line(30), end="stop", seen_at=29, **stated)) == "false_detection"
+
+
 def test_an_instance_on_another_storey_only_is_stairs_even_for_a_trapped_robot() -> None:
     nowhere = np.full(501, np.nan, np.float32)
     assert cause_of_failure(walk(line(500), goal_on_storey=False, distance_m=nowhere)) == "stairs"

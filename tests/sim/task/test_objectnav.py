@@ -230,6 +230,32 @@ def test_the_trajectory_has_a_line_for_each_moment_and_action():
     assert (walked.end_reason, walked.success, walked.goal_on_storey) == ("stop", False, True)
 
 
+def test_the_place_for_which_the_agent_stops_is_measured_to_the_footprint_and_decides_the_cause():
+    for xy_m, off_m, cause in (((1.0, 0.5), 1.0, "false_detection"), ((2.2, 0.0), 0.0, "stopped_short")):
+        world = bed_room()
+        task = begin(world, "bed", Pose(-3.0, 0.0, math.pi))
+        assert task.stop_target() == {"stop_target_xy_m": None, "stop_target_to_goal_m": None}
+        task.stops_for(*xy_m)
+        assert act(world, task, STOP)["failure"] == cause
+        walked = task.trajectory()
+        assert walked.stop_target_xy_m == xy_m
+        assert walked.stop_target_to_goal_m == pytest.approx(off_m, abs=1e-3)
+        assert task.stop_target() == {
+            "stop_target_xy_m": list(xy_m),
+            "stop_target_to_goal_m": walked.stop_target_to_goal_m,
+        }
+        task.begin("bed", Pose(-3.0, 0.0, math.pi))
+        assert task.trajectory().stop_target_xy_m is None
+
+
+def test_a_place_on_a_storey_without_the_goal_has_no_distance_to_it():
+    world = World(two_storeys())
+    task = begin(world, "bed", UPSTAIRS)
+    task.stops_for(0.0, 0.0)
+    assert act(world, task, STOP)["failure"] == "false_detection"
+    assert task.stop_target() == {"stop_target_xy_m": [0.0, 0.0], "stop_target_to_goal_m": None}
+
+
 def test_nothing_counts_before_an_episode_has_begun():
     task = Task(bed_room())
     with pytest.raises(EpisodeError, match="begin"):

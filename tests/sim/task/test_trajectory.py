@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import IO
 
@@ -47,6 +48,27 @@ def test_a_trajectory_written_and_read_is_the_same(tmp_path: Path) -> None:
             assert getattr(after, name) == value
     assert after.about == about
     assert np.isnan(after.distance_m[2])
+
+
+@pytest.mark.parametrize("off_m", [0.7, None])
+def test_a_stated_place_is_kept(off_m: float | None, tmp_path: Path) -> None:
+    stated = replace(walked(3), stop_target_xy_m=(-1.25, 3.5), stop_target_to_goal_m=off_m)
+    write_trajectory(tmp_path / "e.npz", stated, {})
+    after = read_trajectory(tmp_path / "e.npz")
+    assert (after.stop_target_xy_m, after.stop_target_to_goal_m) == ((-1.25, 3.5), off_m)
+
+
+def test_a_file_of_an_older_version_states_no_place(tmp_path: Path) -> None:
+    write_trajectory(tmp_path / "e.npz", walked(3), {})
+    arrays = _arrays(tmp_path / "e.npz")
+    head = json.loads(arrays["about"].tobytes())
+    del head["scalars"]["stop_target_xy_m"], head["scalars"]["stop_target_to_goal_m"]
+    np.savez(
+        tmp_path / "e.npz", allow_pickle=False, **arrays | {"about": np.frombuffer(json.dumps(head).encode(), np.uint8)}
+    )
+    after = read_trajectory(tmp_path / "e.npz")
+    assert (after.stop_target_xy_m, after.stop_target_to_goal_m) == (None, None)
+    assert after.nearest_instance_m == 1.25
 
 
 def test_five_hundred_steps_fit_into_fifty_kilobytes(tmp_path: Path) -> None:
@@ -106,6 +128,13 @@ def _another_format(file: Path) -> None:
     np.savez(file, allow_pickle=False, **arrays | {"about": np.frombuffer(json.dumps(head).encode(), np.uint8)})
 
 
+def _place_of_one_number(file: Path) -> None:
+    arrays = _arrays(file)
+    head = json.loads(arrays["about"].tobytes())
+    head["scalars"]["stop_target_xy_m"] = [1.0]
+    np.savez(file, allow_pickle=False, **arrays | {"about": np.frombuffer(json.dumps(head).encode(), np.uint8)})
+
+
 def _shorter_actions(file: Path) -> None:
     arrays = _arrays(file)
     np.savez(file, allow_pickle=False, **arrays | {"actions": arrays["actions"][:-1]})
@@ -125,6 +154,7 @@ def _pickled(file: Path) -> None:
         (_pickled, "is no trajectory"),
         (_another_format, "its format is 99"),
         (_shorter_actions, "for 4 actions"),
+        (_place_of_one_number, "stop_target_xy_m"),
     ],
 )
 def test_a_file_that_is_no_trajectory_is_named(harm, told: str, tmp_path: Path) -> None:

@@ -396,6 +396,18 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
             False,
             "The STOP came too early: the nearest chair",
         ),
+        (
+            {"end_reason": "stop", "failure": "false_detection", "stop_target_to_goal_m": 1.84},
+            0.8,
+            True,
+            "False detection: the agent stopped for something 1.8 m from the nearest chair.",
+        ),
+        (
+            {"end_reason": "stop", "failure": "stopped_short", "stop_target_to_goal_m": 0.04},
+            1.3,
+            True,
+            "The STOP came too early: the nearest chair is 1.3 m",
+        ),
         ({"end_reason": "stop", "failure": "misc"}, 1.3, True, "The STOP came too early: the nearest chair is 1.3 m"),
         ({"end_reason": "stop", "failure": "misc"}, 0.8, True, "but a wall or a door hides it"),
         ({"end_reason": "stop", "failure": "false_detection"}, None, True, "there is no chair on this storey"),

@@ -527,3 +527,17 @@ def test_the_confidence_is_the_verifiers_probability_of_what_it_accepted_last_el
         assert seek.confidence == (None if told is None else pytest.approx(told))
         seek.reset("bed")
         assert seek.confidence is None
+
+
+def test_the_accepted_cell_is_where_the_candidate_scores_highest_and_not_the_one_that_is_judged():
+    for verifier, cell in ((AcceptAll(), (31, 63)), (RefuseAll(), None)):
+        navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
+        navmap.score_sum[30:32, 60:65] = navmap.score_max[30:32, 60:65] = 0.8
+        navmap.score_sum[31, 63] = 2.4
+        navmap.score_sum[30, 20] = navmap.score_max[30, 20] = 5.0  # another candidate
+        seek = seeker(verifier)
+        assert seek.accepted_cell is None
+        seek.judge(navmap, (30, 60))
+        assert seek.accepted_cell == cell
+        seek.reset("bed")
+        assert seek.accepted_cell is None

@@ -97,6 +97,11 @@ def test_a_sure_object_is_driven_to():
     assert seeker.verdicts.accepted
     assert seeker.confidence == max(seeker.probability[list(seeker.verdicts.accepted)])
     assert world.distance_to("table") < 0.8
+    owned = seeker.cells_of(agent.navmap, seeker.verdicts.accepted)
+    score = np.where(owned, agent.navmap.score_sum, -1.0)
+    assert seeker.accepted_cell == np.unravel_index(score.argmax(), score.shape)
+    seeker.reset("bed")
+    assert seeker.accepted_cell is None
 
 
 def test_before_a_stop_that_would_be_short_it_goes_one_forward_nearer_where_nothing_is_in_the_way():
