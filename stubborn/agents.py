@@ -16,6 +16,8 @@ from stubborn.draw import make_painter
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
+from stubborn.exploration.poni import PoniConfig
+from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.exploration.tour import TourConfig
 from stubborn.plus import PlusConfig, plus_agent
@@ -45,7 +47,14 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
 )
 
 EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
-    {"corners": CornerConfig(), "thorough": ThoroughConfig(), "frontier": FrontierConfig(), "tour": TourConfig()}
+    {
+        "corners": CornerConfig(),
+        "thorough": ThoroughConfig(),
+        "frontier": FrontierConfig(),
+        "tour": TourConfig(),
+        "semexp": SemExpConfig(),
+        "poni": PoniConfig(),
+    }
 )
 """The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
 
@@ -84,6 +93,14 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         ),
         "frontier-avoid": _stubborn_spec(
             "frontier with all measures against collisions", AgentConfig(explorer=FrontierConfig())
+        ),
+        "semexp": _stubborn_spec(
+            "stubborn with long-term goals from a learned policy (Chaplot et al. 2020)",
+            AgentConfig(explorer=SemExpConfig()),
+        ),
+        "poni": _stubborn_spec(
+            "stubborn that goes to the frontier with the highest predicted potential (Ramakrishnan et al. 2022)",
+            AgentConfig(explorer=PoniConfig()),
         ),
         "random": AgentSpec(
             make=random_agent,

@@ -25,54 +25,13 @@ from sim.analysis.metrics import (
     houses_of,
 )
 from sim.analysis.tables import Cell, ResultTable
-from sim.composition.agents import find_agent
-from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate, paired_difference
 from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
 from stubborn import agents
 from stubborn.target.verification import ACCEPT_ALL, METHODS
-
-GROUND_TRUTH = "gt"
-"""The segmentation of agents that use none: they are run once, under this name."""
-
-
-def uses_segmentation(agent: str) -> bool:
-    """Returns False for an agent whose results do not depend on `--semantics`."""
-    return find_agent(agent).uses_segmentation
-
-
-VERIFICATION = " --verification "
-"""Separates an agent from its method of verification in the name of a setup."""
-
-
-@dataclass(frozen=True)
-class AgentSetup:
-    """An agent with a source of segmentation and a method of verification: what one run evaluates."""
-
-    agent: str
-    semantics: str
-    verification: str = RunOptions.verification
-
-    @classmethod
-    def named(cls, name: str, semantics: str) -> AgentSetup:
-        """Returns the setup of an agent, or of "AGENT --verification METHOD", with a source of segmentation."""
-        agent, _, verification = name.partition(VERIFICATION)
-        semantics = semantics if uses_segmentation(agent) else GROUND_TRUTH
-        return cls(agent, semantics, verification or RunOptions.verification)
-
-    @property
-    def name(self) -> str:
-        """The name that `named` takes."""
-        usual = self.verification == RunOptions.verification
-        return self.agent if usual else f"{self.agent}{VERIFICATION}{self.verification}"
-
-    @property
-    def label(self) -> str:
-        """Name in a table with several kinds of segmentation."""
-        return f"{self.name} ({self.semantics})" if uses_segmentation(self.agent) else self.name
-
+from tools.agent_setup import GROUND_TRUTH, AgentSetup
 
 Lines = Mapping[AgentSetup, Sequence[Line]]
 """The lines of each setup, of the same episodes in the same order."""
@@ -193,12 +152,16 @@ def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     return [replace(means, notes=(note,)), replace(differences, rows=rows)]
 
 
-UNVERIFIED = f"stubborn{VERIFICATION}{ACCEPT_ALL}"
+UNVERIFIED = f"stubborn --verification {ACCEPT_ALL}"
 """The paper's Single-Frame: the same map, and every candidate is accepted."""
+CONTROLS = ("semantics=shuffled", "goal=wrong", "semantics=none")
+"""What tells whether a learned explorer uses semantics and the goal (the paper's section on SemExp)."""
 TABLES: Mapping[str, PaperTable] = {
     "failures": PaperTable(("stubborn", UNVERIFIED, "frontier-avoid"), "noisy", failures),
     "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
-    "exploration": PaperTable(("stubborn", "stubborn-i", "frontier-avoid", "frontier"), GROUND_TRUTH, exploration),
+    "exploration": PaperTable(
+        ("stubborn", "stubborn-i", "semexp", "frontier-avoid", "frontier"), GROUND_TRUTH, exploration
+    ),
     "categories": PaperTable(("stubborn", UNVERIFIED), "noisy", categories),
     "overall": PaperTable(
         ("stubborn", "stubborn-plus", UNVERIFIED, "latest-frame", "frontier-avoid", "frontier", "random", "oracle"),
@@ -208,7 +171,7 @@ TABLES: Mapping[str, PaperTable] = {
     "verification": PaperTable(
         (
             "stubborn",
-            *(f"stubborn{VERIFICATION}{method}" for method in (ACCEPT_ALL, *list(METHODS)[1:])),
+            *(f"stubborn --verification {method}" for method in (ACCEPT_ALL, *list(METHODS)[1:])),
             "latest-frame",
         ),
         "noisy",
@@ -217,9 +180,23 @@ TABLES: Mapping[str, PaperTable] = {
     "splits": PaperTable(
         ("stubborn", "frontier-avoid", "frontier", *list(ABLATION.values())[:-1], "oracle"), GROUND_TRUTH, splits
     ),
+    "explorers": PaperTable(
+        (
+            "stubborn",
+            "frontier-avoid",
+            "stubborn --explorer tour",
+            "poni",
+            "semexp",
+            *(f"semexp --config agent.explorer.{control}" for control in CONTROLS),
+            "random",
+            "oracle",
+        ),
+        GROUND_TRUTH,
+        splits,
+    ),
 }
 """The tables by name."""
-PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits"))
+PAPER_TABLES = tuple(name for name in TABLES if name not in ("verification", "splits", "explorers"))
 """The tables that the paper has too."""
 
 
@@ -243,7 +220,10 @@ def _means_and_differences(
     metrics: Sequence[Metric],
     names: Mapping[str, str],
 ) -> list[ResultTable]:
-    labels = [f"{names[setup.agent]} {setup.agent}" if setup.agent in names else setup.label for setup in setups]
+    labels = [
+        f"{names[setup.agent]} {setup.agent}" if setup.agent in names and not setup.variant else setup.label
+        for setup in setups
+    ]
     cells = [[metric.cell(lines[setup]) for metric in metrics] for setup in setups]
     rows = list(zip(labels, cells, strict=True))
     means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)

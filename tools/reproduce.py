@@ -6,7 +6,8 @@
     python tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2
 
 Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; verification, which compares
-its methods; and splits, which compares explorers and the rows of the ablation on each of several splits. Each run has a
+its methods; splits, which compares the rows of the ablation and two explorers on each of several splits; and explorers,
+which compares all explorers, the learned ones with their controls. Each run has a
 folder `<out>/<agent>_<semantics>_...`, as `sim.run --record` writes it; the tables share the runs. The agents take
 turns, a chunk of episodes (with several splits, of each of them), so that they have the same first episodes whenever
 the tool is stopped; the same command resumes. Tables are printed and written to `<out>/tables/<table>.md` and `.csv`;
@@ -20,6 +21,7 @@ from __future__ import annotations
 import shlex
 import sys
 import time
+import zlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -45,8 +47,11 @@ from sim.evaluation.config_fields import differing_fields, field_text
 from sim.files import write_atomically, write_together
 from sim.task.failures import cause_of_failure
 from sim.task.trajectory import read_trajectory, trajectory_file
-from tools.paper_tables import PAPER_TABLES, VERIFICATION, AgentSetup, PaperTable, table_named
+from tools.agent_setup import AgentSetup, file_name
+from tools.paper_tables import PAPER_TABLES, PaperTable, table_named
 
+MAX_NAME = 120
+"""Largest number of characters that the agents take in the name of a table's file; longer ones get a checksum."""
 SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
 SAME_IN_TREE = ("robot", "camera", "profile", "noise", "task")
@@ -58,7 +63,7 @@ class Args:
     """Run the missing episodes of a table, and write the table."""
 
     table: tyro.conf.Positional[str]
-    """failures, ablation, exploration, categories, overall, verification, splits, or all (the paper's)."""
+    """failures, ablation, exploration, categories, overall, verification, splits, explorers, or all (the paper's)."""
     episodes: cli.Count = 200
     """The first N episodes of each split."""
     workers: cli.Count = 1
@@ -76,8 +81,8 @@ class Args:
     semantics: str | None = None
     """Source of segmentation, in place of the default of the table."""
     agents: tuple[str, ...] = ()
-    """Agents, in place of the default of the table, or "AGENT --verification METHOD"; the others are compared with the
-    first."""
+    """Agents, in place of the default of the table; the others are compared with the first. With options as
+    "AGENT [--explorer NAME] [--verification METHOD] [--config FIELD=VALUE ...]"."""
     noise: str = "none"
     """Noise of sensors and drive."""
     seed: cli.Seed = 0
@@ -216,7 +221,9 @@ def _write_pages(args: Args, of_splits: Sequence[Args], pages: Mapping[str, Sequ
 
 def stem_of(args: Args, name: str) -> str:
     """Returns the name of a table's files: the name of the table, and each option that changes the table."""
-    agents = "+".join(_file_name(agent) for agent in args.agents)
+    agents = "+".join(file_name(agent).replace(" --", "-").replace(" ", "-") for agent in args.agents)
+    if len(agents) > MAX_NAME:
+        agents = f"{len(args.agents)}-agents-{zlib.crc32(agents.encode()):08x}"
     noise = "" if args.noise == Args.noise else args.noise
     split = "" if args.split == Args.split else _split_name(args)
     return "_".join(filter(None, (name, args.semantics, agents, noise, split, _seed_name(args))))
@@ -272,7 +279,9 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
     return RunOptions(
         agent=setup.agent,
         semantics=setup.semantics,
+        explorer=setup.explorer,
         verification=setup.verification,
+        config=setup.config,
         split=args.split,
         episodes=args.episodes,
         seed=args.seed,
@@ -286,13 +295,8 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
 
 
 def _folder(args: Args, setup: AgentSetup) -> Path:
-    parts = (_file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args))
-    method = "" if setup.verification == RunOptions.verification else f"verification-{setup.verification}"
-    return args.out / "_".join(filter(None, (*parts, method)))
-
-
-def _file_name(agent: str) -> str:
-    return agent.replace(VERIFICATION, "-").replace(":", "_").replace("/", "_")
+    parts = (file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args), setup.variant)
+    return args.out / "_".join(filter(None, parts))
 
 
 def _split_name(args: Args) -> str:
@@ -314,9 +318,9 @@ def _read(args: Args, setup: AgentSetup, split: Split) -> Run:
         ConfigError: the folder holds a run with another agent, segmentation, split, seed or noise.
     """
     found = read_run(_folder(args, setup))
-    expected = {"agent": setup.agent, "semantics": setup.semantics, "noise": args.noise, "seed": args.seed}
-    expected |= {"verification": setup.verification} if "verification" in found.config else {}
-    expected |= {"split_identity": _identity(split)}
+    told = ("verification", "explorer", "settings")  # older code did not write all of them
+    expected = {key: value for key, value in setup.expected().items() if key in found.config or key not in told}
+    expected |= {"noise": args.noise, "seed": args.seed, "split_identity": _identity(split)}
     for path, actual, wanted in differing_fields({key: found.config.get(key) for key in expected}, expected):
         raise ConfigError(
             f"'{found.path}' holds a run with {path} = {field_text(actual)}, the table needs {field_text(wanted)}; "

@@ -7,7 +7,8 @@ import pytest
 from sim.analysis.tables import Cell, ResultTable
 from sim.interface import ConfigError
 from sim.task.failures import CAUSES
-from tools.paper_tables import ABLATION, TABLES, AgentSetup, ablation_rows, table_named
+from tools.agent_setup import AgentSetup
+from tools.paper_tables import ABLATION, TABLES, ablation_rows, table_named
 
 GOALS = ("bed", "sofa")
 
@@ -105,11 +106,45 @@ def test_tables_share_their_runs_and_the_oracle_plays_once() -> None:
     )
 
 
-def test_a_setup_has_a_name_with_its_method_of_verification() -> None:
-    name = "stubborn --verification none"
-    setup = AgentSetup.named(name, "rednet")
-    assert (setup, setup.name) == (AgentSetup("stubborn", "rednet", "none"), name)
-    assert AgentSetup.named("stubborn", "gt").name == "stubborn"
+@pytest.mark.parametrize(
+    ("name", "setup", "variant"),
+    [
+        ("stubborn", AgentSetup("stubborn", "rednet"), ""),
+        ("stubborn --verification none", AgentSetup("stubborn", "rednet", "none"), "verification-none"),
+        (
+            "stubborn --explorer my.explorers:FARTHEST --config agent.planning.dilation_m=0.1 task.max_steps=90",
+            AgentSetup(
+                "stubborn",
+                "rednet",
+                explorer="my.explorers:FARTHEST",
+                config=("agent.planning.dilation_m=0.1", "task.max_steps=90"),
+            ),
+            "explorer-my.explorers_FARTHEST_config-agent.planning.dilation_m=0.1-task.max_steps=90",
+        ),
+    ],
+)
+def test_a_setup_is_written_as_on_the_command_line(name: str, setup: AgentSetup, variant: str) -> None:
+    assert AgentSetup.named(name, "rednet") == setup
+    assert (setup.name, setup.variant) == (name, variant)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("stubborn --explore tour", r"has the option --explore; an agent is given as AGENT \[--explorer NAME\]"),
+        ("stubborn --explorer", "needs one name for explorer"),
+        ("stubborn frontier", "needs one name for agent"),
+        ("--explorer tour", "needs one name for agent"),
+        ("stubborn --config", "needs at least one FIELD=VALUE for config"),
+        ("stubborn 'tour", "cannot be read: No closing quotation"),
+    ],
+)
+def test_a_setup_of_another_form_is_refused(name: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        AgentSetup.named(name, "gt")
+
+
+def test_the_table_of_verification_has_all_methods() -> None:
     methods = [each.verification for each in TABLES["verification"].setups()[:-1]]
     assert methods == ["naive-bayes", "none", "logistic", "threshold"]
 

@@ -169,6 +169,21 @@ def test_the_tool_runs_as_a_script_from_any_folder(tmp_path: Path) -> None:
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
 
+def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: reproduce.Args) -> None:
+    bold = "examples.my_agent:AGENT --config agent.keep_m=0.8"
+    agents = replace(args, agents=("oracle", "examples.my_agent:AGENT", bold))
+    assert reproduce.main(agents) == 0
+    written = args.out / "examples.my_agent_AGENT_gt_none_tiny_config-agent.keep_m=0.8"
+    assert read_run(written).config["settings"] == {"agent.keep_m": 0.8}
+    page = (args.out / "tables" / f"{stem(agents)}.md").read_text()
+    assert f"| {bold} |" in page
+    (args.out / "examples.my_agent_AGENT_gt_none_tiny").rename(args.out / "other")
+    written.rename(args.out / "examples.my_agent_AGENT_gt_none_tiny")
+    (args.out / "other").rename(written)
+    with pytest.raises(ConfigError, match=r"with settings"):
+        reproduce.main(replace(agents, minutes=0.0))
+
+
 def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
     reproduce.main(args)
     setup, other = reproduce.AgentSetup("oracle", "gt"), replace(args, seed=7, noise="harsh")

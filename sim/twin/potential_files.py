@@ -1,0 +1,197 @@
+"""Files of samples for a predictor of potentials (`sim.twin.potentials`), and batches of them.
+
+One npz file holds the samples of one plan in sparse form, 5 KB each.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zlib
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float32, Int, UInt8
+from numpy.typing import NDArray
+
+from sim.errors import ConfigError
+from sim.files import write_atomically
+from sim.interface import GOAL_CATEGORIES
+from sim.reading import reason_of, require_small_zip
+from sim.twin.potentials import Sample, SampleConfig
+from stubborn.exploration.patches import LAYERS
+
+GOALS = len(GOAL_CATEGORIES)
+SYMMETRIES = 8
+"""Turns by 90 degrees and mirror images of a square."""
+HELD_BACK = 8
+"""One plan in so many is held back from training, by its name."""
+MAX_FILE_BYTES = 256 << 20
+_OF_SAMPLES = ("masks", "robot", "seen_goals")
+_OF_GOAL_CELLS = ("goal_cell", "goal_bits")
+_OF_FRONTIERS = ("cell", "area", "objects", "part", "path_m")
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Some samples as a network sees them."""
+
+    channels: UInt8[np.ndarray, "n channels cells cells"]
+    """Those of `MapPatch.channels`."""
+    sample: Int[np.ndarray, " m"]
+    """Number within the batch that each frontier cell belongs to."""
+    cell: Int[np.ndarray, " m"]
+    """Row-major cell of the patch."""
+    potentials: Float32[np.ndarray, "m maps"]
+    """True potentials, the area first, then one for each goal category."""
+    counts: Bool[np.ndarray, "m maps"]
+    """False: the category was seen already, so that its potential does not matter."""
+    part: Int[np.ndarray, " m"]
+    """Number of the frontier within its sample."""
+    path_m: Float32[np.ndarray, " m"]
+    """Length of the path from the robot."""
+
+
+def held_back(file: Path) -> bool:
+    """Returns whether a plan is held back from training, given its file or that of its samples; by its name only."""
+    return zlib.crc32(file.stem.rsplit("-", 1)[-1].encode()) % HELD_BACK == 0
+
+
+def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:
+    """Writes the samples of a plan, atomically, and returns their number.
+
+    Args:
+        file: the npz file.
+        samples: of one plan.
+        config: of the samples; a file of another configuration is refused by `read_samples`.
+        about: JSON values that are written with it.
+    """
+    rows: dict[str, list[NDArray]] = {name: [] for name in (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)}
+    ends = {"goal_start": [0], "start": [0]}
+    number = 0
+    for sample in samples:
+        patch, potentials = sample.patch, sample.potentials
+        layers = np.stack([patch.obstacle, patch.seen, patch.trail]).reshape(3, -1)
+        goal_cell = np.flatnonzero(patch.goals)
+        values = {
+            "masks": np.packbits(layers, axis=1)[None],
+            "robot": np.array([patch.robot], np.int16),
+            "seen_goals": np.array([sample.seen_goals], np.uint32),
+            "goal_cell": goal_cell.astype(np.uint16),
+            "goal_bits": patch.goals.reshape(-1)[goal_cell],
+            "cell": (potentials.rows * config.cells + potentials.cols).astype(np.uint16),
+            "area": _as_bytes(potentials.area),
+            "objects": _as_bytes(potentials.objects),
+            "part": potentials.part.astype(np.uint16),
+            "path_m": potentials.path_m.astype(np.float16),
+        }
+        for name, value in values.items():
+            rows[name].append(value)
+        ends["goal_start"].append(ends["goal_start"][-1] + goal_cell.size)
+        ends["start"].append(ends["start"][-1] + potentials.rows.size)
+        number += 1
+    arrays: dict[str, Any] = {name: np.concatenate(parts) for name, parts in rows.items() if parts}
+    arrays |= {name: np.array(values, np.int64) for name, values in ends.items()}
+    header = json.dumps({"config": asdict(config), "about": about})
+    content = io.BytesIO()
+    np.savez_compressed(content, header=np.array(header), **arrays)
+    write_atomically(file, content.getvalue())
+    return number
+
+
+class SampleSet:
+    """The samples of some files in memory."""
+
+    def __init__(self, arrays: dict[str, NDArray], cells: int) -> None:
+        self._arrays, self.cells = arrays, cells
+        order = np.arange(cells * cells).reshape(cells, cells)
+        turned = [np.rot90(order, turns) for turns in range(4)]
+        sources = [each.reshape(-1) for turn in turned for each in (turn, turn[:, ::-1])]
+        self._sources = np.stack(sources)
+        """(symmetries, cells) The cell from which each cell of a turned patch comes."""
+        self._targets = np.argsort(self._sources, axis=1)
+
+    @classmethod
+    def read(cls, files: Sequence[Path], config: SampleConfig) -> SampleSet:
+        """Returns the samples of some files; those without samples are skipped.
+
+        Raises:
+            ConfigError: a file is broken, is of another configuration, or there is no sample at all.
+        """
+        parts = [part for file in files if (part := _read(file, config)) is not None]
+        if not parts:
+            raise ConfigError(f"There is no sample in {len(files)} files.")
+        names = (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)
+        arrays = {name: np.concatenate([part[name] for part in parts]) for name in names}
+        for name in ("goal_start", "start"):
+            lengths = np.concatenate([np.diff(part[name]) for part in parts])
+            arrays[name] = np.concatenate(([0], np.cumsum(lengths)))
+        return cls(arrays, config.cells)
+
+    def __len__(self) -> int:
+        return len(self._arrays["seen_goals"])
+
+    def batch(self, numbers: Sequence[int], symmetries: Sequence[int] | None = None) -> Batch:
+        """Returns some samples.
+
+        Args:
+            numbers: of the samples.
+            symmetries: the turn or mirror image of each, 0 to 7; by default none is turned.
+        """
+        a, cells = self._arrays, self.cells
+        channels = np.zeros((len(numbers), len(LAYERS) + GOALS, cells * cells), np.uint8)
+        frontiers, samples, places = [], [], []
+        for i, number in enumerate(numbers):
+            source, target = (
+                table[0 if symmetries is None else symmetries[i]] for table in (self._sources, self._targets)
+            )
+            layers = np.unpackbits(a["masks"][number], axis=1, count=cells * cells)
+            channels[i, :3] = layers[:, source]
+            row, col = a["robot"][number]
+            channels[i, 3, target[int(row) * cells + int(col)]] = 1
+            goals = slice(a["goal_start"][number], a["goal_start"][number + 1])
+            bits = a["goal_bits"][goals] >> np.arange(GOALS, dtype=np.uint32)[:, None] & np.uint32(1)
+            channels[i, len(LAYERS) :, target[a["goal_cell"][goals]]] = bits.T
+            cut = slice(a["start"][number], a["start"][number + 1])
+            frontiers.append(np.arange(cut.start, cut.stop))
+            samples.append(np.full(cut.stop - cut.start, i))
+            places.append(target[a["cell"][cut]])
+        at, sample = np.concatenate(frontiers), np.concatenate(samples)
+        seen = a["seen_goals"][np.asarray(numbers)][sample]
+        counts = np.ones((at.size, 1 + GOALS), np.bool_)
+        counts[:, 1:] = seen[:, None] >> np.arange(GOALS, dtype=np.uint32) & np.uint32(1) == 0
+        potentials = np.concatenate((a["area"][at, None], a["objects"][at]), axis=1).astype(np.float32) / 255.0
+        return Batch(
+            channels.reshape(len(numbers), -1, cells, cells),
+            sample,
+            np.concatenate(places),
+            potentials,
+            counts,
+            a["part"][at].astype(np.int64),
+            a["path_m"][at].astype(np.float32),
+        )
+
+
+def _read(file: Path, config: SampleConfig) -> dict[str, NDArray] | None:
+    """Returns the arrays of a file, or None when it holds no sample."""
+    try:
+        require_small_zip(file, what="the file", most=MAX_FILE_BYTES, error=ConfigError)
+        with np.load(file, allow_pickle=False) as content:
+            stored = json.loads(str(content["header"]))["config"]
+            arrays = {name: np.asarray(content[name]) for name in content.files if name != "header"}
+    except (OSError, LookupError, ValueError, TypeError, EOFError, SyntaxError) as error:
+        raise ConfigError(f"'{file}' holds no samples of tools/train_poni.py: {reason_of(error)}.") from None
+    if stored != asdict(config):
+        changed = sorted(key for key, value in asdict(config).items() if stored.get(key) != value)
+        raise ConfigError(
+            f"'{file}' was made with other options ({', '.join(changed)}); take another --samples folder."
+        )
+    return arrays if "masks" in arrays else None
+
+
+def _as_bytes(share: Float32[np.ndarray, ...]) -> NDArray[np.uint8]:
+    """Returns numbers in [0, 1] in units of 1/255."""
+    return np.rint(np.clip(share, 0.0, 1.0) * 255.0).astype(np.uint8)

@@ -1,0 +1,223 @@
+"""Frontiers chosen by predicted potentials: how much area and how near the goal object is behind each of them.
+
+Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
+Learning", CVPR, arXiv:2201.10029. A network (`stubborn.exploration.poni_net`) predicts two potentials at each frontier
+of a partial semantic map: the share of the unexplored floor that the frontier leads to, and for each goal category how
+near its objects are. It was trained on house plans alone (tools/train_poni.py). The robot goes to the frontier with the
+highest weighted sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from sim.geometry.fast_marching import travel_times
+from sim.geometry.grid import GridFrame, Window, cells_near_segment
+from sim.geometry.pose import Pose
+from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
+from stubborn.exploration.explorer import Exploration, Ground, Search
+from stubborn.exploration.frontier import frontier_cells
+from stubborn.exploration.patches import MapPatch, patch_around
+from stubborn.exploration.places import MapCells
+from stubborn.planning.planner import FreeSpace, Goal
+from stubborn.raster import connected, distance_to, large_parts
+
+if TYPE_CHECKING:
+    from stubborn.exploration.poni_net import Predictor
+
+GoalKind = Literal["true", "wrong"]
+SemanticsKind = Literal["seen", "shuffled", "none"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoniConfig:
+    """The potentials, their weights, and when a frontier is done with."""
+
+    weights: str | None = None
+    """File of the network's weights (tools/train_poni.py); None: those that ship."""
+    alpha: float = 0.5
+    """Weight of the area potential; the object potential of the goal has the rest."""
+    path_weight_per_m: float = 0.0
+    """The score of a frontier falls by this for each metre of path to it; 0: as in the reference."""
+    replan_steps: int = 10
+    """The potentials are predicted again after this many steps, and when a frontier is done with."""
+    goal: GoalKind = "true"
+    """Category whose object potential counts; `wrong`: another one, drawn for each episode, as a control."""
+    semantics: SemanticsKind = "seen"
+    """Goal categories on the map as seen, as a control in a wrong order drawn for each episode, or none."""
+    piece_m: float = 1.0
+    """The goal is the part of the frontier within this distance of its cell with the highest score."""
+    least_length_m: float = 0.40
+    """Shorter frontiers come last: the robot would hardly fit through."""
+    own_known_m: float = 1.0
+    """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
+    arrived_m: float = 0.35
+    """A frontier is reached within this length of path."""
+    spent_m: float = 0.60
+    """Around a place where a frontier was reached, the rest of it does not count any more."""
+    margin_cells: int = 20
+    """Margin around the known part of the map within which paths may run."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.alpha <= 1.0:
+            raise ConfigError(f"PoniConfig.alpha must lie in [0, 1], got {self.alpha}.")
+        if self.path_weight_per_m < 0.0:
+            raise ConfigError(f"PoniConfig.path_weight_per_m must be >= 0, got {self.path_weight_per_m}.")
+        if self.replan_steps < 1:
+            raise ConfigError(f"PoniConfig.replan_steps must be >= 1, got {self.replan_steps}.")
+        if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
+            raise ConfigError(f"PoniConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m.")
+
+    def make(self, camera: CameraModel) -> PoniExplorer:
+        """Returns a new explorer with these parameters.
+
+        Raises:
+            ConfigError: the weights do not exist or are of another network.
+        """
+        from stubborn.exploration.poni_net import shared_predictor  # PyTorch takes seconds to import
+
+        return PoniExplorer(self, shared_predictor(self.weights))
+
+
+@dataclass(frozen=True)
+class Frontiers:
+    """The known part of the map at one step, and the frontiers of it."""
+
+    window: Window
+    free: FreeSpace
+    cells: Bool[np.ndarray, "rows cols"]
+    """The frontiers that can be reached."""
+    unknown: Bool[np.ndarray, "rows cols"]
+    """Ground that was not in view; that near the trail counts as known."""
+    trail_m: Float32[np.ndarray, "rows cols"]
+    """Distance from the robot's trail."""
+
+    @classmethod
+    def of(cls, ground: Ground, *, own_known_m: float, margin_cells: int) -> Frontiers:
+        """Returns the frontiers of a map, as `FrontierExplorer` finds them."""
+        window = ground.navmap.known_window(margin_cells)
+        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
+        unknown = ground.unknown(window) & (trail_m > own_known_m)
+        free = ground.free_space(window, costly=unknown)
+        cells = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
+        return cls(window, free, cells, unknown, trail_m)
+
+
+class PoniExplorer:
+    """Goes to the frontier with the highest predicted potential, and keeps to it for some steps."""
+
+    reads_semantics: Literal[True] = True
+
+    def __init__(self, config: PoniConfig, predictor: Predictor) -> None:
+        self.config = config
+        self.predictor = predictor
+        self.reset()
+
+    def reset(self, seed: int = 0) -> None:
+        """Forgets the last episode; the draws of the controls come from `seed`."""
+        rng = np.random.default_rng(seed)
+        self._order: list[int] = rng.permutation(len(GOAL_CATEGORIES)).tolist()
+        self._other = int(rng.integers(1, len(GOAL_CATEGORIES)))
+        self._goal: MapCells | None = None
+        self._age_steps = 0
+        self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
+
+    def explore(self, ground: Ground) -> Exploration:
+        """See `Explorer`; the route to the frontier pursued, else to the best, else to ground far from the trail."""
+        if self._spent.size == 0:
+            self._spent = np.zeros(ground.navmap.frame.shape, np.bool_)
+        config = self.config
+        known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells)
+        return (
+            (yield from self._go_on(known, ground.pose))
+            or (yield from self._to_best(known, ground))
+            or (yield from self._to_least_visited(known))
+        )
+
+    def potential(self, patch: MapPatch, goal: str) -> Float32[np.ndarray, "cells cells"]:
+        """Returns the weighted sum of the predicted potentials for a goal category, in [0, 1]."""
+        semantics, alpha = self.config.semantics, self.config.alpha
+        channels = patch.channels(self._order if semantics == "shuffled" else None)
+        if semantics == "none":
+            channels[-len(GOAL_CATEGORIES) :] = 0
+        number = GOAL_CATEGORIES.index(goal)
+        if self.config.goal == "wrong":
+            number = (number + self._other) % len(GOAL_CATEGORIES)
+        predicted = self.predictor.predict(channels)
+        return np.float32(alpha) * predicted[0] + np.float32(1.0 - alpha) * predicted[1 + number]
+
+    def _go_on(self, known: Frontiers, pose: Pose) -> Search:
+        """Returns the route to the rest of the frontier pursued; None when it is done with, or after some steps."""
+        self._age_steps += 1
+        if self._goal is None or self._age_steps > self.config.replan_steps:
+            return None
+        open_cells = known.cells & ~self._spent[known.window.index]
+        route = yield Goal(known.free, self._goal.within(known.window) & open_cells)
+        if route is not None and route.length_m <= self.config.arrived_m:
+            self._spend(known.window, pose)
+            return None
+        return route
+
+    def _to_best(self, known: Frontiers, ground: Ground) -> Search:
+        """Returns the route to the open frontier with the highest score: a long one, else any; None: there is none."""
+        spent, score = self._spent[known.window.index], None
+        for least_m in (self.config.least_length_m, 0.0):
+            while (cells := large_parts(known.cells & ~spent, least_m / known.free.frame.cell_m)).any():
+                score = self._score(known, ground) if score is None else score
+                piece = self._best_piece(known.free.frame, cells, score)
+                route = yield Goal(known.free, piece)
+                if route is None:
+                    spent |= piece
+                elif route.length_m <= self.config.arrived_m:  # the robot is already there
+                    self._spend(known.window, ground.pose)
+                else:
+                    self._goal, self._age_steps = MapCells.of(piece, known.window), 0
+                    return route
+        self._goal = None
+        return None
+
+    def _score(self, known: Frontiers, ground: Ground) -> Float32[np.ndarray, "rows cols"]:
+        """Returns the score of each frontier cell: its potential less the cost of the path to it; -inf elsewhere."""
+        frame, pose = known.free.frame, ground.pose
+        patch = patch_around(ground.navmap, pose, cells=self.predictor.cells, pool=self.predictor.pool)
+        potential = self.potential(patch, ground.goal)
+        score = np.full(frame.shape, -np.inf, np.float32)
+        rows, cols = np.nonzero(known.cells)
+        at = patch.frame.cells(*frame.centres(rows, cols))
+        inside = patch.frame.contains(*at)
+        score[rows, cols] = 0.0  # beyond the patch nothing is predicted
+        score[rows[inside], cols[inside]] = potential[at[0][inside], at[1][inside]]
+        if self.config.path_weight_per_m > 0.0:
+            here = np.zeros(frame.shape, np.bool_)
+            here[frame.cell(pose.x_m, pose.y_m)] = True
+            path_m = travel_times(here, known.free.reachable, known.free.speed, frame.cell_m)
+            score[rows, cols] -= np.float32(self.config.path_weight_per_m) * path_m[rows, cols]
+        return score
+
+    def _best_piece(
+        self, frame: GridFrame, cells: Bool[np.ndarray, "rows cols"], score: Float32[np.ndarray, "rows cols"]
+    ) -> Bool[np.ndarray, "rows cols"]:
+        """Returns the cells that are connected to the one with the highest score and near it."""
+        row, col = divmod(int(np.argmax(np.where(cells, score, -np.inf))), frame.shape[1])
+        x_m, y_m = (float(value) for value in frame.centres(row, col))
+        index, disc = cells_near_segment(frame, (x_m, y_m), (x_m, y_m), self.config.piece_m)
+        piece = np.zeros_like(cells)
+        piece[index] = disc
+        return piece & connected(cells, row, col, connectivity=8)
+
+    def _to_least_visited(self, known: Frontiers) -> Search:
+        """Returns the route to the ground farthest from the trail, for when nothing unknown is left."""
+        far_m = np.where(known.free.reachable, known.trail_m, -np.inf)
+        route = yield Goal(known.free, far_m == far_m.max())
+        return None if route is None or route.length_m <= self.config.arrived_m else route
+
+    def _spend(self, window: Window, pose: Pose) -> None:
+        """Closes the frontiers around the robot, which has seen what they show."""
+        spent = self._spent[window.index]
+        index, disc = cells_near_segment(window.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
+        spent[index] |= disc
+        self._goal = None

@@ -1,0 +1,183 @@
+"""The network that predicts the potentials of frontiers from a partial semantic map (Ramakrishnan et al. 2022).
+
+A U-Net (Ronneberger et al. 2015, arXiv:1505.04597) over the patch of the map around the robot. Its first layer takes
+squares of 2 x 2 cells as channels and its last gives them back, so that a pass costs a quarter of one at full size and
+no cell is lost. Only this module of the explorer imports PyTorch.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import numpy as np
+import torch
+from jaxtyping import Float, Float32, UInt8
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from torch import Tensor, nn
+from torch.nn import functional
+
+from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.reading import convert, reason_of
+from stubborn.exploration.patches import LAYERS
+
+SHIPPED = Path(__file__).with_name("weights") / "poni.safetensors"
+"""The weights that ship."""
+CHANNELS = len(LAYERS) + len(GOAL_CATEGORIES)
+MAPS = 1 + len(GOAL_CATEGORIES)
+"""Number of predicted maps: the area potential, then the object potential of each goal category."""
+_CONFIG_KEY = "poni_config"
+
+_Width = Annotated[int, msgspec.Meta(ge=1, le=1024)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoniNetConfig:
+    """The size of the network and of its patch."""
+
+    cells: Annotated[int, msgspec.Meta(ge=16, le=1024)] = 128
+    """Edge of the patch in blocks, a multiple of 16."""
+    pool: Annotated[int, msgspec.Meta(ge=1, le=100)] = 5
+    """Edge of a block in map cells."""
+    widths: tuple[_Width, _Width, _Width, _Width] = (32, 64, 96, 128)
+    """Channels at 1/2, 1/4, 1/8 and 1/16 of the patch."""
+
+    def __post_init__(self) -> None:
+        if self.cells % 16:
+            raise ConfigError(f"PoniNetConfig.cells must be a multiple of 16, got {self.cells}.")
+
+
+class PoniNet(nn.Module):
+    """Computes the logits of the potentials."""
+
+    def __init__(self, config: PoniNetConfig = PoniNetConfig()) -> None:
+        super().__init__()
+        self.config = config
+        widths = config.widths
+        self.stem = nn.Sequential(_conv(4 * CHANNELS, widths[0], 3), _conv(widths[0], widths[0], 3))
+        self.down = nn.ModuleList(
+            nn.Sequential(_conv(above, below, 3, stride=2), _conv(below, below, 3))
+            for above, below in itertools.pairwise(widths)
+        )
+        self.up = nn.ModuleList(_conv(below, above, 1) for above, below in itertools.pairwise(widths))
+        self.refine = nn.ModuleList(_conv(width, width, 3) for width in widths[:-1])
+        self.head = nn.Conv2d(widths[0], 4 * MAPS, 1)
+        with torch.no_grad():
+            self.head.bias.fill_(-2.0)  # pyright: ignore[reportOptionalMemberAccess] - most potentials are small
+
+    def forward(self, channels: Float[Tensor, "n channels cells cells"]) -> Float[Tensor, "n maps cells cells"]:
+        """Returns the logits of the area potential and of the object potential of each goal category."""
+        features = [self.stem(functional.pixel_unshuffle(channels, 2))]
+        for down in self.down:
+            features.append(down(features[-1]))
+        x = features[-1]
+        for level in reversed(range(len(self.up))):
+            x = self.refine[level](features[level] + functional.interpolate(self.up[level](x), scale_factor=2.0))
+        return functional.pixel_shuffle(self.head(x), 2)
+
+
+class Predictor:
+    """Predicts the potentials of one patch at a time."""
+
+    def __init__(self, model: PoniNet) -> None:
+        self.cells, self.pool = model.config.cells, model.config.pool
+        self._model = model.eval()
+        self._model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+
+    @torch.inference_mode()
+    def predict(self, channels: UInt8[np.ndarray, "channels cells cells"]) -> Float32[np.ndarray, "maps cells cells"]:
+        """Returns the area potential and the object potential of each goal category, in [0, 1].
+
+        They have a meaning only at frontiers.
+        """
+        images = torch.from_numpy(channels[None]).to(torch.float32, memory_format=torch.channels_last)
+        return torch.sigmoid(self._model(images))[0].contiguous().numpy()
+
+
+@functools.lru_cache(maxsize=4)
+def shared_predictor(file: str | None) -> Predictor:
+    """Returns the predictor with the weights of a file, or with those that ship; explorers share it.
+
+    Raises:
+        ConfigError: see `load_poni`.
+    """
+    return Predictor(load_poni(SHIPPED if file is None else Path(file))[0])
+
+
+def save_poni(file: Path, model: PoniNet, metadata: Mapping[str, Any] | None = None) -> None:
+    """Writes weights with 16 bits, the sizes and some JSON values as safetensors. The file is replaced in one step.
+
+    Raises:
+        ConfigError: it cannot be written.
+    """
+    tensors = {
+        name: (tensor.half() if tensor.is_floating_point() else tensor).contiguous().cpu()
+        for name, tensor in model.state_dict().items()
+    }
+    values = {_CONFIG_KEY: asdict(model.config)} | dict(metadata or {})
+    header = {key: json.dumps(value) for key, value in values.items()}
+    part = file.with_name(file.name + ".part")
+    try:
+        part.write_bytes(save(tensors, metadata=header))
+        os.replace(part, file)
+    except (SafetensorError, OSError) as error:
+        part.unlink(missing_ok=True)
+        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
+
+
+def load_poni(file: Path) -> tuple[PoniNet, dict[str, Any]]:
+    """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
+
+    Raises:
+        ConfigError: the file does not exist, is broken, or holds another network (the first difference is given).
+    """
+    if not file.is_file():
+        raise ConfigError(f"No weights at '{file}': tools/train_poni.py writes them.")
+    try:
+        with safe_open(file, framework="pt") as stream:
+            header = stream.metadata() or {}
+            tensors: dict[str, Tensor] = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
+        metadata = {key: msgspec.json.decode(text) for key, text in header.items()}
+    except (SafetensorError, OSError, ValueError, RecursionError) as error:
+        raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
+    where = f"Weights '{file}' are of no network that predicts potentials"
+    if _CONFIG_KEY not in metadata:
+        raise ConfigError(f"{where}: their header has no '{_CONFIG_KEY}' (tools/train_poni.py writes it).")
+    config = convert(metadata.pop(_CONFIG_KEY), PoniNetConfig, where=where)
+    with torch.device("meta"):  # takes no memory, so that a size in the header cannot ask for more than the file has
+        wanted = PoniNet(config).state_dict()
+    _check(file, tensors, wanted)
+    model = PoniNet(config)
+    model.load_state_dict(tensors)
+    return model.eval(), metadata
+
+
+def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
+    """Raises ConfigError for the first tensor that is missing, of another shape, unknown, or not finite."""
+    for name in (*wanted, *given):
+        there, want = given.get(name), wanted.get(name)
+        if there is None or want is None:
+            reason = "is missing" if there is None else "is not in it"
+            raise ConfigError(f"Weights '{file}' are of another network: '{name}' {reason}.")
+        if there.shape != want.shape:
+            shapes = f"{tuple(there.shape)}, not {tuple(want.shape)}"
+            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is {shapes}.")
+        if not bool(torch.isfinite(there).all()):
+            raise ConfigError(f"Weights '{file}': '{name}' holds NaN or infinity.")
+
+
+def _conv(channels_in: int, channels_out: int, size: int, *, stride: int = 1) -> nn.Sequential:
+    """Returns a convolution with batch normalisation and rectification."""
+    return nn.Sequential(
+        nn.Conv2d(channels_in, channels_out, size, stride=stride, padding=size // 2, bias=False),
+        nn.BatchNorm2d(channels_out),
+        nn.ReLU(inplace=True),
+    )

@@ -1,0 +1,142 @@
+"""Goal-oriented semantic exploration: a learned global policy chooses long-term goals on the semantic map.
+
+Reference: Chaplot, Gandhi, Gupta, Salakhutdinov (2020), "Object Goal Navigation using Goal-Oriented Semantic
+Exploration", NeurIPS, arXiv 2007.00643. The policy is a small network of our own, trained in house plans by
+tools/train_semexp.py (docs/learned_exploration.md says what differs). The two controls of Luo et al. (2022, Section
+"Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong goal given to the policy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from sim.geometry.grid import cells_near_segment
+from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
+from stubborn.exploration.explorer import Exploration, Ground, Search
+from stubborn.exploration.semexp_input import PolicyInput, ViewConfig, observe
+from stubborn.planning.planner import FreeSpace, Goal
+
+SHIPPED = Path(__file__).with_name("weights") / "semexp.safetensors"
+"""The weights that ship with the package."""
+
+Score = Callable[[PolicyInput], Float[np.ndarray, " goals"]]
+"""Gives each goal cell, row by row, its logit."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SemExpConfig:
+    """The weights, how long a goal is kept, and the controls."""
+
+    weights: str | None = None
+    """File of weights; None: those that ship."""
+    goal_steps: int = 25
+    """A new long-term goal is chosen after this many steps, and when one is reached."""
+    goal_radius_m: float = 0.5
+    """Any cell this near the long-term goal will do."""
+    arrived_m: float = 0.35
+    """A long-term goal is reached within this length of path."""
+    sampled: bool = True
+    """True: goals are drawn from the policy; False: its best goal is taken."""
+    semantics: Literal["seen", "shuffled", "none"] = "seen"
+    """What the policy is shown of the goal categories seen: all of it, all of it with the categories exchanged at
+    random in each episode (the first control), or nothing."""
+    goal: Literal["true", "wrong"] = "true"
+    """Which goal the policy is told: the episode's, or another one, drawn in each episode (the second control)."""
+
+    def __post_init__(self) -> None:
+        if self.goal_steps < 1 or self.arrived_m <= 0.0:
+            raise ConfigError(
+                f"SemExpConfig needs goal_steps >= 1 and arrived_m > 0, got {self.goal_steps} and {self.arrived_m} m."
+            )
+
+    def make(self, camera: CameraModel) -> SemExpExplorer:
+        """Returns a new explorer with these parameters.
+
+        Raises:
+            ConfigError: the file of weights does not exist, or holds no network of `semexp`.
+        """
+        from stubborn.exploration.semexp_net import load_weights, scores  # imports PyTorch
+
+        net = load_weights(SHIPPED if self.weights is None else Path(self.weights))
+        return SemExpExplorer(self, net.config.view, lambda given: scores(net, given))
+
+
+class SemExpExplorer:
+    """Heads for the long-term goal of the policy for some steps, or for the reachable cell nearest to it."""
+
+    reads_semantics: Literal[True] = True
+
+    def __init__(self, config: SemExpConfig, view: ViewConfig, score: Score) -> None:
+        """`score` is the policy, `view` the sizes of its input."""
+        self.config = config
+        self.view = view
+        self.score = score
+        self.reset()
+
+    def reset(self, seed: int = 0) -> None:
+        """Forgets the last episode; the draws of this one come from `seed`."""
+        self._rng = np.random.default_rng(seed)
+        self.order = self._rng.permutation(len(GOAL_CATEGORIES)).tolist()
+        """The category that each semantic layer shows in the control `shuffled`."""
+        self._other = int(self._rng.integers(1, len(GOAL_CATEGORIES)))  # places between the goal and the wrong one
+        self.place_xy_m: tuple[float, float] | None = None
+        """The long-term goal."""
+        self._age_steps = 0
+
+    def explore(self, ground: Ground) -> Exploration:
+        """See `Explorer`; the route to the long-term goal, or None, so that the agent pushes on, when it is there."""
+        if self.place_xy_m is not None and self._age_steps < self.config.goal_steps:
+            route = yield from self._go_on(self.place_xy_m, ground)
+            if route is not None:
+                self._age_steps += 1
+                return route
+        self.place_xy_m, self._age_steps = self._chosen_xy_m(ground), 1
+        return (yield from self._go_on(self.place_xy_m, ground))
+
+    def _go_on(self, place_xy_m: tuple[float, float], ground: Ground) -> Search:
+        """Returns the route to a long-term goal; None when it is reached on all layers of collisions."""
+        for layer in ground.layers:
+            route = yield from head_for(place_xy_m, ground.free_space(layer=layer), self.config.goal_radius_m)
+            if route is not None and route.length_m > self.config.arrived_m:
+                return route
+        return None
+
+    def told_goal(self, goal: str) -> str:
+        """Returns the goal category that the policy is told."""
+        if self.config.goal == "true":
+            return goal
+        return GOAL_CATEGORIES[(GOAL_CATEGORIES.index(goal) + self._other) % len(GOAL_CATEGORIES)]
+
+    def _chosen_xy_m(self, ground: Ground) -> tuple[float, float]:
+        """Returns the next long-term goal of the policy."""
+        given = observe(
+            ground.navmap,
+            ground.pose,
+            self.told_goal(ground.goal),
+            self.view,
+            order=self.order if self.config.semantics == "shuffled" else None,
+            semantics=self.config.semantics != "none",
+        )
+        logits = self.score(given)
+        if self.config.sampled:
+            logits = logits + self._rng.gumbel(size=logits.shape)  # the largest of these is a draw of the softmax
+        return given.place_xy_m(int(np.argmax(logits)))
+
+
+def head_for(place_xy_m: tuple[float, float], free: FreeSpace, radius_m: float) -> Search:
+    """Returns the route to a point, else to the reachable cell nearest to it."""
+    cells = np.zeros(free.frame.shape, np.bool_)
+    index, inside = cells_near_segment(free.frame, place_xy_m, place_xy_m, radius_m)
+    cells[index] = inside
+    route = yield Goal(free, cells)
+    if route is not None:
+        return route
+    cell_x_m, cell_y_m = free.frame.mesh()
+    gap_m = np.where(free.reachable, np.hypot(cell_x_m - place_xy_m[0], cell_y_m - place_xy_m[1]), np.inf)
+    return (yield Goal(free, gap_m == gap_m.min()))

@@ -1,0 +1,265 @@
+"""The network of `semexp`: a global policy over long-term goals, and the value of a map for its training."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from torch import Tensor, nn
+from torch.nn.functional import avg_pool2d
+
+from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.reading import convert, reason_of
+from stubborn.exploration.semexp_input import GEOMETRY, PolicyInput, ViewConfig
+
+_CONFIG_KEY = "semexp_config"
+_MOST = 512
+"""Largest size that a header may give."""
+MAX_WEIGHT = 1e6
+_FASTER = 8.0
+"""Factor of the shares that the last convolution gets, by which their weights are learned faster."""
+TRUTH = ("path to the target", "floor never seen", "steps left")
+"""What the value is told besides the input of the policy: in units of 10 m, of 100 m2, and as a share."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NetConfig:
+    """Sizes of the network and of its input."""
+
+    goal_cells: int = 15
+    local_pool: int = 4
+    global_pool: int = 16
+    relations: int = 8
+    """Layers into which the goal categories are mixed, with weights that depend on the goal."""
+    width: int = 24
+    """Channels of the convolutions."""
+
+    @property
+    def view(self) -> ViewConfig:
+        """The sizes of the input."""
+        return ViewConfig(**{each.name: getattr(self, each.name) for each in fields(ViewConfig)})
+
+
+class SemExpNet(nn.Module):
+    """Scores the cells of a grid over the local window as long-term goals.
+
+    The 21 layers of the goal categories are mixed into a few by weights that belong to the goal, so that what one
+    category says about another is a number that is learned directly. The geometry of each square passes two
+    convolutions of stride 2 and meets the categories at the resolution of the goal cells; the features of the global
+    square are then interpolated at these. Layers with the position of each goal cell ahead and left of the robot carry
+    the heading. A last convolution gives one logit per goal cell; it also gets the shares of each goal cell that are
+    obstacle, seen and driven over, so that simple preferences are learned first.
+
+    The value, which only the training uses, is also told what no agent knows (`TRUTH`): most of the return depends on
+    how far away the target is and on how much is left to see (an asymmetric critic; Pinto et al. 2018).
+    """
+
+    bits: Tensor
+    blend: Tensor
+    offset: Tensor
+
+    def __init__(self, config: NetConfig) -> None:
+        super().__init__()
+        self.config = config
+        width, half = config.width, max(config.width // 3, 1)
+        self.relations = nn.Embedding(len(GOAL_CATEGORIES), config.relations * len(GOAL_CATEGORIES))
+        nn.init.normal_(self.relations.weight, std=0.3)
+        self.near_geometry, self.far_geometry = (
+            nn.Sequential(_convolution(len(GEOMETRY), half, 2), _convolution(half, width, 2)) for _ in range(2)
+        )
+        both = width + config.relations + 1
+        self.near = _convolution(both, width)
+        self.far = nn.Sequential(_convolution(both, width), _convolution(width, width))
+        self.goal = nn.Embedding(len(GOAL_CATEGORIES), width)
+        nn.init.normal_(self.goal.weight, std=0.1)
+        self.trunk = nn.Sequential(_convolution(2 * width + 4, width), _convolution(width, width))
+        self.logit = nn.Conv2d(width + 4 + 2 * (len(GEOMETRY) + config.relations + 1), 1, 1)
+        self.hidden_value, self.value = nn.Linear(3 * width + len(TRUTH), 2 * width), nn.Linear(2 * width, 1)
+        self.prior = nn.Linear(len(TRUTH), 1)
+        for layer, gain in ((self.logit, 0.3), (self.value, 0.3), (self.prior, 0.0)):
+            nn.init.orthogonal_(layer.weight, gain)
+            nn.init.zeros_(layer.bias)  # pyright: ignore[reportArgumentType]
+        with torch.no_grad():  # about what a random policy gets of the reward that is left
+            self.prior.weight[0, :2] = torch.tensor([0.6, 0.4])
+        self.register_buffer("bits", torch.arange(32, dtype=torch.int32).view(1, 32, 1, 1), persistent=False)
+        self.register_buffer("blend", _blend(config), persistent=False)
+        self.register_buffer("offset", _offsets(config), persistent=False)
+
+    def forward(
+        self,
+        near: Float[Tensor, "n cells cells"],
+        near_goals: Float[Tensor, "n blocks blocks"],
+        far: Float[Tensor, "n cells cells"],
+        far_goals: Float[Tensor, "n blocks blocks"],
+        heading: Float[Tensor, "n 2"],
+        goal: Float[Tensor, "n 1"],
+        truth: Float[Tensor, "n told"] | None = None,
+    ) -> tuple[Float[Tensor, "n goals"], Float[Tensor, " n"]]:
+        """Returns the logits of the goal cells, row by row, and the value; without `truth` that means nothing.
+
+        Args:
+            near: `Square.geometry` of the local square, as floats, like all arguments.
+            near_goals: its `Square.goals`.
+            far: those of the global square.
+            far_goals: the same.
+            heading: its cosine and sine.
+            goal: index of the goal category.
+            truth: as `TRUTH` says.
+        """
+        target = goal[:, 0].long()
+        near_layers, far_layers = (self._unpacked(square, len(GEOMETRY)) for square in (near, far))
+        near_mixed, far_mixed = (self._mixed(square, target) for square in (near_goals, far_goals))
+        local = self.near(torch.cat((self.near_geometry(near_layers), near_mixed), 1))
+        wide = self.far(torch.cat((self.far_geometry(far_layers), far_mixed), 1))
+        places = self._places(heading)
+        local = local + self.goal(target)[:, :, None, None]
+        hidden = self.trunk(torch.cat((local, self._around(wide), places), 1))
+        shares, mixed = self._around(avg_pool2d(far_layers, 4)), self._around(far_mixed)
+        simple = torch.cat((avg_pool2d(near_layers, 4), shares, places), 1)
+        direct = torch.cat((_FASTER * simple, near_mixed, mixed), 1)
+        truth = heading.new_zeros(len(heading), len(TRUTH)) if truth is None else truth
+        known = torch.cat((hidden.mean((2, 3)), hidden.amax((2, 3)), wide.mean((2, 3)), truth), 1)
+        value = self.value(torch.relu(self.hidden_value(known))) + self.prior(truth)
+        return self.logit(torch.cat((hidden, direct), 1)).flatten(1), value[:, 0]
+
+    def _around(self, features: Float[Tensor, "n c rows cols"]) -> Float[Tensor, "n c goal_cells goal_cells"]:
+        """Returns features of the global square at the goal cells."""
+        return torch.einsum("gi,ncij,hj->ncgh", self.blend, features, self.blend)
+
+    def _unpacked(self, packed: Float[Tensor, "n rows cols"], count: int) -> Float[Tensor, "n count rows cols"]:
+        """Returns the lowest bits as layers of 0 and 1."""
+        return (packed.to(torch.int32)[:, None] >> self.bits[:, :count] & 1).to(packed.dtype)
+
+    def _mixed(self, packed: Float[Tensor, "n rows cols"], target: Tensor) -> Float[Tensor, "n layers rows cols"]:
+        """Returns the mixed categories, and the goal category itself."""
+        seen = self._unpacked(packed, len(GOAL_CATEGORIES))
+        weights = self.relations(target).view(-1, self.config.relations, len(GOAL_CATEGORIES))
+        mixed = torch.bmm(weights, seen.flatten(2)).view(-1, self.config.relations, *packed.shape[1:])
+        return torch.cat((mixed, seen[torch.arange(len(target)), target][:, None]), 1)
+
+    def _places(self, heading: Float[Tensor, "n 2"]) -> Float[Tensor, "n 4 goal_cells goal_cells"]:
+        """Returns the place of each goal cell: ahead and left of the robot, its distance, and the robot's own cell."""
+        y, x = self.offset[0], self.offset[1]
+        cos, sin = heading[:, 0, None, None], heading[:, 1, None, None]
+        away = torch.hypot(x, y).expand(len(heading), -1, -1)
+        return torch.stack((cos * x + sin * y, cos * y - sin * x, away, (away < 0.1).to(away.dtype)), 1)
+
+
+def _convolution(before: int, after: int, stride: int = 1) -> nn.Sequential:
+    return nn.Sequential(nn.Conv2d(before, after, 3, stride=stride, padding=1), nn.ReLU())
+
+
+def _offsets(config: NetConfig) -> Tensor:
+    """Returns row and column of each goal cell from the robot, (2, goal_cells, goal_cells) in halves of the window."""
+    along = (torch.arange(config.goal_cells) + 0.5 - _middle(config)) / (0.5 * config.goal_cells)
+    return torch.stack(torch.meshgrid(along, along, indexing="ij"))
+
+
+def _blend(config: NetConfig) -> Tensor:
+    """Returns the shares of the cells of the global features in each goal cell, (goal_cells, goal_cells), for an axis.
+
+    The robot is in the middle of both grids; a global feature is larger than a goal cell by the ratio of the pools.
+    """
+    count, middle = torch.arange(config.goal_cells), _middle(config)
+    at = (count + 0.5 - middle) * config.local_pool / config.global_pool + middle - 0.5
+    return (1.0 - (at[:, None] - count).abs()).clamp(min=0.0)
+
+
+def _middle(config: NetConfig) -> float:
+    """Returns the place of the robot along an axis of goal cells: the middle of the square's middle cell."""
+    cells = config.view.cells
+    return (cells // 2 + 0.5) * config.goal_cells / cells
+
+
+def as_tensors(given: PolicyInput) -> tuple[Tensor, ...]:
+    """Returns the arguments of `SemExpNet` for one input."""
+    squares = (*given.near, *given.far)
+    return (
+        *(torch.from_numpy(square.astype(np.float32))[None] for square in squares),
+        torch.from_numpy(given.heading)[None],
+        torch.tensor([[float(given.goal)]]),
+    )
+
+
+def scores(net: SemExpNet, given: PolicyInput) -> Float[np.ndarray, " goals"]:
+    """Returns the logits of the goal cells."""
+    with torch.inference_mode():
+        return net(*as_tensors(given))[0][0].numpy()
+
+
+def save_weights(file: Path, net: SemExpNet, metadata: Mapping[str, Any] | None = None) -> None:
+    """Writes weights and sizes as safetensors; `metadata` are values that JSON can hold. The file is replaced at once.
+
+    Raises:
+        ConfigError: the file cannot be written.
+    """
+    header = {_CONFIG_KEY: json.dumps(asdict(net.config))}
+    header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
+    part = file.with_name(file.name + ".part")
+    tensors = {name: tensor.detach().contiguous().cpu() for name, tensor in net.state_dict().items()}
+    try:
+        part.write_bytes(save(tensors, metadata=header))
+        os.replace(part, file)
+    except (SafetensorError, OSError) as error:
+        part.unlink(missing_ok=True)
+        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
+
+
+def load_weights(file: Path) -> SemExpNet:
+    """Returns the network of a file of weights, for evaluation.
+
+    Raises:
+        ConfigError: the file does not exist, is broken, or holds another network.
+    """
+    if not file.is_file():
+        raise ConfigError(f"No weights at '{file}': tools/train_semexp.py makes them.")
+    try:
+        with safe_open(file, framework="pt") as stream:
+            header = stream.metadata() or {}
+            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118 - no dict
+    except (SafetensorError, OSError) as error:
+        raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
+    net = SemExpNet(_config(file, header))
+    for name, wanted in net.state_dict().items():
+        given = tensors.get(name)
+        if given is None or given.shape != wanted.shape:
+            told = "is missing" if given is None else f"is {tuple(given.shape)}, not {tuple(wanted.shape)}"
+            raise ConfigError(f"Weights '{file}' are of another network: '{name}' {told}.")
+        if not bool((given.abs() <= MAX_WEIGHT).all()):  # NaN is not
+            raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")
+    unknown = sorted(set(tensors) - set(net.state_dict()))
+    if unknown:
+        raise ConfigError(f"Weights '{file}' are of another network: '{unknown[0]}' is not in it.")
+    net.load_state_dict(tensors)
+    return net.eval()
+
+
+def _config(file: Path, header: Mapping[str, str]) -> NetConfig:
+    """Returns the sizes in the header.
+
+    Raises:
+        ConfigError: there are none, or they make no sense.
+    """
+    where = f"Weights '{file}' are not of semexp"
+    if _CONFIG_KEY not in header:
+        raise ConfigError(f"{where}: their header has no '{_CONFIG_KEY}'.")
+    try:
+        stored = json.loads(header[_CONFIG_KEY])
+    except (ValueError, RecursionError):
+        raise ConfigError(f"{where}: '{_CONFIG_KEY}' in their header is no JSON.") from None
+    config = convert(stored, NetConfig, where=where)
+    sizes = asdict(config)
+    wrong = [name for name, size in sizes.items() if not 1 <= size <= _MOST]
+    if wrong:
+        raise ConfigError(f"{where}: {wrong[0]} is {sizes[wrong[0]]}, it must be 1 to {_MOST}.")
+    config.view  # noqa: B018 - raises for sizes that do not fit each other
+    return config

@@ -1,0 +1,139 @@
+"""The twin for training the global policy of semexp, and what it shares with the explorer in play."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from sim.errors import ConfigError
+from sim.geometry.pose import Pose
+from sim.interface import GOAL_CATEGORIES
+from sim.plans.export import export_plans
+from sim.plans.plan import read_plan, write_plan
+from sim.plans.sight import PlanCamera
+from sim.twin.agent import TwinAgent, play, twin_config
+from sim.twin.env import TwinConfig, TwinEnv
+from sim.twin.semexp import FAST, RewardConfig, SemExpEnv
+from stubborn.agent import AgentConfig
+from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
+from stubborn.exploration.semexp_input import PolicyInput, ViewConfig
+from tests.helpers.worlds import room, with_box
+
+
+@pytest.fixture(scope="module")
+def plans(tmp_path_factory) -> Path:
+    """A folder with the plan of two rooms behind each other, with a bed in the second one and a sofa in the first."""
+    folder = tmp_path_factory.mktemp("plans")
+    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
+    house = with_box(house, "sofa_00", centre_m=(-2.0, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
+    house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
+    (plan,) = export_plans(house, {})
+    write_plan(folder / "flat.npz", plan)
+    return folder
+
+
+START = {"plan": 0, "goal": "bed", "start": Pose(-3.0, 1.0, 0.0)}
+EAST = 7 * 15 + 14
+"""The goal cell ahead of the start, 5.5 m away."""
+
+
+def test_the_environment_keeps_gymnasiums_contract(plans: Path):
+    check_env(SemExpEnv(plans), skip_render_check=True)
+
+
+def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(plans: Path):
+    env = SemExpEnv(plans)
+    env.reset(seed=0, options=START)
+    first_m, before_m2 = env.episode.distance_m(), env.episode.camera.area_seen_m2
+    total, terminated, cell, info = 0.0, False, 2 * 15 + 13, {}
+    for _ in range(12):
+        _, reward, terminated, _, info = env.step(cell)
+        total += reward
+        if terminated:
+            break
+    assert terminated
+    assert info["first_seen_step"] == info["num_steps"] > 0
+    seen_m2 = env.episode.camera.area_seen_m2 - before_m2
+    assert total == pytest.approx(0.1 * first_m + 0.02 * seen_m2)
+    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, rest_at_sight=False))
+    plain.reset(seed=0, options=START)
+    before = plain.episode.distance_m()
+    assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
+
+
+def test_the_policy_is_given_the_same_in_training_and_in_play(plans: Path):
+    """The agent plays the first goal of a policy that the environment is then given; both then see the same map."""
+    given: list[PolicyInput] = []
+
+    def policy(seen: PolicyInput) -> np.ndarray:
+        given.append(seen)
+        return np.where(np.arange(225) == EAST, np.float32(50.0), np.float32(0.0))
+
+    exact = replace(FAST, plan_every=1, plan_pool=1, sight=TwinConfig().sight, goal_steps=4)
+    explorer = SemExpExplorer(SemExpConfig(goal_steps=4), ViewConfig(), policy)
+    agent = TwinAgent(twin_config(AgentConfig()))
+    agent.explorer = explorer
+    start = Pose(-3.0, 1.0, 3.0)  # looks away from the bed
+    play(agent, PlanCamera(read_plan(plans / "flat.npz")), "bed", start, seed=0, until_sight=True)
+    env = SemExpEnv(plans, exact)
+    seen, _ = env.reset(seed=0, options={**START, "start": start})
+    for expected in given[:6]:
+        for name, square in (("near", expected.near), ("far", expected.far)):
+            np.testing.assert_array_equal(seen[name], square.geometry)
+            np.testing.assert_array_equal(seen[f"{name}_goals"], square.goals)
+        np.testing.assert_allclose(seen["heading"], expected.heading, atol=1e-6)
+        assert seen["goal"] == expected.goal == GOAL_CATEGORIES.index("bed")
+        assert env.given.frame == expected.frame
+        seen = env.step(EAST)[0]
+    assert len(given) >= 6
+    assert seen["near_goals"].any()
+
+
+def test_a_step_ends_where_the_goal_is_reached(plans: Path):
+    used = []
+    for arrived_m in (None, 0.35):
+        env = TwinEnv(plans, TwinConfig(actions="goal", arrived_m=arrived_m))
+        env.reset(seed=0, options=START)
+        used.append(env.step(np.array([0.5, 0.6]))[4]["num_steps"])
+    assert used[0] == 25
+    assert 2 <= used[1] <= 6
+
+
+def test_a_robot_that_is_at_its_goal_pushes_on_for_one_action(plans: Path):
+    env = TwinEnv(plans, TwinConfig(actions="goal", arrived_m=0.35))
+    env.reset(seed=0, options=START)
+    for steps in (1, 2):
+        assert env.step(np.array([0.5, 0.5]))[4]["num_steps"] == steps
+    assert env.episode.pose.yaw_rad > 0.4
+    assert env.episode.path_length_m > 0.2
+
+
+def test_planning_on_pooled_cells_drives_to_the_same_place(plans: Path):
+    ends = []
+    for pool in (1, 2, 3):
+        env = TwinEnv(plans, TwinConfig(actions="goal", plan_pool=pool))
+        env.reset(seed=0, options=START)
+        info = env.step(np.array([0.25, 0.75]))[4]
+        assert info["collisions"] <= 1
+        ends.append(env.episode.pose.xy_m)
+    assert np.abs(np.array(ends) - ends[0]).max() < 1.0
+    assert len(set(ends)) > 1
+    with pytest.raises(ConfigError, match="plan_pool must be >= 1 and divide window_cells and map_cells, got 7"):
+        TwinConfig(plan_pool=7)
+
+
+def test_environments_can_share_the_plans(plans: Path):
+    reads = []
+
+    def read(file: Path):
+        reads.append(file)
+        return read_plan(file)
+
+    env = SemExpEnv(plans, read=read)
+    env.reset(seed=0)
+    env.reset(seed=1)
+    assert len(reads) == 1

@@ -1,0 +1,88 @@
+"""The training of the predictor of potentials on two tiny plans: its files, and a run that continues."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from sim.interface import ConfigError
+from sim.plans.export import export_plans
+from sim.plans.plan import write_plan
+from sim.twin.potential_files import held_back
+from stubborn.exploration.poni_net import CHANNELS, Predictor, load_poni
+from tests.helpers.worlds import room, with_box
+from tools.train_poni import Args, loss_of, main
+
+
+@pytest.fixture
+def plans(tmp_path: Path) -> Path:
+    """Two plans of the same room, of which one is held back."""
+    house = with_box(room(7, 4), "bed_00", centre_m=(2.4, 0.8, 0.3), half_m=(0.9, 0.9, 0.3))
+    (plan,) = export_plans(house, {})
+    names = [f"house_{number}" for number in range(40)]
+    chosen = [next(name for name in names if held_back(Path(f"{name}.npz")) == back) for back in (False, True)]
+    for name in chosen:
+        write_plan(tmp_path / "plans" / f"{name}.npz", replace(plan, name=name))
+    return tmp_path / "plans"
+
+
+def rows(file: Path) -> list[dict[str, str]]:
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_training_makes_samples_curves_and_weights_and_continues_a_run(
+    tmp_path: Path, plans: Path, capsys: pytest.CaptureFixture[str]
+):
+    options = {"plans": (plans,), "out": tmp_path / "out", "walks": 1, "maps": 3, "most_steps": 20, "batch": 2}
+    assert main(Args(**options, minutes=0.005)) == 0  # type: ignore[arg-type]
+    out = tmp_path / "out"
+    model, metadata = load_poni(out / "poni.safetensors")
+    assert metadata["plans"] == 2
+    maps = Predictor(model).predict(np.zeros((CHANNELS, 128, 128), np.uint8))
+    assert np.isfinite(maps).all()
+    first = rows(out / "val.csv")
+    assert {"step", "area", "objects", "objects_predicted_best", "objects_nearest_best"} <= set(first[0])
+    assert (out / "curve.png").stat().st_size > 1000
+    samples = {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()}
+    assert len(samples) == 2
+
+    capsys.readouterr()
+    assert main(Args(**options, minutes=0.01)) == 0  # type: ignore[arg-type]
+    printed = capsys.readouterr().out
+    assert "2 plans, 0 made" in printed
+    assert f"continues from step {first[-1]['step']}," in printed
+    assert int(rows(out / "val.csv")[-1]["step"]) > int(first[-1]["step"])
+    assert {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()} == samples
+
+    torch.save({"progress": {"step": 1, "spent_s": 0.0, "best": 1.0, "evaluated_s": 0.0}}, out / "state.pt")
+    with pytest.raises(ConfigError, match="is of another network"):
+        main(Args(**options, minutes=0.01))  # type: ignore[arg-type]
+
+
+def test_categories_seen_already_have_no_loss():
+    logits, potentials = torch.zeros(2, 3), torch.tensor([[1.0, 0.0, 0.5], [0.0, 1.0, 0.5]])
+    potentials[0, 1] = 0.7
+    counts = torch.tensor([[True, False, True], [True, True, False]])
+    with torch.no_grad():
+        logits[0, 1] = 9.0
+    area, objects = loss_of(logits, potentials, counts)
+    assert float(area) == pytest.approx(np.log(2.0), rel=1e-5)
+    assert float(objects) == pytest.approx(np.log(2.0), rel=1e-5)
+
+
+def test_a_plan_is_held_back_by_its_name_alone():
+    files = [Path(f"train_any_{number:06d}.npz") for number in range(240)]
+    back = [held_back(file) for file in files]
+    assert 15 <= sum(back) <= 45
+    assert back == [held_back(Path("samples") / f"train-{file.name}") for file in files]
+
+
+def test_without_plans_the_folder_is_named(tmp_path: Path):
+    with pytest.raises(ConfigError, match="No plan in"):
+        main(Args(plans=(tmp_path / "nowhere",), out=tmp_path / "out"))

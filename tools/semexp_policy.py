@@ -1,0 +1,60 @@
+"""The network of `semexp` as a policy of stable-baselines3, which trains it with PPO."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gymnasium import spaces
+from torch import Tensor
+from torch.optim import Adam
+
+from stubborn.exploration.semexp_net import NetConfig, SemExpNet
+
+try:
+    from stable_baselines3.common.distributions import Distribution
+    from stable_baselines3.common.policies import ActorCriticPolicy
+    from stable_baselines3.common.type_aliases import PyTorchObs, Schedule
+except ImportError as error:
+    raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
+
+
+class SemExpPolicy(ActorCriticPolicy):
+    """The two outputs of a `SemExpNet` are actor and critic; observations are those of `sim.twin.semexp.SemExpEnv`."""
+
+    net: SemExpNet
+
+    def __init__(
+        self, observation_space: spaces.Space, action_space: spaces.Space, lr_schedule: Schedule, config: NetConfig,
+        **_: Any,
+    ) -> None:  # fmt: skip
+        self._config = config
+        super().__init__(observation_space, action_space, lr_schedule)
+
+    def _build(self, lr_schedule: Schedule) -> None:
+        self.net = SemExpNet(self._config)
+        self.optimizer = Adam(self.parameters(), lr=lr_schedule(1), eps=1e-5)
+
+    def _outputs(self, obs: PyTorchObs) -> tuple[Distribution, Tensor]:
+        assert isinstance(obs, dict)
+        names = ("near", "near_goals", "far", "far_goals", "heading", "goal", "truth")
+        logits, values = self.net(*(obs[name] for name in names))
+        return self.action_dist.proba_distribution(logits), values[:, None]  # pyright: ignore[reportCallIssue]
+
+    def forward(self, obs: PyTorchObs, deterministic: bool = False) -> tuple[Tensor, Tensor, Tensor]:
+        """Returns actions, values and the logarithms of the actions' probabilities."""
+        distribution, values = self._outputs(obs)
+        actions = distribution.get_actions(deterministic=deterministic)
+        return actions, values, distribution.log_prob(actions)
+
+    def evaluate_actions(self, obs: PyTorchObs, actions: Tensor) -> tuple[Tensor, Tensor, Tensor | None]:
+        """Returns values, and logarithms of probabilities and entropies of given actions."""
+        distribution, values = self._outputs(obs)
+        return values, distribution.log_prob(actions), distribution.entropy()
+
+    def get_distribution(self, obs: PyTorchObs) -> Distribution:
+        """Returns the distribution of actions."""
+        return self._outputs(obs)[0]
+
+    def predict_values(self, obs: PyTorchObs) -> Tensor:
+        """Returns the values."""
+        return self._outputs(obs)[1]

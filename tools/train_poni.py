@@ -1,0 +1,339 @@
+"""Trains the predictor of `--agent poni` on house plans, without an agent that acts in them.
+
+    python tools/train_poni.py --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni
+
+First the samples are made, partial maps with the true potentials of their frontiers (`sim.twin.potentials`), one file
+for each plan in --samples; then the network is trained on them for --minutes. One plan in eight is held back for
+`val.csv`: the loss, and how often the best predicted frontier is truly the best one. The same command continues a
+killed run: `state.pt` holds weights, their average, optimiser and step. `poni.safetensors` is the averaged network of
+the best evaluation so far, `curve.png` the picture of the two curves.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import torch
+from torch import Tensor
+from torch.nn import functional
+from torch.optim.swa_utils import AveragedModel
+
+from sim import cli
+from sim.files import write_atomically
+from sim.interface import ConfigError
+from sim.plans.plan import read_plan
+from sim.reading import Count as ReadCount
+from sim.reading import Number, convert, reason_of
+from sim.twin.potential_choices import Choices, add_choices
+from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
+from sim.twin.potentials import SampleConfig, samples_of
+from stubborn.exploration.poni_net import MAPS, PoniNet, PoniNetConfig, save_poni
+from stubborn.segmentation.checkpoints import read_checkpoint
+from stubborn.segmentation.training import exponential_average
+
+LOG_EVERY_STEPS = 20
+PRINT_EVERY_S = 10.0
+"""Shortest time between two lines of progress."""
+SAVE_EVERY_S = 60.0
+"""Shortest time between two writes of the state."""
+EVALUATE_EVERY = 0.05
+"""Share of the time between two evaluations."""
+OBJECT_WEIGHT = 5.0
+"""Weight of the mean loss over the goal categories; that of the area has 1."""
+AVERAGE = 0.998
+"""Decay per step of the average of the weights."""
+MAX_GRADIENT_NORM = 5.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Trains the predictor of potentials."""
+
+    plans: tuple[Path, ...]
+    """Folders of plans (tools/export_plans.py)."""
+    out: cli.OutFolder
+    """Folder of the run; an existing run is continued."""
+    samples: cli.OutFolder | None = None
+    """Folder of the samples, which runs may share; None: OUT/samples."""
+    minutes: cli.Positive = 30.0
+    """Time of the training, to which the learning rate is fitted; the samples' is not counted."""
+    walks: cli.Count = 6
+    """Walks in each plan."""
+    maps: cli.Count = 8
+    """Samples of each walk."""
+    most_steps: cli.Count = 300
+    """Actions of a walk."""
+    batch: cli.Count = 16
+    """Samples per step."""
+    rate: cli.Positive = 2e-3
+    """Peak learning rate of AdamW."""
+    weight_decay: cli.NotNegative = 0.02
+    """Weight decay of AdamW."""
+    threads: cli.Count = 1
+    """Number of threads of PyTorch."""
+    val_count: cli.Amount = 600
+    """Number of held-back samples of an evaluation; 0: all."""
+    seed: cli.Seed = 0
+    """Seed of the initial weights, the order and the turns of the samples; the samples have their own."""
+
+
+class _Progress(msgspec.Struct):
+    """How far a run is, as `state.pt` holds it."""
+
+    step: ReadCount
+    spent_s: Number
+    best: float
+    evaluated_s: Number
+
+
+def main(args: Args) -> int:
+    """Makes the samples and trains; returns the exit status."""
+    torch.set_num_threads(args.threads)
+    config = SampleConfig(walks=args.walks, maps=args.maps, most_steps=args.most_steps)
+    files = make_samples(args, config)
+    Trainer(args, config, files).run()
+    return 0
+
+
+def make_samples(args: Args, config: SampleConfig) -> list[Path]:
+    """Writes the samples of all plans that have none yet, and returns the files of all."""
+    plans = [file for folder in args.plans for file in sorted(folder.glob("*.npz"))]
+    if not plans:
+        raise ConfigError(f"No plan in {', '.join(map(str, args.plans))}: tools/export_plans.py writes them.")
+    folder = args.samples or args.out / "samples"
+    files = [folder / f"{plan.parent.name}-{plan.name}" for plan in plans]
+    printed_s = start_s = time.monotonic()
+    todo = [(plan, file) for plan, file in zip(plans, files, strict=True) if not file.exists()]
+    for done, (plan, file) in enumerate(todo):
+        if time.monotonic() - printed_s >= PRINT_EVERY_S:
+            printed_s = time.monotonic()
+            print(f"samples of {done} of {len(todo)} plans, {(printed_s - start_s) / 60:.1f} min", flush=True)
+        house = read_plan(plan)
+        write_samples(file, samples_of(house, config, seed=0), config, {"plan": house.name})
+    print(f"samples of {len(files)} plans, {len(todo)} made in {(time.monotonic() - start_s) / 60:.1f} min", flush=True)
+    return files
+
+
+def loss_of(logits: Tensor, potentials: Tensor, counts: Tensor) -> tuple[Tensor, Tensor]:
+    """Returns the cross entropy of the area potential and the mean one of the object potentials that count.
+
+    Args:
+        logits: (m, maps) at frontier cells.
+        potentials: (m, maps) the true ones, in [0, 1].
+        counts: (m, maps) False: the potential does not matter.
+    """
+    losses = functional.binary_cross_entropy_with_logits(logits, potentials, reduction="none") * counts
+    return losses[:, 0].mean(), losses[:, 1:].sum() / counts[:, 1:].sum().clamp(min=1)
+
+
+class Trainer:
+    """The network, the optimiser, the samples and the progress of one run."""
+
+    def __init__(self, args: Args, config: SampleConfig, files: Sequence[Path]) -> None:
+        self.args = args
+        self.train = SampleSet.read([file for file in files if not held_back(file)], config)
+        self.val = SampleSet.read([file for file in files if held_back(file)], config)
+        torch.manual_seed(args.seed)
+        self.model = PoniNet(PoniNetConfig(cells=config.cells, pool=config.pool))
+        self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+        self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(AVERAGE), use_buffers=True)
+        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
+        self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
+        self.progress = _Progress(0, 0.0, math.inf, 0.0)
+        self.plans = len(files)
+        args.out.mkdir(parents=True, exist_ok=True)
+        self._resume()
+        print(f"{len(self.train)} samples, {len(self.val)} held back", flush=True)
+
+    def run(self) -> None:
+        """Trains until the time is up."""
+        limit_s = 60.0 * self.args.minutes
+        start_s, saved_s = time.perf_counter() - self.progress.spent_s, time.perf_counter()
+        printed_s, losses = saved_s, []
+        for batch in self._batches():
+            if self.progress.spent_s >= limit_s:
+                break
+            losses.append(self._train_on(batch, self.progress.spent_s / limit_s))
+            self.progress.step += 1
+            self.progress.spent_s = time.perf_counter() - start_s
+            if len(losses) == LOG_EVERY_STEPS:
+                self._log(losses)
+                if time.perf_counter() - printed_s >= PRINT_EVERY_S:
+                    printed_s = time.perf_counter()
+                    area, objects = np.mean(losses, axis=0)
+                    minutes = f"{self.progress.spent_s / 60:.1f} of {self.args.minutes:g} min"
+                    print(f"step {self.progress.step}, {minutes}: area {area:.4f}, objects {objects:.4f}", flush=True)
+                losses = []
+            if self.progress.spent_s - self.progress.evaluated_s > EVALUATE_EVERY * limit_s:
+                self._evaluate()
+                start_s = time.perf_counter() - self.progress.spent_s  # an evaluation is not training
+            if time.perf_counter() - saved_s > SAVE_EVERY_S:
+                self._save_state()
+                saved_s = time.perf_counter()
+        self._evaluate()
+        self._save_state()
+
+    def _batches(self) -> Iterator[Batch]:
+        """Yields batches without end; those of a step depend on seed and step only."""
+        while True:
+            rng = np.random.default_rng([self.args.seed, self.progress.step])
+            numbers = rng.integers(len(self.train), size=self.args.batch)
+            yield self.train.batch(numbers.tolist(), rng.integers(SYMMETRIES, size=self.args.batch).tolist())
+
+    def _train_on(self, batch: Batch, done: float) -> tuple[float, float]:
+        """Makes one step of the optimiser; returns the two losses."""
+        rate = self.args.rate * min(1.0, (self.progress.step + 1) / 100) * 0.5 * (1.0 + math.cos(math.pi * done))
+        for group in self.optimiser.param_groups:
+            group["lr"] = rate
+        self.model.train()
+        self.optimiser.zero_grad(set_to_none=True)
+        area, objects = loss_of(self._logits(self.model, batch), *_targets(batch))
+        (area + OBJECT_WEIGHT * objects).backward()
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
+        self.optimiser.step()
+        self.average.update_parameters(self.model)
+        return float(area.detach()), float(objects.detach())
+
+    def _logits(self, model: torch.nn.Module, batch: Batch) -> Tensor:
+        """Returns the logits (m, maps) at the frontier cells of a batch."""
+        images = torch.from_numpy(batch.channels).to(torch.float32, memory_format=torch.channels_last)
+        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bf16):
+            maps: Tensor = model(images)
+        at = torch.from_numpy(batch.sample), slice(None), torch.from_numpy(batch.cell)
+        return maps.float().flatten(2)[at].reshape(-1, MAPS)
+
+    @torch.no_grad()
+    def _evaluate(self) -> None:
+        """Evaluates the averaged network, writes a row, and saves it if it is the best so far."""
+        progress = self.progress
+        progress.evaluated_s = progress.spent_s
+        model: PoniNet = self.average.module.eval()  # pyright: ignore[reportAssignmentType] - the same class
+        count = self.args.val_count
+        every = max(1, len(self.val) // count) if count else 1
+        numbers = np.arange(0, len(self.val), every).tolist()
+        area, objects, losses = Choices(), Choices(), []
+        for first in range(0, len(numbers), self.args.batch):
+            batch = self.val.batch(numbers[first : first + self.args.batch])
+            logits = self._logits(model, batch)
+            losses.append([float(loss) for loss in loss_of(logits, *_targets(batch))])
+            add_choices(batch, torch.sigmoid(logits).numpy(), area, objects)
+        mean = np.mean(losses, axis=0)
+        row: dict[str, Any] = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)}
+        row |= {"samples": len(numbers), "area": float(mean[0]), "objects": float(mean[1])}
+        for name, choices in (("area", area), ("objects", objects)):
+            row |= {f"{name}_choices": choices.count}
+            row |= {f"{name}_{key}": value for key, value in choices.shares().items()}
+        row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
+        _append(self.args.out / "val.csv", row)
+        print(
+            f"held back: area {mean[0]:.4f}, objects {mean[1]:.4f}; best frontier chosen: area "
+            f"{row['area_predicted_best']}, objects {row['objects_predicted_best']} (random "
+            f"{row['objects_random_best']}, nearest {row['objects_nearest_best']})",
+            flush=True,
+        )
+        total = float(mean[0] + OBJECT_WEIGHT * mean[1])
+        if total <= progress.best or (count == 0 and not (self.args.out / "poni.safetensors").exists()):
+            progress.best = total
+            options = {key: str(value) for key, value in asdict(self.args).items()}
+            save_poni(self.args.out / "poni.safetensors", model, {"val": row, "options": options, "plans": self.plans})
+        draw_curve(self.args.out)
+
+    def _log(self, losses: Sequence[tuple[float, float]]) -> None:
+        """Writes a row of the training curve."""
+        area, objects = (round(float(value), 4) for value in np.mean(losses, axis=0))
+        progress = self.progress
+        per_s = round(self.args.batch * progress.step / max(progress.spent_s, 1e-9), 1)
+        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 3), "area": area, "objects": objects}
+        _append(self.args.out / "train.csv", row | {"samples_per_s": per_s})
+
+    def _save_state(self) -> None:
+        """Writes the state of the run; the file is replaced in one step."""
+        content = io.BytesIO()
+        parts = {"model": self.model, "average": self.average, "optimiser": self.optimiser}
+        state = {name: part.state_dict() for name, part in parts.items()}
+        torch.save(state | {"progress": msgspec.to_builtins(self.progress)}, content)
+        write_atomically(self.args.out / "state.pt", content.getvalue())
+
+    def _resume(self) -> None:
+        """Continues from the state of an earlier process, if there is one."""
+        file = self.args.out / "state.pt"
+        if not file.exists():
+            return
+        content = read_checkpoint(file)
+        self.progress = convert(content.get("progress"), _Progress, where=f"The state '{file}' of the run")
+        try:
+            self.model.load_state_dict(content["model"])
+            self.average.load_state_dict(content["average"])
+            self.optimiser.load_state_dict(content["optimiser"])
+        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
+            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
+        print(f"continues from step {self.progress.step}, {self.progress.spent_s / 60:.1f} min", flush=True)
+
+
+def draw_curve(out: Path) -> None:
+    """Draws the losses of `train.csv` and `val.csv`, and the share of best choices, as `curve.png`."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    train, val = (_columns(out / name) for name in ("train.csv", "val.csv"))
+    figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.2))
+    for axis, name in zip(axes, ("area", "objects"), strict=False):
+        if train:
+            axis.plot(train["minutes"], train[name], color="0.7", linewidth=0.8, label="training")
+        axis.plot(val["minutes"], val[name], color="C0", label="held-back plans")
+        axis.set_title(f"cross entropy of the {name.removesuffix('s')} potential", fontsize=9)
+        axis.set_xlabel("minutes")
+        axis.legend(fontsize=8)
+        if train:
+            axis.set_ylim(0.95 * min(val[name]), np.quantile(train[name], 0.98))
+    for number, name in enumerate(("area", "objects")):
+        for kind, style in (("predicted", "-"), ("nearest", "--"), ("random", ":")):
+            label = f"{name.removesuffix('s')}: {kind}"
+            axes[2].plot(val["minutes"], val[f"{name}_{kind}_best"], style, color=f"C{number}", label=label)
+    axes[2].set_title("share of maps in which the best frontier is chosen", fontsize=9)
+    axes[2].set_xlabel("minutes")
+    axes[2].set_ylim(0.0, 1.0)
+    axes[2].legend(fontsize=7, ncol=2)
+    figure.tight_layout()
+    figure.savefig(out / "curve.png", dpi=80)
+    pyplot.close(figure)
+
+
+def _columns(file: Path) -> dict[str, list[float]]:
+    """Returns the columns of a CSV file of numbers; nothing where there is no file."""
+    if not file.exists():
+        return {}
+    with file.open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    return {key: [float(row[key]) for row in rows] for key in (rows[0] if rows else ())}
+
+
+def _targets(batch: Batch) -> tuple[Tensor, Tensor]:
+    """Returns the true potentials of a batch and which of them count."""
+    return torch.from_numpy(batch.potentials), torch.from_numpy(batch.counts)
+
+
+def _append(file: Path, row: dict[str, Any]) -> None:
+    """Appends a row to a CSV file; the keys of the first row are its heading."""
+    new = not file.exists()
+    with file.open("a", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, list(row))
+        if new:
+            writer.writeheader()
+        writer.writerow(row)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))

@@ -1,0 +1,266 @@
+"""Trains the global policy of `semexp` in house plans with PPO (needs `pip install '.[train]'`).
+
+python tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 35 --seed 0 --out runs/semexp_0
+
+Plans are written by tools/export_plans.py. Every tenth house, by a hash of its name, is held back for
+tools/compare_explorers.py. The same command continues a killed run: `state.pt` holds weights, optimiser and progress.
+`train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import io
+import sys
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import torch
+from matplotlib.figure import Figure
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
+
+from sim import cli
+from sim.files import write_atomically
+from sim.interface import ConfigError
+from sim.plans.plan import read_plan
+from sim.reading import Count, Number, convert, reason_of
+from sim.twin.semexp import SemExpEnv
+from stubborn.exploration.semexp_net import NetConfig, save_weights
+from stubborn.segmentation.checkpoints import read_checkpoint
+
+try:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.callbacks import BaseCallback
+    from stable_baselines3.common.vec_env import DummyVecEnv
+except ImportError as error:
+    raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
+
+from tools.plan_split import split_plans
+from tools.semexp_policy import SemExpPolicy
+
+LAST_EPISODES = 300
+"""A row of the curve is a mean over so many episodes."""
+PLANS_IN_MEMORY = 256
+_KEYS = ("steps_to_first_sight", "gt_explored", "num_steps", "collisions")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Trains the global policy of semexp."""
+
+    plans: tuple[Path, ...]
+    """Folders of plans (tools/export_plans.py)."""
+    minutes: cli.Positive = 35.0
+    """Time of the training; that of earlier runs of the same folder counts."""
+    seed: cli.Seed = 0
+    """Seed of the network, of its exploration and of the episodes."""
+    out: cli.OutFolder = Path("runs/semexp")
+    """Folder of the run; an existing run is continued."""
+    beside: tuple[Path, ...] = ()
+    """Folders of other runs to draw into the curve."""
+    envs: cli.Count = 8
+    """Number of environments, all in this process."""
+    rollout: cli.Count = 32
+    """Long-term goals of each environment between two updates."""
+    batch: cli.Count = 64
+    """Long-term goals in a minibatch."""
+    epochs: cli.Count = 4
+    """Passes over the goals of an update."""
+    rate: cli.Positive = 1e-3
+    """Learning rate of Adam at the start; it falls to a tenth."""
+    discount: cli.Share = 0.95
+    """Discount from one long-term goal to the next."""
+    entropy: cli.NotNegative = 0.003
+    """Weight of the entropy of the policy in the loss."""
+    print_s: cli.NotNegative = 20.0
+    """Shortest time between two printed lines."""
+    save_s: cli.NotNegative = 120.0
+    """Shortest time between two writes of the state."""
+
+
+def main(args: Args) -> int:
+    """Trains; returns the exit status."""
+    plans, _ = split_plans(args.plans)
+    torch.set_num_threads(1)  # the network is small
+    run = Run(args, plans)
+    run.train()
+    print(f"wrote {args.out / 'semexp.safetensors'}: tools/compare_explorers.py compares it on the plans held back")
+    return 0
+
+
+class _Progress(msgspec.Struct):
+    """How far a run is, as `state.pt` holds it."""
+
+    goals: Count
+    steps: Count
+    spent_s: Number
+
+
+class Run:
+    """The policy, the environments and the progress of one training."""
+
+    def __init__(self, args: Args, plans: Sequence[Path]) -> None:
+        self.args = args
+        self.net_config = NetConfig()
+        read = functools.lru_cache(PLANS_IN_MEMORY)(read_plan)
+        self.envs = DummyVecEnv([lambda: SemExpEnv(plans, view=self.net_config.view, read=read)] * args.envs)
+        self.goals = self.steps = 0
+        """Long-term goals and primitive steps so far."""
+        self.spent_s = 0.0
+        args.out.mkdir(parents=True, exist_ok=True)
+        self.ppo = PPO(
+            SemExpPolicy, self.envs, n_steps=args.rollout, batch_size=args.batch, n_epochs=args.epochs,
+            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.9, ent_coef=args.entropy, clip_range=0.2,
+            vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
+        )  # fmt: skip
+        self._resume()
+        self.envs.seed(args.seed * 1_000_003 + self.goals)
+
+    @property
+    def policy(self) -> SemExpPolicy:
+        """The policy of PPO."""
+        assert isinstance(self.ppo.policy, SemExpPolicy)
+        return self.ppo.policy
+
+    @property
+    def left_s(self) -> float:
+        """Seconds of training that are left."""
+        return 60.0 * self.args.minutes - self.spent_s
+
+    def train(self) -> None:
+        """Trains until the time is up."""
+        if self.left_s > 0:
+            self.ppo.learn(2**62, callback=_Watch(self), reset_num_timesteps=False)
+            self.save()
+        runs = [folder / "train.csv" for folder in (self.args.out, *self.args.beside)]
+        write_atomically(self.args.out / "curve.png", curves(runs))
+
+    def save(self) -> None:
+        """Writes the state and the weights; each file is replaced in one step."""
+        content, policy = io.BytesIO(), self.policy
+        progress = {"goals": self.goals, "steps": self.steps, "spent_s": self.spent_s}
+        torch.save(
+            {"net": policy.net.state_dict(), "optimiser": policy.optimizer.state_dict(), "progress": progress}, content
+        )
+        write_atomically(self.args.out / "state.pt", content.getvalue())
+        options = {key: [str(f) for f in v] if isinstance(v, tuple) else v for key, v in asdict(self.args).items()}
+        options["out"] = str(self.args.out)
+        card = {
+            **progress,
+            "plans": len(self.envs.get_attr("files")[0]),
+            "options": options,
+            "torch": torch.__version__,
+        }
+        save_weights(self.args.out / "semexp.safetensors", policy.net, card)
+
+    def _resume(self) -> None:
+        """Loads the state of the run, if there is one.
+
+        Raises:
+            ConfigError: the state is broken, or of another network.
+        """
+        file = self.args.out / "state.pt"
+        if not file.exists():
+            return
+        content = read_checkpoint(file)
+        progress = convert(content.get("progress"), _Progress, where=f"The state '{file}' of the run")
+        policy = self.policy
+        try:
+            policy.net.load_state_dict(content["net"])
+            policy.optimizer.load_state_dict(content["optimiser"])
+        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
+            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
+        self.goals, self.steps, self.spent_s = progress.goals, progress.steps, progress.spent_s
+        print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
+
+    def _rate(self, _: float) -> float:
+        """Returns the learning rate, which falls with the time."""
+        share = min(self.spent_s / (60.0 * self.args.minutes), 1.0)
+        return self.args.rate * (1.0 - 0.9 * share)
+
+
+class _Watch(BaseCallback):
+    """Counts, writes a row of the curve for each update, prints by the clock, and stops when the time is up."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__()
+        self.run = run
+        self._episodes: deque[dict[str, float]] = deque(maxlen=LAST_EPISODES)
+        self._before = np.zeros(run.args.envs, np.int64)
+        self._returns = np.zeros(run.args.envs)
+        self._began_s = time.perf_counter() - run.spent_s
+        self._printed_s = self._saved_s = self._last_s = time.perf_counter()
+        self._last_steps = run.steps
+
+    def _on_step(self) -> bool:
+        infos, dones = self.locals["infos"], self.locals["dones"]
+        self._returns += self.locals["rewards"]
+        now = np.array([info["num_steps"] for info in infos])
+        self.run.steps += int((now - self._before).sum())
+        self.run.goals += len(infos)
+        for number in np.flatnonzero(dones):
+            ended = {key: float(infos[number][key]) for key in _KEYS}
+            self._episodes.append(ended | {"return": float(self._returns[number])})
+        self._returns[dones] = 0.0
+        self._before = np.where(dones, 0, now)
+        self.run.spent_s = time.perf_counter() - self._began_s
+        return self.run.left_s > 0
+
+    def _on_rollout_end(self) -> None:
+        now_s, run, logged = time.perf_counter(), self.run, self.model.logger.name_to_value
+        rate = (run.steps - self._last_steps) / (now_s - self._last_s)
+        self._last_s, self._last_steps = now_s, run.steps
+        row = {"minutes": round(run.spent_s / 60, 2), "goals": run.goals, "steps": run.steps}
+        row |= {"steps_per_s": round(rate), "episodes": len(self._episodes)}
+        for name in ("return", *_KEYS):
+            row[name] = round(float(np.mean([each[name] for each in self._episodes])), 4) if self._episodes else ""
+        for name in ("entropy_loss", "value_loss", "explained_variance", "approx_kl"):  # of the update before
+            row[name] = round(float(logged.get(f"train/{name}", np.nan)), 4)
+        _append(run.args.out / "train.csv", row)
+        if now_s - self._printed_s >= run.args.print_s:
+            self._printed_s = now_s
+            print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+        if now_s - self._saved_s >= run.args.save_s:
+            self._saved_s = now_s
+            run.save()
+
+
+def _append(file: Path, row: dict[str, Any]) -> None:
+    """Appends a row to a CSV file, which begins with the names of the columns."""
+    fresh = not file.exists()
+    with file.open("a", newline="", encoding="utf-8") as stream:
+        table = csv.DictWriter(stream, list(row))
+        if fresh:
+            table.writeheader()
+        table.writerow(row)
+
+
+def curves(files: Sequence[Path]) -> bytes:
+    """Returns a PNG of training curves: mean steps to first sight over primitive steps."""
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.subplots()
+    for file in files:
+        if not file.is_file():
+            continue
+        with file.open(newline="", encoding="utf-8") as stream:
+            rows = [row for row in csv.DictReader(stream) if int(row["episodes"]) >= LAST_EPISODES // 3]
+        steps = [int(row["steps"]) / 1e6 for row in rows]
+        axes.plot(steps, [float(row["steps_to_first_sight"]) for row in rows], label=file.parent.name)
+    axes.set(xlabel="primitive steps of the training, millions", ylabel="mean steps to first sight")
+    axes.grid(alpha=0.3)
+    axes.legend()
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=100)
+    return content.getvalue()
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))
