@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from sim import cli
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.twin.potential_files import Batch, SampleSet, held_back
-from sim.twin.potentials import SampleConfig
 from stubborn.exploration.patches import LAYERS
 from stubborn.exploration.poni_net import SHIPPED, Predictor, load_poni
 
@@ -53,9 +52,11 @@ def main(args: Args) -> int:
     rng = np.random.default_rng(args.seed)
     maps = []
     for file in rng.permutation(np.array([str(file) for file in files])).tolist():
-        maps += _interesting(SampleSet.read([Path(file)], SampleConfig()), rng)
+        maps += _interesting(SampleSet.read([Path(file)]), rng)
         if len(maps) == args.count:
             break
+    if not maps:
+        raise ConfigError(f"No map in '{args.samples}' has frontiers that differ enough.")
     draw(maps, predictor, args.out)
     return 0
 
@@ -66,7 +67,7 @@ def _interesting(samples: SampleSet, rng: np.random.Generator) -> list[tuple[Bat
         batch = samples.batch([number])
         spread = (batch.potentials.max(axis=0) - batch.potentials.min(axis=0)) * batch.counts[0]
         goals = np.flatnonzero(spread[1:] >= LEAST_SPREAD)
-        if goals.size and spread[0] >= LEAST_SPREAD:
+        if goals.size:
             return [(batch, int(rng.choice(goals)))]
     return []
 
@@ -82,10 +83,10 @@ def draw(maps: Sequence[tuple[Batch, int]], predictor: Predictor, out: Path) -> 
     import matplotlib
 
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import colors, pyplot
 
-    figure, axes = pyplot.subplots(4, len(maps), figsize=(2.05 * len(maps), 8.2), squeeze=False)
-    dots = None
+    figure, axes = pyplot.subplots(4, len(maps), figsize=(1.75 * len(maps), 7.4), squeeze=False)
+    dots, norm = None, colors.PowerNorm(0.5, 0.0, 1.0)  # most potentials are small
     for column, (batch, goal) in zip(axes.T, maps, strict=True):
         cells = batch.channels.shape[-1]
         rows, cols = np.divmod(batch.cell, cells)
@@ -97,15 +98,16 @@ def draw(maps: Sequence[tuple[Batch, int]], predictor: Predictor, out: Path) -> 
         robot = np.argwhere(batch.channels[0, LAYERS.index("robot")])[0]
         for axis, value, title in zip(column, values, titles, strict=True):
             axis.imshow(image, origin="lower", interpolation="nearest")
-            dots = axis.scatter(cols, rows, c=value, cmap="plasma", vmin=0.0, vmax=1.0, s=5, linewidths=0)
+            dots = axis.scatter(cols, rows, c=value, cmap="plasma", norm=norm, s=6, linewidths=0)
             axis.plot(robot[1], robot[0], marker="*", color="tab:green", markersize=8)
             axis.set_title(title, fontsize=8)
             axis.set(xlim=limits[1], ylim=limits[0], xticks=[], yticks=[])
-    figure.tight_layout(pad=0.4)
+    figure.tight_layout(pad=0.3)
     if dots is not None:
-        figure.colorbar(dots, ax=axes, fraction=0.012, pad=0.01)
+        bar = figure.colorbar(dots, ax=axes, fraction=0.012, pad=0.01, ticks=[0.0, 0.1, 0.25, 0.5, 1.0])
+        bar.ax.tick_params(labelsize=7)
     out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=72, format="png")
+    figure.savefig(out, dpi=72, format="png", bbox_inches="tight", pad_inches=0.05)
     pyplot.close(figure)
 
 

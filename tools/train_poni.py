@@ -52,6 +52,8 @@ OBJECT_WEIGHT = 5.0
 """Weight of the mean loss over the goal categories; that of the area has 1."""
 AVERAGE = 0.998
 """Decay per step of the average of the weights."""
+SMOOTHED_ROWS = 8
+"""Rows of `train.csv` of a running mean in the picture."""
 MAX_GRADIENT_NORM = 5.0
 
 
@@ -182,6 +184,7 @@ class Trainer:
                 saved_s = time.perf_counter()
         self._evaluate()
         self._save_state()
+        draw_curve(self.args.out)
 
     def _batches(self) -> Iterator[Batch]:
         """Yields batches without end; those of a step depend on seed and step only."""
@@ -242,11 +245,10 @@ class Trainer:
             flush=True,
         )
         total = float(mean[0] + OBJECT_WEIGHT * mean[1])
-        if total <= progress.best or (count == 0 and not (self.args.out / "poni.safetensors").exists()):
+        if total < progress.best:
             progress.best = total
             options = {key: str(value) for key, value in asdict(self.args).items()}
             save_poni(self.args.out / "poni.safetensors", model, {"val": row, "options": options, "plans": self.plans})
-        draw_curve(self.args.out)
 
     def _log(self, losses: Sequence[tuple[float, float]]) -> None:
         """Writes a row of the training curve."""
@@ -291,13 +293,13 @@ def draw_curve(out: Path) -> None:
     figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.2))
     for axis, name in zip(axes, ("area", "objects"), strict=False):
         if train:
-            axis.plot(train["minutes"], train[name], color="0.7", linewidth=0.8, label="training")
+            kernel = np.ones(min(SMOOTHED_ROWS, len(train[name])))
+            mean = np.convolve(train[name], kernel / kernel.size, mode="valid")
+            axis.plot(train["minutes"][kernel.size - 1 :], mean, color="0.6", label="training, running mean")
         axis.plot(val["minutes"], val[name], color="C0", label="held-back plans")
         axis.set_title(f"cross entropy of the {name.removesuffix('s')} potential", fontsize=9)
         axis.set_xlabel("minutes")
         axis.legend(fontsize=8)
-        if train:
-            axis.set_ylim(0.95 * min(val[name]), np.quantile(train[name], 0.98))
     for number, name in enumerate(("area", "objects")):
         for kind, style in (("predicted", "-"), ("nearest", "--"), ("random", ":")):
             label = f"{name.removesuffix('s')}: {kind}"

@@ -4,7 +4,8 @@ python tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --m
 
 Plans are written by tools/export_plans.py. Every tenth house, by a hash of its name, is held back for
 tools/compare_explorers.py. The same command continues a killed run: `state.pt` holds weights, optimiser and progress.
-`train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far.
+`train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far, `start.safetensors` those at the
+start.
 """
 
 from __future__ import annotations
@@ -60,6 +61,8 @@ class Args:
     """Folders of plans (tools/export_plans.py)."""
     minutes: cli.Positive = 35.0
     """Time of the training; that of earlier runs of the same folder counts."""
+    goals: cli.Count = 10_000_000
+    """Most long-term goals of the training, all environments together."""
     seed: cli.Seed = 0
     """Seed of the network, of its exploration and of the episodes."""
     out: cli.OutFolder = Path("runs/semexp")
@@ -68,17 +71,17 @@ class Args:
     """Folders of other runs to draw into the curve."""
     envs: cli.Count = 8
     """Number of environments, all in this process."""
-    rollout: cli.Count = 32
+    rollout: cli.Count = 64
     """Long-term goals of each environment between two updates."""
-    batch: cli.Count = 64
+    batch: cli.Count = 128
     """Long-term goals in a minibatch."""
     epochs: cli.Count = 4
     """Passes over the goals of an update."""
     rate: cli.Positive = 1e-3
     """Learning rate of Adam at the start; it falls to a tenth."""
-    discount: cli.Share = 0.95
+    discount: cli.Share = 0.9
     """Discount from one long-term goal to the next."""
-    entropy: cli.NotNegative = 0.003
+    entropy: cli.NotNegative = 0.001
     """Weight of the entropy of the policy in the loss."""
     print_s: cli.NotNegative = 20.0
     """Shortest time between two printed lines."""
@@ -118,10 +121,11 @@ class Run:
         args.out.mkdir(parents=True, exist_ok=True)
         self.ppo = PPO(
             SemExpPolicy, self.envs, n_steps=args.rollout, batch_size=args.batch, n_epochs=args.epochs,
-            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.9, ent_coef=args.entropy, clip_range=0.2,
+            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.8, ent_coef=args.entropy, clip_range=0.2,
             vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
         )  # fmt: skip
-        self._resume()
+        if not self._resumed():
+            save_weights(args.out / "start.safetensors", self.policy.net)
         self.envs.seed(args.seed * 1_000_003 + self.goals)
 
     @property
@@ -131,13 +135,13 @@ class Run:
         return self.ppo.policy
 
     @property
-    def left_s(self) -> float:
-        """Seconds of training that are left."""
-        return 60.0 * self.args.minutes - self.spent_s
+    def is_over(self) -> bool:
+        """Whether the time is up or the goals are used."""
+        return self.spent_s >= 60.0 * self.args.minutes or self.goals >= self.args.goals
 
     def train(self) -> None:
         """Trains until the time is up."""
-        if self.left_s > 0:
+        if not self.is_over:
             self.ppo.learn(2**62, callback=_Watch(self), reset_num_timesteps=False)
             self.save()
         runs = [folder / "train.csv" for folder in (self.args.out, *self.args.beside)]
@@ -161,15 +165,15 @@ class Run:
         }
         save_weights(self.args.out / "semexp.safetensors", policy.net, card)
 
-    def _resume(self) -> None:
-        """Loads the state of the run, if there is one.
+    def _resumed(self) -> bool:
+        """Loads the state of the run, and returns whether there is one.
 
         Raises:
             ConfigError: the state is broken, or of another network.
         """
         file = self.args.out / "state.pt"
         if not file.exists():
-            return
+            return False
         content = read_checkpoint(file)
         progress = convert(content.get("progress"), _Progress, where=f"The state '{file}' of the run")
         policy = self.policy
@@ -180,6 +184,7 @@ class Run:
             raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
         self.goals, self.steps, self.spent_s = progress.goals, progress.steps, progress.spent_s
         print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
+        return True
 
     def _rate(self, _: float) -> float:
         """Returns the learning rate, which falls with the time."""
@@ -212,7 +217,7 @@ class _Watch(BaseCallback):
         self._returns[dones] = 0.0
         self._before = np.where(dones, 0, now)
         self.run.spent_s = time.perf_counter() - self._began_s
-        return self.run.left_s > 0
+        return not self.run.is_over
 
     def _on_rollout_end(self) -> None:
         now_s, run, logged = time.perf_counter(), self.run, self.model.logger.name_to_value

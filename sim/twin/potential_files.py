@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sim.errors import ConfigError
 from sim.files import write_atomically
 from sim.interface import GOAL_CATEGORIES
-from sim.reading import reason_of, require_small_zip
+from sim.reading import convert, reason_of, require_small_zip
 from sim.twin.potentials import Sample, SampleConfig
 from stubborn.exploration.patches import LAYERS
 
@@ -115,14 +115,24 @@ class SampleSet:
         self._targets = np.argsort(self._sources, axis=1)
 
     @classmethod
-    def read(cls, files: Sequence[Path], config: SampleConfig) -> SampleSet:
+    def read(cls, files: Sequence[Path], config: SampleConfig | None = None) -> SampleSet:
         """Returns the samples of some files; those without samples are skipped.
+
+        Args:
+            files: as `write_samples` writes them.
+            config: the configuration that all must have; by default that of the first one.
 
         Raises:
             ConfigError: a file is broken, is of another configuration, or there is no sample at all.
         """
-        parts = [part for file in files if (part := _read(file, config)) is not None]
-        if not parts:
+        parts = []
+        for file in files:
+            stored, part = _read(file)
+            if stored != (config := config or stored):
+                changed = ", ".join(key for key, value in asdict(config).items() if asdict(stored)[key] != value)
+                raise ConfigError(f"'{file}' was made with other options ({changed}); take another --samples folder.")
+            parts += [part] if "masks" in part else []
+        if not parts or config is None:
             raise ConfigError(f"There is no sample in {len(files)} files.")
         names = (*_OF_SAMPLES, *_OF_GOAL_CELLS, *_OF_FRONTIERS)
         arrays = {name: np.concatenate([part[name] for part in parts]) for name in names}
@@ -175,21 +185,16 @@ class SampleSet:
         )
 
 
-def _read(file: Path, config: SampleConfig) -> dict[str, NDArray] | None:
-    """Returns the arrays of a file, or None when it holds no sample."""
+def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
+    """Returns the configuration and the arrays of a file; without samples it has no `masks`."""
     try:
         require_small_zip(file, what="the file", most=MAX_FILE_BYTES, error=ConfigError)
         with np.load(file, allow_pickle=False) as content:
-            stored = json.loads(str(content["header"]))["config"]
+            header = json.loads(str(content["header"]))
             arrays = {name: np.asarray(content[name]) for name in content.files if name != "header"}
+        return convert(header["config"], SampleConfig, where=f"The samples '{file}'"), arrays
     except (OSError, LookupError, ValueError, TypeError, EOFError, SyntaxError) as error:
         raise ConfigError(f"'{file}' holds no samples of tools/train_poni.py: {reason_of(error)}.") from None
-    if stored != asdict(config):
-        changed = sorted(key for key, value in asdict(config).items() if stored.get(key) != value)
-        raise ConfigError(
-            f"'{file}' was made with other options ({', '.join(changed)}); take another --samples folder."
-        )
-    return arrays if "masks" in arrays else None
 
 
 def _as_bytes(share: Float32[np.ndarray, ...]) -> NDArray[np.uint8]:

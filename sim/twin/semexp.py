@@ -38,10 +38,14 @@ class RewardConfig:
 
     per_metre: float = 0.1
     """Reward for each metre by which the path to the target became shorter."""
-    per_m2: float = 0.02
-    """Reward for each square metre of floor that was never in view before, as in the published code."""
+    per_m2: float = 0.05
+    """Reward for each square metre of floor that was never in view before; the published code has such a term, too."""
+    per_25_steps: float = -0.2
+    """Reward for 25 primitive actions: about minus what a random policy gets for new floor meanwhile."""
     rest_at_sight: bool = True
     """True: the step that sees the target is also given the rest of the path, which the agent then drives by itself."""
+    at_sight: float = 0.5
+    """Reward for seeing the target."""
 
 
 class SemExpEnv(TwinEnv):
@@ -53,8 +57,8 @@ class SemExpEnv(TwinEnv):
     ## Observations
     A dict of float32: `near`, `far` (cells, cells) and `near_goals`, `far_goals` (goal_cells, goal_cells), whole
     numbers whose bits are layers; `heading` (2,); `goal` (1,), the index of the goal category. They are those of
-    `stubborn.exploration.semexp_input.PolicyInput`. Only for the critic of a training: `truth` (3,), the path to the
-    target in 10 m, the floor never seen in 100 m2, and the share of the steps that is left.
+    `stubborn.exploration.semexp_input.PolicyInput`. Only for the critic of a training: `truth` (3,), as
+    `stubborn.exploration.semexp_net.TRUTH` says.
 
     ## Reward, end, info
     As `RewardConfig` says; the episode ends at first sight of the target or after `max_steps`. The rest is as in
@@ -108,13 +112,15 @@ class SemExpEnv(TwinEnv):
 
     def step(self, action: Any) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Drives towards a goal cell; see the class."""
-        before_m2 = self.episode.camera.area_seen_m2
+        before_m2, before_steps = self.episode.camera.area_seen_m2, self.episode.num_steps
         observation, progress_m, terminated, truncated, info = super().step(action)
         rest_m = self.episode.distance_m()
         if terminated and self.reward.rest_at_sight and math.isfinite(rest_m):
             progress_m += rest_m
         shown_m2 = self.episode.camera.area_seen_m2 - before_m2
-        reward = self.reward.per_metre * progress_m + self.reward.per_m2 * shown_m2
+        spent = (self.episode.num_steps - before_steps) / 25.0
+        reward = self.reward.per_metre * progress_m + self.reward.per_m2 * shown_m2 + self.reward.per_25_steps * spent
+        reward += self.reward.at_sight * terminated
         return observation, reward, terminated, truncated, info
 
     @property
@@ -143,4 +149,6 @@ class SemExpEnv(TwinEnv):
         path_m = episode.distance_m()
         unseen_m2 = max(self._floor_m2, episode.camera.area_seen_m2) - episode.camera.area_seen_m2
         left = 1.0 - episode.num_steps / episode.max_steps
-        return np.array([path_m / 10.0 if math.isfinite(path_m) else 0.0, unseen_m2 / 100.0, left], np.float32)
+        return np.array(
+            [path_m / 10.0 if math.isfinite(path_m) else 0.0, math.log1p(unseen_m2 / 20.0), left], np.float32
+        )

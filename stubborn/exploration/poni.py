@@ -55,6 +55,8 @@ class PoniConfig:
     """Shorter frontiers come last: the robot would hardly fit through."""
     own_known_m: float = 1.0
     """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
+    detour_m: float = 2.0
+    """A frontier is given up when the path to it becomes this much longer than it was: a wall came into view."""
     arrived_m: float = 0.35
     """A frontier is reached within this length of path."""
     spent_m: float = 0.60
@@ -124,6 +126,7 @@ class PoniExplorer:
         self._other = int(rng.integers(1, len(GOAL_CATEGORIES)))
         self._goal: MapCells | None = None
         self._age_steps = 0
+        self._path_m = 0.0
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
@@ -160,6 +163,9 @@ class PoniExplorer:
         if route is not None and route.length_m <= self.config.arrived_m:
             self._spend(known.window, pose)
             return None
+        if route is not None and route.length_m > self._path_m + self.config.detour_m:
+            return None
+        self._path_m = self._path_m if route is None else min(self._path_m, route.length_m)
         return route
 
     def _to_best(self, known: Frontiers, ground: Ground) -> Search:
@@ -176,6 +182,7 @@ class PoniExplorer:
                     self._spend(known.window, ground.pose)
                 else:
                     self._goal, self._age_steps = MapCells.of(piece, known.window), 0
+                    self._path_m = route.length_m
                     return route
         self._goal = None
         return None

@@ -27,8 +27,16 @@ _MOST = 512
 MAX_WEIGHT = 1e6
 _FASTER = 8.0
 """Factor of the shares that the last convolution gets, by which their weights are learned faster."""
+_START = {
+    GEOMETRY.index("frontier"): 4.0,
+    GEOMETRY.index("seen"): -3.0,
+    2 * len(GEOMETRY): 3.0,
+    2 * len(GEOMETRY) + 2: 2.0,
+}
+"""Logits at the start of the training for a goal cell that is all frontier, all seen, 6 m ahead, 6 m away: a policy
+that goes on into unseen ground. PPO with few steps does not get away from random goals by itself."""
 TRUTH = ("path to the target", "floor never seen", "steps left")
-"""What the value is told besides the input of the policy: in units of 10 m, of 100 m2, and as a share."""
+"""What the value is told besides the input of the policy: in 10 m, as log(1 + m2 / 20), and as a share of all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,8 +96,11 @@ class SemExpNet(nn.Module):
         for layer, gain in ((self.logit, 0.3), (self.value, 0.3), (self.prior, 0.0)):
             nn.init.orthogonal_(layer.weight, gain)
             nn.init.zeros_(layer.bias)  # pyright: ignore[reportArgumentType]
-        with torch.no_grad():  # about what a random policy gets of the reward that is left
-            self.prior.weight[0, :2] = torch.tensor([0.6, 0.4])
+        with torch.no_grad():
+            self.logit.weight[0, width:, 0, 0] = 0.0
+            for number, start in _START.items():
+                self.logit.weight[0, width + number, 0, 0] = start / _FASTER
+            self.prior.weight[0] = torch.tensor([0.7, 0.2, 0.0])  # about what a random policy gets of the reward
         self.register_buffer("bits", torch.arange(32, dtype=torch.int32).view(1, 32, 1, 1), persistent=False)
         self.register_buffer("blend", _blend(config), persistent=False)
         self.register_buffer("offset", _offsets(config), persistent=False)

@@ -6,6 +6,7 @@ import csv
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 import torch
@@ -16,13 +17,16 @@ from sim.plans.plan import write_plan
 from sim.twin.potential_files import held_back
 from stubborn.exploration.poni_net import CHANNELS, Predictor, load_poni
 from tests.helpers.worlds import room, with_box
+from tools import draw_potentials
 from tools.train_poni import Args, loss_of, main
 
 
 @pytest.fixture
 def plans(tmp_path: Path) -> Path:
-    """Two plans of the same room, of which one is held back."""
-    house = with_box(room(7, 4), "bed_00", centre_m=(2.4, 0.8, 0.3), half_m=(0.9, 0.9, 0.3))
+    """Two plans of the same three rooms, of which one is held back."""
+    house = with_box(room(14, 5), "toilet_00", centre_m=(6.3, 1.8, 0.3), half_m=(0.3, 0.3, 0.3))
+    house = with_box(house, "wall_10", centre_m=(-1.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
+    house = with_box(house, "wall_11", centre_m=(3.0, -1.2, 1.25), half_m=(0.05, 1.3, 1.25))
     (plan,) = export_plans(house, {})
     names = [f"house_{number}" for number in range(40)]
     chosen = [next(name for name in names if held_back(Path(f"{name}.npz")) == back) for back in (False, True)]
@@ -39,7 +43,7 @@ def rows(file: Path) -> list[dict[str, str]]:
 def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     tmp_path: Path, plans: Path, capsys: pytest.CaptureFixture[str]
 ):
-    options = {"plans": (plans,), "out": tmp_path / "out", "walks": 1, "maps": 3, "most_steps": 20, "batch": 2}
+    options = {"plans": (plans,), "out": tmp_path / "out", "walks": 2, "maps": 3, "most_steps": 30, "batch": 2}
     assert main(Args(**options, minutes=0.005)) == 0  # type: ignore[arg-type]
     out = tmp_path / "out"
     model, metadata = load_poni(out / "poni.safetensors")
@@ -51,6 +55,13 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     assert (out / "curve.png").stat().st_size > 1000
     samples = {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()}
     assert len(samples) == 2
+
+    picture = tmp_path / "picture.png"
+    draw = draw_potentials.Args(samples=out / "samples", weights=out / "poni.safetensors", out=picture)
+    assert draw_potentials.main(draw) == 0
+    assert np.asarray(cv2.imread(str(picture))).std() > 10.0
+    with pytest.raises(ConfigError, match="No samples of a held-back plan"):
+        draw_potentials.main(replace(draw, samples=tmp_path))
 
     capsys.readouterr()
     assert main(Args(**options, minutes=0.01)) == 0  # type: ignore[arg-type]

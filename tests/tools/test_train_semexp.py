@@ -37,7 +37,7 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 def options(plans: Path, out: Path, **changes: object) -> train_semexp.Args:
-    small = {"envs": 2, "rollout": 4, "batch": 4, "epochs": 1, "print_s": 0.0, "minutes": 0.01, **changes}
+    small = {"envs": 2, "rollout": 4, "batch": 4, "epochs": 1, "print_s": 0.0, "goals": 17, **changes}
     return train_semexp.Args(plans=(plans,), out=out, **small)  # type: ignore[arg-type]
 
 
@@ -49,9 +49,10 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     first = rows(out / "train.csv")
     assert int(first[-1]["goals"]) >= 8
     assert int(first[-1]["steps"]) >= int(first[-1]["goals"])
-    before = load_weights(out / "semexp.safetensors").state_dict()
+    before, start = (load_weights(out / f"{name}.safetensors").state_dict() for name in ("semexp", "start"))
+    assert any((before[name] != start[name]).any() for name in before)
     assert "goals 8" in capsys.readouterr().out
-    assert train_semexp.main(options(plans, out, minutes=0.02)) == 0
+    assert train_semexp.main(options(plans, out, goals=33)) == 0
     again = rows(out / "train.csv")
     assert again[: len(first)] == first
     assert int(again[len(first)]["goals"]) > int(first[-1]["goals"])
@@ -59,7 +60,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     after = load_weights(out / "semexp.safetensors").state_dict()
     assert any((after[name] != before[name]).any() for name in before)
     assert SemExpConfig(weights=str(out / "semexp.safetensors")).make(SMALL_CAMERA).view.cells == 60
-    assert train_semexp.main(options(plans, out, minutes=0.02, beside=(tmp_path / "none",))) == 0
+    assert train_semexp.main(options(plans, out, goals=33, beside=(tmp_path / "none",))) == 0
     assert rows(out / "train.csv") == again
     assert (out / "curve.png").read_bytes()[:4] == b"\x89PNG"
 

@@ -58,8 +58,8 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     assert terminated
     assert info["first_seen_step"] == info["num_steps"] > 0
     seen_m2 = env.episode.camera.area_seen_m2 - before_m2
-    assert total == pytest.approx(0.1 * first_m + 0.02 * seen_m2)
-    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, rest_at_sight=False))
+    assert total == pytest.approx(0.1 * first_m + 0.05 * seen_m2 - 0.2 * info["num_steps"] / 25 + 0.5)
+    plain = SemExpEnv(plans, reward=RewardConfig(per_m2=0.0, per_25_steps=0.0, rest_at_sight=False, at_sight=0.0))
     plain.reset(seed=0, options=START)
     before = plain.episode.distance_m()
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
