@@ -77,7 +77,7 @@ class Args:
     """Long-term goals in a minibatch."""
     epochs: cli.Count = 4
     """Passes over the goals of an update."""
-    rate: cli.Positive = 1e-3
+    rate: cli.Positive = 2e-3
     """Learning rate of Adam at the start; it falls to a tenth."""
     discount: cli.Share = 0.9
     """Discount from one long-term goal to the next."""
@@ -183,6 +183,7 @@ class Run:
         except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
             raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
         self.goals, self.steps, self.spent_s = progress.goals, progress.steps, progress.spent_s
+        _cut(self.args.out / "train.csv", self.goals)
         print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
         return True
 
@@ -246,6 +247,15 @@ def _append(file: Path, row: dict[str, Any]) -> None:
         if fresh:
             table.writeheader()
         table.writerow(row)
+
+
+def _cut(file: Path, goals: int) -> None:
+    """Removes the rows of the curve that are later than the state of the run."""
+    if file.is_file():
+        heading, *lines = file.read_text(encoding="utf-8").splitlines()
+        column = heading.split(",").index("goals")
+        kept = [line for line in lines if int(line.split(",")[column]) <= goals]
+        write_atomically(file, "".join(f"{line}\n" for line in (heading, *kept)))
 
 
 def curves(files: Sequence[Path]) -> bytes:

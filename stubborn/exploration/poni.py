@@ -29,6 +29,7 @@ from stubborn.raster import connected, distance_to, large_parts
 if TYPE_CHECKING:
     from stubborn.exploration.poni_net import Predictor
 
+_MOVED_M = 0.05
 GoalKind = Literal["true", "wrong"]
 SemanticsKind = Literal["seen", "shuffled", "none"]
 
@@ -43,7 +44,7 @@ class PoniConfig:
     """Weight of the area potential; the object potential of the goal has the rest."""
     path_weight_per_m: float = 0.0
     """The score of a frontier falls by this for each metre of path to it; 0: as in the reference."""
-    replan_steps: int = 10
+    replan_steps: int = 25
     """The potentials are predicted again after this many steps, and when a frontier is done with."""
     goal: GoalKind = "true"
     """Category whose object potential counts; `wrong`: another one, drawn for each episode, as a control."""
@@ -57,6 +58,8 @@ class PoniConfig:
     """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
     detour_m: float = 2.0
     """A frontier is given up when the path to it becomes this much longer than it was: a wall came into view."""
+    stalled_steps: int = 10
+    """A frontier is given up when the robot has not moved for this many steps: it cannot leave its place that way."""
     arrived_m: float = 0.35
     """A frontier is reached within this length of path."""
     spent_m: float = 0.60
@@ -69,8 +72,11 @@ class PoniConfig:
             raise ConfigError(f"PoniConfig.alpha must lie in [0, 1], got {self.alpha}.")
         if self.path_weight_per_m < 0.0:
             raise ConfigError(f"PoniConfig.path_weight_per_m must be >= 0, got {self.path_weight_per_m}.")
-        if self.replan_steps < 1:
-            raise ConfigError(f"PoniConfig.replan_steps must be >= 1, got {self.replan_steps}.")
+        if min(self.replan_steps, self.stalled_steps) < 1:
+            raise ConfigError(
+                f"PoniConfig needs replan_steps and stalled_steps >= 1, got {self.replan_steps} and "
+                f"{self.stalled_steps}."
+            )
         if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
             raise ConfigError(f"PoniConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m.")
 
@@ -127,6 +133,8 @@ class PoniExplorer:
         self._goal: MapCells | None = None
         self._age_steps = 0
         self._path_m = 0.0
+        self._still_steps = 0
+        self._last_pose: Pose | None = None
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
@@ -156,6 +164,12 @@ class PoniExplorer:
     def _go_on(self, known: Frontiers, pose: Pose) -> Search:
         """Returns the route to the rest of the frontier pursued; None when it is done with, or after some steps."""
         self._age_steps += 1
+        moved = self._last_pose is None or pose.distance_to(self._last_pose) > _MOVED_M
+        self._still_steps = 0 if moved else self._still_steps + 1
+        self._last_pose = pose
+        if self._goal is not None and self._still_steps >= self.config.stalled_steps:
+            self._spent[self._goal.rows, self._goal.cols] = True
+            self._goal, self._still_steps = None, 0
         if self._goal is None or self._age_steps > self.config.replan_steps:
             return None
         open_cells = known.cells & ~self._spent[known.window.index]

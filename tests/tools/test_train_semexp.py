@@ -52,6 +52,8 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     before, start = (load_weights(out / f"{name}.safetensors").state_dict() for name in ("semexp", "start"))
     assert any((before[name] != start[name]).any() for name in before)
     assert "goals 8" in capsys.readouterr().out
+    with (out / "train.csv").open("a") as stream:  # a row that was written after the state
+        stream.write(",".join("9999" for _ in first[0]) + "\n")
     assert train_semexp.main(options(plans, out, goals=33)) == 0
     again = rows(out / "train.csv")
     assert again[: len(first)] == first

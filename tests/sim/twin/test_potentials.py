@@ -17,7 +17,8 @@ from sim.plans.plan import Plan
 from sim.plans.sight import PlanCamera
 from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, write_samples
-from sim.twin.potentials import Sample, SampleConfig, Truth, area_potential, explore, reachable, sample_of, samples_of
+from sim.twin.potentials import Sample, SampleConfig, Truth, area_potential, sample_of, samples_of
+from sim.twin.walks import explore, reachable
 from stubborn.exploration.patches import LAYERS
 from stubborn.navmap import NavMap
 from stubborn.raster import distance_to

@@ -104,6 +104,14 @@ def test_a_frontier_is_judged_again_when_a_wall_makes_the_path_long():
         assert len(slopes.shown) == times
 
 
+def test_a_frontier_is_given_up_when_the_robot_does_not_leave_its_place():
+    explore, _ = explorer(alpha=0.1, replan_steps=99, stalled_steps=5, piece_m=3.0)
+    navmap = corridor()
+    for _ in range(5):
+        assert goal_x_m(explore, navmap) > 3.0
+    assert goal_x_m(explore, navmap) < -3.0
+
+
 def test_a_frontier_that_was_reached_is_done_with():
     explore, _ = explorer(alpha=0.1)
     navmap = corridor()
