@@ -5,7 +5,8 @@ python tools/compare_explorers.py --plans runs/plans/train runs/plans/large_trai
 
 The whole agent plays, with an exact camera and a map as in the real environment; an episode ends with the first frame
 that shows the target, or after 500 steps. All explorers play the same episodes, in the houses that
-tools/train_semexp.py holds back. Intervals are from 2000 bootstrap samples of the houses.
+tools/train_semexp.py holds back; tools/train_poni.py holds back others (--houses held-back-poni). Intervals are from
+2000 bootstrap samples of the houses.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from sim.plans.episode import draw_goal_and_start
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
 from sim.reading import convert
+from sim.twin import potential_files
 from sim.twin.agent import TwinAgent, play, twin_config
 from stubborn.agent import AgentConfig
 from stubborn.agents import EXPLORERS
@@ -53,7 +55,8 @@ class Args:
     weights: Path | None = None
     """File of weights of semexp; None: those that ship."""
     houses: str = "held-back"
-    """held-back: those that tools/train_semexp.py does not train on; trained: the others; all."""
+    """held-back: those that tools/train_semexp.py does not train on; trained: the others; held-back-poni: those that
+    tools/train_poni.py does not train on; all."""
     episodes: cli.Count = 100
     """Number of episodes."""
     seed: cli.Seed = 0
@@ -145,7 +148,9 @@ def _resampled(houses: Sequence[str], values: NDArray[np.float64]) -> NDArray[np
 def _plans(args: Args) -> list[Path]:
     """Returns the plans of the houses that are asked for."""
     trained, held_back = split_plans(args.plans)
-    parts = {"held-back": held_back, "trained": trained, "all": sorted(trained + held_back)}
+    every = sorted(trained + held_back)
+    of_poni = [file for file in every if potential_files.held_back(file)]
+    parts = {"held-back": held_back, "trained": trained, "held-back-poni": of_poni, "all": every}
     if args.houses not in parts:
         raise ConfigError(f"--houses must be one of {', '.join(parts)}, got '{args.houses}'.")
     if not parts[args.houses]:

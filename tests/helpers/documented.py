@@ -92,6 +92,7 @@ _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
+_PLANS = (f"{PYTHON} tools/export_plans.py --pool train --kind studio --houses 4 --out {{tmp}}/plans",)
 _EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 3"
 _VIEWS = (
     f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
@@ -216,6 +217,67 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/export_plans.py --split val --houses 1 --out {{tmp}}/plans",
         f"{_RUN} --semantics gt --record --episodes 1 --out {{tmp}}/real",
         f"{PYTHON} tools/check_twin.py --plans {{tmp}}/plans --runs {{tmp}}/real --explore --out {{tmp}}/lines.jsonl",
+    ),
+    # docs/learned_exploration.md
+    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
+        f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --kind studio --houses 1 --workers 1"
+        " --out {tmp}/plans",
+    ),
+    (
+        f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 5000 --houses 42 "
+        "--out runs/plans/large_train"
+    ): Only("a large house takes long; the command before it is tried with a small one"),
+    f"{_RUN} --agent semexp --semantics gt --episodes 5": (
+        f"{_RUN} --agent semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt --episodes 5": (
+        f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    (
+        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 16 --seed 0 "
+        "--out runs/semexp_0"
+    ): (
+        *_PLANS,
+        f"{PYTHON} tools/train_semexp.py --plans {{tmp}}/plans --minutes 0.05 --seed 0 --out {{tmp}}/semexp",
+    ),
+    **{
+        f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
+            f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} --episodes 1 "
+            "--out {tmp}/run",
+        )
+        for control in ("semantics=shuffled", "goal=wrong", "semantics=none")
+    },
+    (
+        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --episodes 200 "
+        "--explorers corners random-goals semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
+        "semexp:semantics=none"
+    ): (
+        *_PLANS,
+        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --explorers random-goals",
+    ),
+    (
+        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --houses held-back-poni "
+        "--episodes 72 --explorers frontier corners tour poni poni:goal=wrong poni:semantics=shuffled "
+        "poni:semantics=none"
+    ): (
+        *_PLANS,
+        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 "
+        "--explorers poni:goal=wrong",
+    ),
+    f"{PYTHON} tools/train_poni.py --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni": (
+        *_PLANS,
+        f"{PYTHON} tools/train_poni.py --plans {{tmp}}/plans --minutes 0.05 --out {{tmp}}/poni",
+    ),
+    f"{PYTHON} tools/draw_potentials.py --samples runs/poni/samples --out potentials.png": (
+        *_PLANS,
+        f"{PYTHON} tools/train_poni.py --plans {{tmp}}/plans --minutes 0.05 --out {{tmp}}/poni",
+        f"{PYTHON} tools/draw_potentials.py --samples {{tmp}}/poni/samples --out {{tmp}}/potentials.png",
+    ),
+    f"{_RUN} --agent poni --semantics gt": (
+        f"{_RUN} --agent poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
+        f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
