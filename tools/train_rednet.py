@@ -72,8 +72,8 @@ class Args:
     """Folders of shards to evaluate on."""
     out: cli.OutFolder
     """Folder of the run; an existing run is continued."""
-    size: str = "compact"
-    """Network: compact, compact-geometry, compact-both, published, unet or lite0."""
+    size: str | None = None
+    """Network: compact, compact-geometry, compact-both, published, unet, lite0. None: that of --init, else compact."""
     init: Path | None = None
     """Initial weights: a file of this tool, or a checkpoint of the published network. compact-both also takes those of
     compact, and starts with their output."""
@@ -159,7 +159,7 @@ class Trainer:
         if args.threads is not None:
             torch.set_num_threads(args.threads)
         torch.manual_seed(args.seed)
-        model, self.started_from = _network(args)
+        self.size, model, self.started_from = _network(args)
         self.model = model.to(self.device)
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(args.average), use_buffers=True)
@@ -335,7 +335,7 @@ class Trainer:
                 "average": self.average.state_dict(),
                 "optimiser": self.optimiser.state_dict(),
                 "progress": {"step": self.step, "spent_s": self.spent_s, "best": self.best, "total": self.total},
-                "size": self.args.size,
+                "size": self.size,
             },
             content,
         )
@@ -353,7 +353,7 @@ class Trainer:
         content = read_checkpoint(file, device=self.device)
         own = {key: content.get(key) for key in ("size", "progress")}
         state = convert(own, _State, where=f"The state '{file}' of the run")
-        if state.size != self.args.size:
+        if state.size != self.size:
             raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state.size}'; take another folder.")
         try:
             self.model.load_state_dict(content["model"])
@@ -372,20 +372,21 @@ def _all_shards(folders: Sequence[Path]) -> list[Path]:
     return [shard for folder in folders for shard in list_shards(folder)]
 
 
-def _network(args: Args) -> tuple[Network, dict[str, Any]]:
-    """Returns the network to train, and the metadata of its earlier training."""
+def _network(args: Args) -> tuple[str, Network, dict[str, Any]]:
+    """Returns the size of the network to train, the network, and the metadata of its earlier training."""
     if args.init is None:
-        network = build_network(NETWORKS[args.size])
+        size = args.size or "compact"
+        network = build_network(NETWORKS[size])
         if args.imagenet:
             load_imagenet(network)
-        return network, {}
+        return size, network, {}
     model, metadata = load_network(args.init)
-    wanted = NETWORKS[args.size]
     if args.size == "compact-both" and isinstance(model, RedNet) and model.config == NETWORKS["compact"]:
         model = with_geometry(model)
-    if model.config != wanted:
-        raise ConfigError(f"--init '{args.init}' is not of size '{args.size}'.")
-    return model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
+    size = next((name for name, config in NETWORKS.items() if config == model.config), None)
+    if size is None or args.size not in (None, size):
+        raise ConfigError(f"--init '{args.init}' is not of size '{args.size or ' or '.join(NETWORKS)}'.")
+    return size, model, {key: metadata[key] for key in ("step", "hours", "options", "started_from") if key in metadata}
 
 
 def _groups(model: Network, args: Args) -> list[dict[str, Any]]:
@@ -433,7 +434,7 @@ def _append(file: Path, row: dict[str, Any]) -> None:
 
 def _check(args: Args) -> None:
     """Raises ConfigError for arguments that are not allowed, or name no shards."""
-    if args.size not in NETWORKS:
+    if args.size is not None and args.size not in NETWORKS:
         raise ConfigError(f"--size must be one of {', '.join(NETWORKS)}, got '{args.size}'.")
     if args.precision not in ("auto", "bf16", "fp32"):
         raise ConfigError(f"--precision must be auto, bf16 or fp32, got '{args.precision}'.")

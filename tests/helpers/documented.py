@@ -465,11 +465,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
     f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
-    "--rare-share 0.15 --val-block-px 2 --rate 8e-4 --views views_small --val-views views_val --out runs/finer "
+    "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views views_small --val-views views_val --out runs/finer "
     "--hours 1": (
         _VIEWS,
         f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --whole-share 0.5 --focus-share 0.5 "
-        "--rare-share 0.15 --val-block-px 2 --rate 8e-4 --views {tmp}/views"
+        "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views {tmp}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
     f"{PYTHON} tools/compare_networks.py --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "

@@ -15,7 +15,8 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40_ID, ConfigError
-from stubborn.segmentation.checkpoints import load_network
+from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.networks import NETWORKS, build_network
 from stubborn.segmentation.rednet import COMPACT
 from tools.network_card import training_stages
 from tools.train_rednet import Args, main
@@ -104,6 +105,20 @@ def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp
     _, last = load_network(tmp_path / "finest/rednet.safetensors")
     folders = [stage["options"]["out"] for stage in training_stages(last)]
     assert folders == [str(tmp_path / name) for name in ("out", "finer", "finest")]
+    with pytest.raises(ConfigError, match="is not of size 'unet'"):
+        main(options(tmp_path, out=tmp_path / "other", init=first, size="unet"))
+
+
+def test_a_network_on_depth_is_trained_further_with_geometry_and_then_keeps_it(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3, rows_px=48)
+    write_views(tmp_path / "val", 2, rows_px=48)
+    first, both = tmp_path / "first.safetensors", NETWORKS["compact-both"]
+    save_network(first, build_network(COMPACT))
+    assert main(options(tmp_path, init=first, size="compact-both", steps=1)) == 0
+    assert load_network(tmp_path / "out/rednet.safetensors")[0].config == both
+    again = options(tmp_path, init=tmp_path / "out/rednet.safetensors", out=tmp_path / "again", steps=1)
+    assert main(again) == 0
+    assert load_network(tmp_path / "again/rednet.safetensors")[0].config == both
 
 
 def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> None:
