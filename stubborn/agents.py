@@ -99,7 +99,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             AgentConfig(explorer=SemExpConfig()),
         ),
         "poni": _stubborn_spec(
-            "stubborn that goes to the frontier with the highest predicted potential (Ramakrishnan et al. 2022)",
+            "stubborn that goes to the frontier with the best predicted potential (PONI, 2022)",
             AgentConfig(explorer=PoniConfig()),
         ),
         "random": AgentSpec(

@@ -394,8 +394,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py splits --splits val hazards --episodes 200 --workers 2 --agents stubborn "
         "'stubborn --config agent.planning.dilation_m=0.10' 'stubborn --explorer tour'"
     ): (
-        f"{PYTHON} tools/reproduce.py splits --splits val --episodes 1 --agents random "
+        f"{PYTHON} tools/reproduce.py splits --splits val --episodes 1 --workers 1 --agents random "
         "'stubborn --config agent.planning.dilation_m=0.10 task.max_steps=3' --out {tmp}/paper",
+    ),
+    f"{PYTHON} tools/reproduce.py explorers --splits val large --episodes 20": (
+        f"{PYTHON} tools/reproduce.py explorers --splits val large --episodes 1 --agents random oracle "
+        "--out {tmp}/paper",
     ),
     f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
         f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
