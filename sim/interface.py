@@ -193,6 +193,8 @@ class SegmenterSpec:
     rim of a target."""
     needs_verification: bool = True
     """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
+    kind: str = "rednet"
+    """Name of the fitted parameters that describe its errors best (`stubborn/target/fusions/<kind>.json`)."""
 
 
 class Segmenter(Protocol):

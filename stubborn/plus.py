@@ -49,7 +49,6 @@ def plus_agent(
         segmenter=segmenter,
         finder=ViewpointFinder(planner, policies.approach, distances, config.target.target_edge_m),
         distances=distances,
-        candidate_score=config.mapping.candidate_score,
     )
     return StubbornAgent(
         camera=camera, robot=robot, segmenter=segmenter, success=success, config=config, seeker=seeker, **parts

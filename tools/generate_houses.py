@@ -71,6 +71,8 @@ class Args:
     """Without a split: folder of imported models (tools/import_furniture.py) that furnish the houses as well."""
     furniture_split: ModelSplit = "train"
     """With --furniture: train adds models to our own styles, transfer replaces our own by the models kept apart."""
+    only_imported: bool = False
+    """With --furniture: models of train too replace our own styles."""
     transfer_test: bool = False
     """With --furniture: the houses of the transfer test."""
 
@@ -95,8 +97,9 @@ def main(args: Args) -> int:
         raise ConfigError("--workers and --houses must be at least 1.")
     if args.split is not None and (args.furniture is not None or args.transfer_test):
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
-    if args.transfer_test and args.furniture is None:
-        raise ConfigError("--transfer-test needs --furniture, a folder that tools/import_furniture.py made.")
+    for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
+        if given and args.furniture is None:
+            raise ConfigError(f"{option} needs --furniture, a folder that tools/import_furniture.py made.")
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))
@@ -150,10 +153,15 @@ def _write_seeds(args: Args) -> Iterator[Made]:
     config = HouseConfig(
         pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
     )
-    furniture = None if args.furniture is None else ImportedFurniture(args.furniture, args.furniture_split)
+    furniture = None if args.furniture is None else _imported(args)
     make = functools.partial(_make_seed, config, _textures(args), furniture)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     yield from _written(args, ordered_map(make, seeds, workers=args.workers))
+
+
+def _imported(args: Args) -> ImportedFurniture:
+    assert args.furniture is not None
+    return ImportedFurniture(args.furniture, args.furniture_split, alone=args.only_imported)
 
 
 def _write_transfer_test(args: Args) -> Iterator[Made]:

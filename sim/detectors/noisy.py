@@ -106,7 +106,7 @@ class Classification(NamedTuple):
 class NoisySegmenter:
     """The simulated detector of this module. The scores of a frame depend on no other frame."""
 
-    spec = SegmenterSpec(sensors=(), truth=("geom",))
+    spec = SegmenterSpec(sensors=(), truth=("geom",), kind="noisy")
 
     def __init__(self, episode: RunningEpisode, config: NoisyConfig = NoisyConfig()) -> None:
         """Makes a detector for the episodes of one environment.

@@ -1,58 +1,53 @@
-"""Class probabilities of an object, fused over the views from which it was seen.
+"""The views from which objects were seen, and the class probabilities that follow from them.
 
 Frames of one view (a sector of directions and a range of distances) err in the same way, so they are averaged. Views
-that differ are fused as the geometric mean of their probabilities, sharpened by the number of views that are worth as
-much as independent ones (a logarithmic opinion pool: Genest and Zidek 1986).
+that differ are fused by `stubborn.target.fusion`.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
 from sim.interface import ConfigError
+from stubborn.target.fusion import IS_SURFACE, Fusion
 
 
 @dataclass(frozen=True, kw_only=True)
 class EvidenceConfig:
-    """Views, and what each is worth. The values are reasoned, not fitted."""
+    """What is one view of an object."""
 
     sectors: int = 12
     """Number of directions from which an object can be seen, 30 deg each."""
-    rings_m: tuple[float, ...] = (1.2, 3.0, 4.2)
+    rings_m: tuple[float, float, float] = (1.2, 3.0, 4.2)
     """Distances to the middle of an object at which the view changes."""
-    ring_weights: tuple[float, ...] = (0.3, 1.0, 0.6, 0.3)
-    """Weight of a view within the first distance, the second, ..., and beyond the last: nearer than 1.2 m the image
-    does not hold the whole object, and a far object is a few pixels."""
+    near_ring: int = 1
+    """The range of distances from which an object is seen well: nearer than 1.2 m the image does not hold the whole of
+    it, and a far object is a few pixels."""
     full_pixels: int = 40
     """A frame with fewer pixels of the object counts in proportion."""
-    floor: float = 0.002
-    """Least probability of a class in a view, so that one confident view cannot decide alone."""
-    extra_view: float = 0.3
-    """A further view is worth this much of an independent one: views of one object share its looks."""
-    most_views: float = 3.0
-    """All views together are worth at most so many independent ones."""
+    fusion: Path | None = None
+    """File of `tools/train_tracks.py`; None: the shipped parameters of the kind of segmentation."""
 
     def __post_init__(self) -> None:
-        if len(self.ring_weights) != len(self.rings_m) + 1:
-            raise ConfigError(
-                f"EvidenceConfig needs a weight within each of rings_m and one beyond, got {len(self.ring_weights)} "
-                f"for {len(self.rings_m)} distances."
-            )
+        if not 0 <= self.near_ring <= len(self.rings_m):
+            raise ConfigError(f"EvidenceConfig.near_ring must be one of the {len(self.rings_m) + 1} ranges of rings_m.")
 
 
 class Evidence:
     """The views of all tracks; tracks are numbered, and number 0 is none."""
 
-    def __init__(self, config: EvidenceConfig, tracks: int, classes: int) -> None:
+    def __init__(self, config: EvidenceConfig, fusion: Fusion, tracks: int) -> None:
         self.config = config
-        views = config.sectors * len(config.ring_weights)
+        self.fusion = fusion
+        views, classes = config.sectors * (len(config.rings_m) + 1), len(IS_SURFACE)
         self._sums = np.zeros((tracks, views, classes), np.float32)
         self._weights = np.zeros((tracks, views), np.float32)
-        self._ring_weight = np.repeat(np.array(config.ring_weights, np.float32), config.sectors)
+        self._ring_weight = np.repeat(np.array(fusion.ring_weights, np.float32), config.sectors)
         self.probability: Float32[np.ndarray, "tracks classes"] = np.full((tracks, classes), 1.0 / classes, np.float32)
         """Fused probability of each class."""
 
@@ -87,10 +82,8 @@ class Evidence:
         self.probability[[track, into]] = self._fused(np.array([track, into]))
 
     def near_sectors(self, track: int) -> Bool[np.ndarray, " sectors"]:
-        """Returns the directions from which a track was seen well: in a ring of full weight, with enough pixels."""
-        full = self._ring_weight >= 1.0
-        seen = (self._weights[track] >= 1.0) & full
-        return np.asarray(seen.reshape(-1, self.config.sectors).any(axis=0))
+        """Returns the directions from which a track was seen well: from the right distance, with enough pixels."""
+        return np.asarray(self._weights[track].reshape(-1, self.config.sectors)[self.config.near_ring] >= 1.0)
 
     def _view(self, dx_m: Float64[np.ndarray, " n"], dy_m: Float64[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
         sector = self.sector_of(np.arctan2(dy_m, dx_m))
@@ -102,13 +95,15 @@ class Evidence:
         turns = bearing_rad / math.tau * self.config.sectors
         return np.rint(turns).astype(np.intp) % self.config.sectors
 
-    def _fused(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n classes"]:
-        c = self.config
+    def views(self, tracks: Int[np.ndarray, " n"]) -> tuple[np.ndarray, np.ndarray]:
+        """Returns the mean posterior of each view (n, views, classes) and its weight (n, views), at most 1.
+
+        Views are numbered by range of distance, then by direction. The weight is without the factor of the distance.
+        """
         count = self._weights[tracks]
-        mean = self._sums[tracks] / np.maximum(count, 1e-6)[:, :, None]
-        weight = np.minimum(count, 1.0) * self._ring_weight
-        total = np.maximum(weight.sum(axis=1, keepdims=True), 1e-6)
-        worth = np.where(total > 1.0, np.minimum(1.0 + c.extra_view * (total - 1.0), c.most_views), total)
-        log = np.einsum("nv,nvc->nc", weight, np.log(np.maximum(mean, c.floor))) / total * worth
-        odds = np.exp(log - log.max(axis=1, keepdims=True))
-        return np.asarray(odds / odds.sum(axis=1, keepdims=True), np.float32)
+        return self._sums[tracks] / np.maximum(count, 1e-6)[:, :, None], np.minimum(count, 1.0)
+
+    def _fused(self, tracks: Int[np.ndarray, " n"]) -> Float32[np.ndarray, "n classes"]:
+        mean, weight = self.views(tracks)
+        used = weight.any(axis=0)
+        return self.fusion.probabilities(mean[:, used], (weight * self._ring_weight)[:, used])

@@ -19,20 +19,15 @@ from stubborn.target.viewpoints import ViewpointFinder
 
 @dataclass(frozen=True, kw_only=True)
 class LookConfig:
-    """Probabilities at which a track is visited and accepted, and viewpoints. The values are reasoned, not fitted."""
+    """Probabilities at which a track is visited and accepted, and viewpoints."""
 
-    visit: float = 0.35
-    """A track is looked at from this probability of the goal on."""
-    accept: float = 0.6
-    """It is accepted from this probability on, once it was seen well from two directions."""
-    decisive: float = 0.92
-    """From this probability on one direction is enough."""
-    settle: float = 0.5
-    """Where no further look is possible, it is accepted from this probability on."""
-    drop: float = 0.35
-    """An accepted track is rejected below this probability."""
-    recover: float = 0.8
-    """A rejected track is accepted after all from this probability on."""
+    bar: tuple[tuple[int, float], ...] = ((0, 0.05), (40, 0.05), (100, 0.45), (200, 0.68), (300, 0.8), (500, 0.92))
+    """(Steps left, probability), with straight lines between: a track is accepted from this probability on. A wrong
+    STOP costs what going on would still bring, which is the probability to succeed later; it falls as steps run out."""
+    slack: float = 0.12
+    """The robot goes on to an accepted track until it is below the bar by this share of it. It stops only above."""
+    visit: float = 0.3
+    """A track below the bar is looked at from this probability on."""
     most_looks: int = 2
     """A track is looked at this often at most."""
     look_m: tuple[float, float] = (1.3, 2.2)
@@ -40,90 +35,95 @@ class LookConfig:
     apart_rad: float = math.radians(45.0)
     """Directions less than this apart are one view."""
     per_metre: float = 0.03
-    """A doubtful track a metre farther away must be this much more probable to come first."""
+    """A track a metre farther away must be this much more probable to come first."""
+    steps_per_metre: float = 6.0
+    """Steps that the way to a track takes, turns included: one that cannot be reached in time is not accepted."""
     patience_steps: int = 40
     """A track is set aside after so many steps in which the robot pursued tracks and stayed within `patience_m`."""
     patience_m: float = 1.0
     """The distance that ends the count."""
-    last_tries: tuple[tuple[int, float], ...] = ((120, 0.3), (60, 0.05))
-    """(Steps left, probability): with so few steps left, the best track of at least this probability is tried: a wrong
-    STOP costs no more than none."""
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.drop <= self.settle <= self.accept <= self.decisive <= 1.0:
+        steps = [left for left, _ in self.bar]
+        if not steps or steps != sorted(set(steps)) or not all(0.0 <= p <= 1.0 for _, p in self.bar):
             raise ConfigError(
-                "LookConfig needs 0 <= drop <= settle <= accept <= decisive <= 1, got "
-                f"{self.drop}, {self.settle}, {self.accept} and {self.decisive}."
+                f"LookConfig.bar must be pairs of growing steps and probabilities in [0, 1], got {self.bar}."
+            )
+        if not (0.0 <= self.slack <= 1.0 and 0.0 < self.visit <= 1.0):
+            raise ConfigError(
+                f"LookConfig needs slack in [0, 1] and visit in (0, 1], got {self.slack} and {self.visit}."
             )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
 
-    def last_try(self, step: int) -> float:
-        """Returns the probability from which a track is tried at a step without more looks; above 1: none is."""
-        return min((least for left, least in self.last_tries if MAX_STEPS - step <= left), default=math.inf)
+    def bar_at(self, step: int) -> float:
+        """Returns the probability from which a track is accepted at a step of the episode."""
+        left, bar = zip(*self.bar, strict=True)
+        return float(np.interp(MAX_STEPS - step, left, bar))
 
 
 class Verdicts:
     """The decision on each track, and the number of looks at it."""
 
     def __init__(self, config: LookConfig, *, exact: bool) -> None:
-        """With `exact` posteriors nothing needs a look."""
+        """With `exact` posteriors a track is accepted as soon as the goal is its most probable category."""
         self.config = config
         self.exact = exact
         self.accepted: set[int] = set()
         self.rejected: set[int] = set()
+        """Those that have been looked at and are below the bar. They are accepted after all when it falls below them,
+        or when they are seen again and look better."""
         self.looks: dict[int, int] = {}
+        self.bar = 1.0
+        """The probability from which a track is accepted now."""
 
-    def update(self, probability: Float32[np.ndarray, " numbers"], evidence: Evidence) -> None:
-        """Accepts and rejects tracks by their probability of the goal and the views of them."""
+    def update(
+        self,
+        probability: Float32[np.ndarray, " numbers"],
+        in_time: Bool[np.ndarray, " numbers"],
+        evidence: Evidence,
+        step: int,
+    ) -> None:
+        """Accepts and rejects tracks.
+
+        Args:
+            probability: of the goal, for each track.
+            in_time: True where the robot can be there before the episode ends.
+            evidence: the views of the tracks.
+            step: of the episode.
+        """
         c = self.config
-        for track in {*np.flatnonzero(probability >= c.visit).tolist(), *self.accepted}:
-            p, views = float(probability[track]), self._views(evidence.near_sectors(track))
-            if track in self.accepted:
-                if p < c.drop:
-                    self._reject(track)
-            elif track in self.rejected:
-                if p >= c.recover:
-                    self._accept(track)
-            elif p >= c.accept and (self.exact or views >= 2 or (views == 1 and p >= c.decisive)):
-                self._accept(track)
-            elif self.looks.get(track, 0) >= c.most_looks:
-                self.settle(track, p)
-            elif views >= 2:
-                self._reject(track)
+        self.bar = 0.5 if self.exact else c.bar_at(step)
+        passes = (probability >= self.bar) & (in_time | self.exact)
+        remains = probability >= (1.0 - c.slack) * self.bar
+        self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
+        self.rejected -= self.accepted
+        for track in self.doubtful(probability):
+            if self.looks.get(track, 0) >= c.most_looks or self._is_seen_around(evidence.near_sectors(track)):
+                self.rejected.add(track)
 
     def looked(self, track: int) -> None:
         """Counts a look at a track."""
         self.looks[track] = self.looks.get(track, 0) + 1
 
-    def settle(self, track: int, probability: float) -> None:
-        """Decides on a track that cannot be looked at again."""
-        if probability >= self.config.settle:
-            self._accept(track)
-        else:
-            self._reject(track)
+    def give_up(self, track: int) -> None:
+        """Rejects a track that cannot be looked at again."""
+        self.rejected.add(track)
+        self.accepted.discard(track)
 
     def doubtful(self, probability: Float32[np.ndarray, " numbers"]) -> list[int]:
         """Returns the tracks that are worth a look."""
         decided = self.accepted | self.rejected
         return [t for t in np.flatnonzero(probability >= self.config.visit).tolist() if t not in decided]
 
-    def _accept(self, track: int) -> None:
-        self.accepted.add(track)
-        self.rejected.discard(track)
-
-    def _reject(self, track: int) -> None:
-        self.rejected.add(track)
-        self.accepted.discard(track)
-
-    def _views(self, sectors: Bool[np.ndarray, " sectors"]) -> int:
-        """Returns 2 for directions that are far enough apart, 1 for others, 0 for none."""
+    def _is_seen_around(self, sectors: Bool[np.ndarray, " sectors"]) -> bool:
+        """Returns True for an object that was seen from directions which are far enough apart."""
         seen = np.flatnonzero(sectors)
-        if seen.size == 0:
-            return 0
+        if seen.size < 2:
+            return False
         gap = np.abs(seen[:, None] - seen[None, :])
         gap = np.minimum(gap, len(sectors) - gap)
-        return 2 if gap.max() * math.tau / len(sectors) >= self.config.apart_rad - 1e-9 else 1
+        return bool(gap.max() * math.tau / len(sectors) >= self.config.apart_rad - 1e-9)
 
 
 def look_at(

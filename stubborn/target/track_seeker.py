@@ -10,12 +10,13 @@ from jaxtyping import Bool, Float32
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, CameraModel, Observation, RobotModel, Segmenter
+from sim.interface import FORWARD_M, MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import nearest
 from stubborn.target.approach import Approach, approach_on
 from stubborn.target.distances import StopDistances, TargetConfig
+from stubborn.target.fusion import fusion_for
 from stubborn.target.look import LookConfig, Verdicts, look_at
 from stubborn.target.tracks import TrackConfig, Tracks
 from stubborn.target.viewpoints import LastResort, ViewpointFinder
@@ -27,6 +28,8 @@ class TrackSeekerConfig:
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)
+    core_share: float = 0.5
+    """Cells of a track whose mean score is below this share of its highest one are not driven to."""
 
 
 class TrackSeeker:
@@ -42,17 +45,16 @@ class TrackSeeker:
         segmenter: Segmenter,
         finder: ViewpointFinder,
         distances: StopDistances,
-        candidate_score: float,
     ) -> None:
-        """Where cells of a track have a target score above `candidate_score`, only these count as it."""
+        """Builds it from the parts of the agent."""
         self.config = config
         self.target = distances_config
         self.camera = camera
         self.robot = robot
         self.segmenter = segmenter
+        self.fusion = fusion_for(segmenter.spec, config.tracks.evidence.fusion)
         self.finder = finder
         self.distances = distances
-        self.candidate_score = candidate_score
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -69,7 +71,8 @@ class TrackSeeker:
         """See `Seeker`: the probability of the track."""
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
-        self._chosen: list[int] = []  # tracks that are approached as accepted
+        self._accepted: list[int] = []  # accepted tracks that are not set aside
+        self._target: int | None = None  # the one of them that is approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
         self._went_nearer = False
@@ -78,46 +81,44 @@ class TrackSeeker:
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
         if self.tracks is None:
-            self.tracks = Tracks(self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame)
+            self.tracks = Tracks(
+                self.config.tracks, self.camera, self.robot.camera_forward_m, navmap.frame, self.fusion
+            )
         self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels)
-        rejected = set(self.verdicts.rejected)
-        self.verdicts.update(self.probability, self.tracks.evidence)
-        if rejected != self.verdicts.rejected:
-            navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
         self.step = step
-        self._chosen = self._to_approach(step)
+        self._decide(navmap, pose)
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""
-        if not self._chosen or not sighting.is_within(self.distances.in_view_m):
+        if not self._accepted or not sighting.is_within(self.distances.in_view_m):
             return None
-        return sighting.nearest(self.cells_of(navmap, self._chosen), self.distances.in_view_m)
+        return sighting.nearest(self.cells_of(navmap, self._accepted), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress, another one."""
         found = self._pursue(navmap, window, pose, step)
         if found is not None and self._is_stuck(pose, step):
             self.postpone(navmap, step)
-            self._chosen, self.pursued = self._to_approach(step), None
+            self.pursued = None
             found = self._pursue(navmap, window, pose, step)
         if found is None:
             self._pursuit = None
         return found
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        last = self.config.look.last_try(step) <= 1.0 or step >= self.target.last_resort_step
-        resort = LastResort.STOP if last else LastResort.NONE
-        while self._chosen:
-            found = self._drive_in(navmap, window, pose, self._chosen, resort)
+        resort = LastResort.STOP if step >= self.target.last_resort_step else LastResort.NONE
+        while self._accepted:
+            self._target = self._best_of(self._accepted, pose, self._target)
+            found = self._drive_in(navmap, window, pose, self._target, resort)
             if found is not None:
                 return found
-            self._set_aside(self._chosen)
-            self._chosen = self._to_approach(step)
+            self._set_aside(self._target)
+        self._target = None
         doubtful = [t for t in self.verdicts.doubtful(self.probability) if self._is_due(t)]
         while doubtful:
-            track = self._best_of(doubtful, pose)
+            track = self._best_of(doubtful, pose, self.pursued)
             found = self._look(navmap, window, pose, track)
             if found is not None:
                 self.pursued = track
@@ -128,15 +129,17 @@ class TrackSeeker:
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
-        if self._chosen:
-            at_cell = [t for t in self._chosen if self.cells_of(navmap, [t])[cell]]
-            track = max(at_cell or self._chosen, key=lambda t: self.probability[t])
+        if self._accepted:
+            at_cell = [t for t in self._accepted if self.cells_of(navmap, [t])[cell]]
+            track = max(at_cell or self._accepted, key=lambda t: self.probability[t])
+            if self.probability[track] < self.verdicts.bar:  # it looked better from afar
+                self.verdicts.give_up(track)
+                return False
             self.confidence = float(self.probability[track])
             self.accepted_cell = self._best_cell(navmap, track)
             return True
         if self.pursued is not None:
             self.verdicts.looked(self.pursued)
-            self.verdicts.update(self.probability, self._of_episode().evidence)
             self.pursued = None
         return False
 
@@ -154,31 +157,44 @@ class TrackSeeker:
 
     def postpone(self, navmap: NavMap, step: int) -> None:
         """See `Seeker`."""
-        self._set_aside(self._chosen or ([] if self.pursued is None else [self.pursued]))
+        for track in (self._target, self.pursued):
+            if track is not None:
+                self._set_aside(track)
 
     def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the cells of the whole map that some tracks own."""
+        """Returns the cells of the whole map that some tracks own and that look like the goal."""
         result = np.zeros(navmap.frame.shape, np.bool_)
         for track in tracks:
-            index, mask = self._of_episode().footprint(track)
-            scored = mask & (navmap.score_max[index] > self.candidate_score)
-            result[index] |= scored if scored.any() else mask
+            index, mask = self._core(navmap, track)
+            result[index] |= mask
         return result
+
+    def _core(self, navmap: NavMap, track: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
+        """Returns the part of a track's footprint that looks like the goal: a rectangle, and a mask over it.
+
+        A track may hold a part of what is beside the object, where the mean score is lower.
+        """
+        index, mask = self._of_episode().footprint(track)
+        mean = navmap.score_sum[index] / np.maximum(navmap.frames_in_view[index], 1)
+        return index, mask & (mean >= self.config.core_share * mean.max(where=mask, initial=0.0))
 
     def _best_cell(self, navmap: NavMap, track: int) -> tuple[int, int]:
         """Returns the map cell of a track with the highest cumulative score."""
-        index, mask = self._of_episode().footprint(track)
+        index, mask = self._core(navmap, track)
         row, col = divmod(int(np.argmax(np.where(mask, navmap.score_sum[index], -1.0))), mask.shape[1])
         return int(index[0].start) + row, int(index[1].start) + col
 
-    def _to_approach(self, step: int) -> list[int]:
-        """Returns the accepted tracks; near the end of the episode, without any, the most probable one."""
-        accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
-        least = self.config.look.last_try(step)
-        if accepted or least > 1.0:
-            return accepted
-        due = [t for t in np.flatnonzero(self.probability >= least).tolist() if self._is_due(t)]
-        return [max(due, key=lambda t: self.probability[t])] if due else []
+    def _decide(self, navmap: NavMap, pose: Pose) -> None:
+        """Updates the verdicts on all tracks."""
+        look, tracks = self.config.look, self._of_episode()
+        numbers = np.arange(len(self.probability))
+        x_m, y_m = tracks.middles(numbers)
+        way_steps = look.steps_per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
+        rejected = set(self.verdicts.rejected)
+        self.verdicts.update(self.probability, self.step + way_steps <= MAX_STEPS, tracks.evidence, self.step)
+        if rejected != self.verdicts.rejected:
+            navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
+        self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
 
     def _is_stuck(self, pose: Pose, step: int) -> bool:
         """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again."""
@@ -190,19 +206,17 @@ class TrackSeeker:
             self._pursuit = pose, step
         return stuck
 
-    def _best_of(self, doubtful: list[int], pose: Pose) -> int:
-        """Returns the pursued track, or the one with the highest probability less the cost of its distance."""
-        if self.pursued in doubtful:
-            return self.pursued
-        x_m, y_m = self._of_episode().middles(np.array(doubtful))
+    def _best_of(self, tracks: list[int], pose: Pose, before: int | None) -> int:
+        """Returns the track that was chosen before, or the one of highest probability less the cost of its distance."""
+        if before in tracks:
+            return before
+        x_m, y_m = self._of_episode().middles(np.array(tracks))
         cost = self.config.look.per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        return doubtful[int(np.argmax(self.probability[doubtful] - cost))]
+        return tracks[int(np.argmax(self.probability[tracks] - cost))]
 
-    def _drive_in(
-        self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
-    ) -> Approach | None:
-        """Returns the approach to some tracks, on the local window if that is enough, else on the whole map."""
-        cells = self.cells_of(navmap, tracks)
+    def _drive_in(self, navmap: NavMap, window: Window, pose: Pose, track: int, resort: LastResort) -> Approach | None:
+        """Returns the approach to a track, on the local window if that is enough, else on the whole map."""
+        cells = self.cells_of(navmap, [track])
         for part in (window, self._known(navmap)):
             last = resort if part is not window else LastResort.NONE
             found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
@@ -222,21 +236,21 @@ class TrackSeeker:
             if found is not None:
                 return _on_map(found, part)
         if self.verdicts.looks.get(track, 0) or seen_from.any():
-            self.verdicts.settle(track, float(self.probability[track]))
+            self.verdicts.give_up(track)
             return None
-        found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
+        found = self._drive_in(navmap, window, pose, track, LastResort.VERIFY)
         if found is None:
-            self._set_aside([track])
+            self._set_aside(track)
         return found
 
     def _is_due(self, track: int) -> bool:
         return self.step >= self._retry_step.get(track, 0)
 
-    def _set_aside(self, tracks: list[int]) -> None:
-        """Tries these tracks again later, each time after twice as many steps."""
-        for track in tracks:
-            wait = self._wait_steps.get(track, self.target.retry_after_steps)
-            self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
+    def _set_aside(self, track: int) -> None:
+        """Tries a track again later, each time after twice as many steps."""
+        wait = self._wait_steps.get(track, self.target.retry_after_steps)
+        self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
+        self._accepted = [t for t in self._accepted if t != track]
 
     def _known(self, navmap: NavMap) -> Window:
         return navmap.known_window(margin_cells=self.target.margin_cells)

@@ -19,6 +19,7 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.mapping.projection import Rays
 from stubborn.target.evidence import Evidence, EvidenceConfig
+from stubborn.target.fusion import Fusion
 from stubborn.track_kernels import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 
 STRUCTURE = (
@@ -95,8 +96,15 @@ class Track(NamedTuple):
 class Tracks:
     """All objects seen in an episode."""
 
-    def __init__(self, config: TrackConfig, camera: CameraModel, camera_forward_m: float, frame: GridFrame) -> None:
-        """`frame` is that of the map; voxels are whole cells of it."""
+    def __init__(
+        self,
+        config: TrackConfig,
+        camera: CameraModel,
+        camera_forward_m: float,
+        frame: GridFrame,
+        fusion: Fusion | None = None,
+    ) -> None:
+        """`frame` is that of the map; voxels are whole cells of it. `fusion` fuses views, by default exact ones."""
         self.config = config
         self.camera = camera
         self.frame = frame
@@ -110,7 +118,7 @@ class Tracks:
         self._high = np.full((config.most_tracks, 3), -1, np.int64)
         self._now = np.arange(config.most_tracks)  # the track that each one is a part of
         self._rays: dict[int, Rays] = {}
-        self.evidence = Evidence(config.evidence, config.most_tracks, len(_IS_OBJECT))
+        self.evidence = Evidence(config.evidence, fusion or Fusion(), config.most_tracks)
         self.count = 0
         """Tracks have the numbers 1 to `count`."""
         self.in_view: Int[np.ndarray, " n"] = np.zeros(0, np.intp)
@@ -166,6 +174,21 @@ class Tracks:
         n = self.config.voxel_cells
         mask = (volume == number).any(axis=2).repeat(n, axis=0).repeat(n, axis=1)
         return (slice(n * row, n * (last_row + 1)), slice(n * col, n * (last_col + 1))), mask
+
+    def sizes(self, tracks: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
+        """Returns the number of voxels of each track; 0 for one that became a part of another one."""
+        return self._size[tracks]
+
+    def shown(
+        self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
+    ) -> Int16[np.ndarray, "h w"]:
+        """Returns the track of each pixel of a frame that was entered, at so many columns; 0: none."""
+        _, voxel = self._voxels(self._rays_for(columns), depth, pose)
+        return np.where(voxel >= 0, self._owner[voxel], np.int16(0))
+
+    def now(self) -> Int[np.ndarray, " numbers"]:
+        """Returns the track that each number belongs to: another one where tracks were merged."""
+        return self._now[: self.count + 1]
 
     def _rays_for(self, width: int) -> Rays:
         block_px = self.camera.width_px // width

@@ -28,7 +28,10 @@ from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.classifiers import Features
+from stubborn.target.fusion import Fusion
+from stubborn.target.look import LookConfig
 from stubborn.target.seeker import TargetSeeker
+from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.target.verification import AcceptAll
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
@@ -192,9 +195,19 @@ def test_single_frame_is_stubborn_without_verification_and_latest_frame_has_no_m
 
 
 def test_stubborn_plus_goes_past_the_lookalike_too():
-    stopped, bed_m, _ = ends("stubborn-plus", (3.6, 0.6, 0.5))
-    assert stopped
-    assert bed_m < 1.0
+    agent = agents.make(
+        "stubborn-plus",
+        camera=SMALL_CAMERA,
+        robot=RobotModel(),
+        segmenter=Fickle(),
+        seeker=TrackSeekerConfig(look=LookConfig(bar=((0, 0.55),))),
+    )
+    assert isinstance(agent, StubbornAgent)
+    assert isinstance(agent.seeker, TrackSeeker)
+    agent.seeker.fusion = Fusion()  # this detector does not err like the network
+    ground = GridWorld(TWO_ROOMS, (3.6, 0.6, 0.5), camera=SMALL_CAMERA)
+    assert run_episode(ground, agent, "bed", max_steps=150).stopped
+    assert ground.distance_to("bed") < 1.0
 
 
 @pytest.mark.parametrize("name", ["stubborn", "stubborn-plus", "single-frame", "latest-frame", "frontier-avoid"])

@@ -30,6 +30,8 @@ class ImportedFurniture:
 
     folder: Path
     split: ModelSplit = "train"
+    alone: bool = False
+    """True: models of `train` too replace our own styles."""
 
     @property
     def models(self) -> tuple[Model, ...]:
@@ -39,13 +41,13 @@ class ImportedFurniture:
     def catalogue(self, pool: Pool) -> Catalogue:
         """Returns the shipped catalogue with the models in the houses of a pool.
 
-        Models of `train` are added to our own styles. Models of `transfer` replace the styles of the uses that they
-        have, so that a house shows our own design only where there is no model.
+        Models of `train` are added to our own styles. Models of `transfer`, and with `alone` all, replace the styles of
+        the uses that they have, so that a house shows our own design only where there is no model.
 
         Raises:
             ConfigError: the folder is missing or broken.
         """
-        return _catalogue(self.folder, self.split, pool)
+        return _catalogue(self.folder, self.split, pool, self.alone or self.split == "transfer")
 
     def make_house(self, seed: int, config: HouseConfig) -> GeneratedHouse:
         """Returns a house with the models, of any file size, and with their credits in its comment.
@@ -79,10 +81,10 @@ def _models(folder: Path, split: ModelSplit) -> tuple[Model, ...]:
 
 
 @functools.lru_cache(maxsize=8)
-def _catalogue(folder: Path, split: ModelSplit, pool: Pool) -> Catalogue:
+def _catalogue(folder: Path, split: ModelSplit, pool: Pool, alone: bool) -> Catalogue:
     models = _models(folder, split)
     styles = [style_of(folder, model, "heldout" if pool == "heldout" else "train") for model in models]
-    if split == "train":
+    if not alone:
         return CATALOGUE.with_styles(*styles)
     own = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
     kept = (left for style in own if (left := _without_covered(style, models)) is not None)

@@ -330,6 +330,10 @@ def test_transfer_models_replace_our_own_styles_of_their_uses_only(tmp_path: Pat
     mixed = ImportedFurniture(tmp_path / "out", "train").catalogue("train").styles("chair", "train", "dining")
     assert len(mixed) > len(CATALOGUE.styles("chair", "train", "dining"))
     assert not {style.name for style in dining} & {style.name for style in mixed}
+    alone = (
+        ImportedFurniture(tmp_path / "out", "train", alone=True).catalogue("train").styles("chair", "train", "dining")
+    )
+    assert len(alone) == len(mixed) - len(CATALOGUE.styles("chair", "train", "dining"))
 
 
 def test_the_shipped_catalogue_does_not_change(tmp_path: Path) -> None:

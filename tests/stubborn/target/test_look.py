@@ -1,4 +1,4 @@
-"""Verdicts on tracks by probability and views, and the places from which a doubtful one is looked at."""
+"""Verdicts on tracks by probability, steps left and views, and the places from which a doubtful one is looked at."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, SegmenterSpec, SuccessRule
+from sim.interface import MAX_STEPS, MPCAT40, ConfigError, SegmenterSpec, SuccessRule
 from stubborn.planning.planner import Route
 from stubborn.raster import nearest
 from stubborn.target.distances import StopDistances, TargetConfig
 from stubborn.target.evidence import Evidence, EvidenceConfig
+from stubborn.target.fusion import Fusion
 from stubborn.target.look import LookConfig, Verdicts, look_at
 from stubborn.target.viewpoints import ViewpointFinder
 from tests.helpers.asciimap import map_of
@@ -24,62 +25,90 @@ TRACK = 1
 
 def evidence(*bearings_rad: float) -> Evidence:
     """Returns the evidence of a track that was seen well from some directions."""
-    result = Evidence(EvidenceConfig(), 2, CLASSES)
+    result = Evidence(EvidenceConfig(), Fusion(), 2)
     for bearing_rad in bearings_rad:
         at = np.array([2.0 * math.cos(bearing_rad)]), np.array([2.0 * math.sin(bearing_rad)])
         result.add(np.array([TRACK]), np.full((1, CLASSES), 1.0 / CLASSES, np.float32), np.array([300]), *at)
     return result
 
 
-def verdict(p: float, *bearings_rad: float, exact: bool = False, looks: int = 0, rejected: bool = False) -> str:
-    verdicts = Verdicts(LookConfig(), exact=exact)
-    if rejected:
-        verdicts.settle(TRACK, 0.0)
-    for _ in range(looks):
-        verdicts.looked(TRACK)
-    probability = np.array([0.0, p], np.float32)
-    verdicts.update(probability, evidence(*bearings_rad))
-    if TRACK in verdicts.accepted:
-        return "accepted"
-    return "rejected" if TRACK in verdicts.rejected else "doubtful" if verdicts.doubtful(probability) else "none"
+class Judged:
+    """A track and what is decided on it, step by step."""
+
+    def __init__(self, *, exact: bool = False, looks: int = 0, in_time: bool = True) -> None:
+        self.in_time = in_time
+        self.verdicts = Verdicts(LookConfig(), exact=exact)
+        for _ in range(looks):
+            self.verdicts.looked(TRACK)
+
+    def at(self, p: float, step: int = 0, bearings_rad: tuple[float, ...] = ()) -> str:
+        """Returns the verdict with a probability of the goal, at a step."""
+        probability, in_time = np.array([0.0, p], np.float32), np.array([True, self.in_time])
+        self.verdicts.update(probability, in_time, evidence(*bearings_rad), step)
+        if TRACK in self.verdicts.accepted:
+            return "accepted"
+        if TRACK in self.verdicts.rejected:
+            return "rejected"
+        return "doubtful" if self.verdicts.doubtful(probability) else "none"
 
 
 @pytest.mark.parametrize(
     ("p", "bearings_rad", "expected"),
     [
-        (0.95, (), "doubtful"),  # seen from afar only
-        (0.95, (0.0,), "accepted"),
+        (0.95, (), "accepted"),  # the probability knows how often it was seen, and from where
         (0.7, (0.0,), "doubtful"),
         (0.7, (0.0, 0.5), "doubtful"),  # 30 deg apart are one view
-        (0.7, (0.0, 1.1), "accepted"),
+        (0.7, (0.0, 1.1), "rejected"),
         (0.7, (3.0, -3.0), "doubtful"),  # as near to each other around the back
-        (0.4, (0.0, 1.1), "rejected"),
         (0.1, (0.0,), "none"),
     ],
 )
-def test_one_decisive_view_or_two_that_differ_decide(p: float, bearings_rad: tuple[float, ...], expected: str):
-    assert verdict(p, *bearings_rad) == expected
+def test_below_the_bar_a_track_is_doubtful_until_it_was_seen_from_two_sides(
+    p: float, bearings_rad: tuple[float, ...], expected: str
+):
+    assert Judged().at(p, 0, bearings_rad) == expected
 
 
-def test_exact_posteriors_need_no_look():
-    assert verdict(0.95, exact=True) == "accepted"
+def test_exact_posteriors_are_accepted_where_the_goal_is_most_probable():
+    assert Judged(exact=True).at(0.6) == "accepted"
+    assert Judged(exact=True).at(0.3) == "doubtful"
 
 
-def test_after_the_last_look_a_track_is_decided_on():
-    assert verdict(0.55, 0.0, looks=2) == "accepted"
-    assert verdict(0.45, 0.0, looks=2) == "rejected"
-    assert verdict(0.45, 0.0, looks=1) == "doubtful"
+def test_after_the_last_look_a_track_below_the_bar_is_rejected():
+    assert Judged(looks=1).at(0.7) == "doubtful"
+    assert Judged(looks=2).at(0.7) == "rejected"
 
 
-def test_a_rejected_track_stays_rejected_until_much_speaks_for_it():
-    assert verdict(0.7, 0.0, 1.1, rejected=True) == "rejected"
-    assert verdict(0.85, 0.0, 1.1, rejected=True) == "accepted"
+def test_a_rejected_track_is_accepted_when_it_looks_better_or_when_few_steps_are_left():
+    track = Judged(looks=2)
+    assert [track.at(0.5), track.at(0.95)] == ["rejected", "accepted"]
+    track = Judged(looks=2)
+    assert [track.at(0.5, step) for step in (0, 250, 420)] == ["rejected", "rejected", "accepted"]
 
 
-def test_near_the_end_the_bar_for_a_try_falls():
-    config = LookConfig()
-    tries = [config.last_try(step) for step in (0, 379, 380, 439, 440, 499)]
-    assert tries == [math.inf, math.inf, 0.3, 0.3, 0.05, 0.05]
+def test_an_accepted_track_remains_so_until_it_is_well_below_the_bar():
+    track = Judged()
+    assert [track.at(p) for p in (0.93, 0.85, 0.75, 0.85)] == ["accepted", "accepted", "doubtful", "doubtful"]
+
+
+def test_what_cannot_be_reached_any_more_is_not_accepted():
+    assert Judged(in_time=True).at(0.95) == "accepted"
+    assert Judged(in_time=False).at(0.95) == "doubtful"
+
+
+def test_the_bar_falls_as_steps_run_out():
+    bar = [LookConfig().bar_at(step) for step in range(MAX_STEPS + 1)]
+    assert bar == sorted(bar, reverse=True)
+    assert [bar[step] for step in (0, 250, 400, MAX_STEPS)] == pytest.approx([0.92, 0.74, 0.45, 0.05])
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"bar": ()}, {"bar": ((100, 0.5), (50, 0.1))}, {"bar": ((0, 1.5),)}, {"slack": -0.1}, {"look_m": (2.0, 1.0)}],
+)
+def test_wrong_values_are_refused(wrong: dict):
+    with pytest.raises(ConfigError, match="LookConfig"):
+        LookConfig(**wrong)
 
 
 def looks_from(*seen_from_rad: float) -> Route:

@@ -1,0 +1,230 @@
+"""Fits a `Fusion` to tracks whose true category is known, and judges it on houses left out.
+
+The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
+errs differently on other furniture, and an offset that only the houses of the fit need is worse than none. Each track
+enters with all of its views and with random parts of them, because an agent has to decide after few.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float, Float32, Int
+from torch import Tensor
+
+from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
+from stubborn.target.evidence import EvidenceConfig
+from stubborn.target.fusion import IS_SURFACE, SURFACES, Fusion
+
+FOLDS = 5
+LEAST_PIXELS = 40
+"""Tracks that fewer pixels showed are left out."""
+TRUE_SHARE = 0.25
+"""A track is of an object's category if at least this share of its pixels is; the rest may show what is behind it."""
+OFFSET_PRIOR = 30.0
+"""Weight of the prior of the offsets: that of so many tracks."""
+PARTS = 2
+"""Random parts of the views of each track."""
+PLAUSIBLE = 0.1
+"""Goals below this probability, before and after the fit, are not judged: nearly all are true negatives."""
+_BINS = (0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Some views of one track."""
+
+    house: str
+    category: int
+    """Index in `MPCAT40[1:]` of what it is; -1: no object."""
+    view: Int[np.ndarray, " views"]
+    """Numbers of the views, see `Evidence.views`."""
+    mean: Float32[np.ndarray, "views classes"]
+    weight: Float32[np.ndarray, " views"]
+
+
+def true_category(counts: Int[np.ndarray, " ids"]) -> int:
+    """Returns the index in `MPCAT40[1:]` of what a track is, -1: no object, from its pixels of each true id."""
+    objects = counts.astype(np.float64)
+    objects[0] = 0.0
+    objects[1:][IS_SURFACE] = 0.0
+    best = int(objects.argmax())
+    return best - 1 if best and objects[best] >= TRUE_SHARE * counts.sum() else -1
+
+
+def samples_of(log: Sequence[Mapping[str, Any]], *, seed: int = 0) -> list[Sample]:
+    """Returns the samples of the episodes of a log: of each track all of its views, then random parts of them.
+
+    Args:
+        log: of each episode `house`, and for its tracks `counts` (n, 41) of the true ids of their pixels, and for all
+            of their views `track` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
+        seed: of the parts.
+    """
+    rng = np.random.default_rng(seed)
+    result = []
+    for episode in log:
+        for number, counts in enumerate(episode["counts"]):
+            mine = np.flatnonzero(episode["track"] == number)
+            if counts.sum() < LEAST_PIXELS or mine.size == 0:
+                continue
+            parts = [mine]
+            if mine.size > 1:
+                parts += [rng.choice(mine, rng.integers(1, mine.size + 1), replace=False) for _ in range(PARTS)]
+            for part in parts:
+                result.append(
+                    Sample(
+                        str(episode["house"]),
+                        true_category(counts),
+                        episode["view"][part],
+                        episode["mean"][part].astype(np.float32),
+                        episode["weight"][part].astype(np.float32),
+                    )
+                )
+    return result
+
+
+def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, steps: int = 300) -> Fusion:
+    """Returns the parameters of highest posterior probability.
+
+    Args:
+        samples: see `samples_of`.
+        sectors: directions of `EvidenceConfig`; a view's number divided by it is its range of distance.
+        steps: of Adam.
+
+    Raises:
+        ConfigError: there are fewer than 100 samples.
+    """
+    if len(samples) < 100:
+        raise ConfigError(f"The log holds {len(samples)} samples of tracks; 100 are needed: play more episodes.")
+    data = _Data.of(samples, sectors)
+    names = [name for name in MPCAT40[1:] if name not in SURFACES]
+    free = {
+        "rings": torch.zeros(4),
+        "sharpness": torch.tensor(0.0),
+        "growth": torch.tensor(0.0),
+        "floor": torch.tensor(-5.0),
+        "surface": torch.tensor([-3.0, 1.0, 0.0]),
+        "offsets": torch.zeros(len(names)),
+    }
+    for each in free.values():
+        each.requires_grad_(True)
+    optimizer = torch.optim.Adam(list(free.values()), lr=0.05)
+    for _ in range(steps):
+        optimizer.zero_grad()
+        loss = torch.nn.functional.cross_entropy(data.log_odds(free), data.category)
+        (loss + OFFSET_PRIOR * (free["offsets"] ** 2).sum() / len(samples)).backward()
+        optimizer.step()
+    value = {name: each.detach().numpy().astype(np.float64) for name, each in free.items()}
+    rings = np.exp(value["rings"] - value["rings"][EvidenceConfig.near_ring])
+    return Fusion(
+        ring_weights=tuple(rings.round(4).tolist()),
+        sharpness=round(float(np.exp(value["sharpness"])), 4),
+        growth=round(float(np.clip(value["growth"], 0.0, 1.0)), 4),
+        floor=float(f"{np.exp(value['floor']):.4g}"),
+        surface=tuple(value["surface"].round(4).tolist()),
+        offsets={name: round(float(each), 3) for name, each in zip(names, value["offsets"], strict=True)},
+    )
+
+
+@dataclass(frozen=True)
+class _Data:
+    """Samples as tensors, with zeros for views that a sample does not have."""
+
+    objects: Tensor
+    """(n, views, objects) share of each category in the view's posterior without surfaces."""
+    behind: Tensor
+    """(n, views) share of the surfaces."""
+    ring: Tensor
+    weight: Tensor
+    category: Tensor
+    """(n,) number of the true object; the last one is none."""
+
+    @classmethod
+    def of(cls, samples: Sequence[Sample], sectors: int) -> _Data:
+        most = max(len(each.view) for each in samples)
+        shape, kinds = (len(samples), most), int((~IS_SURFACE).sum())
+        objects = np.full((*shape, kinds), 1.0 / kinds, np.float32)
+        behind, weight = np.full(shape, 0.5, np.float32), np.zeros(shape, np.float32)
+        ring, category = np.zeros(shape, np.int64), np.full(len(samples), kinds, np.int64)
+        number = np.cumsum(~IS_SURFACE) - 1
+        for i, each in enumerate(samples):
+            n = len(each.view)
+            inside, surface = each.mean[:, ~IS_SURFACE], each.mean[:, IS_SURFACE].sum(axis=1)
+            objects[i, :n] = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1e-3)
+            behind[i, :n] = surface / np.maximum(surface + inside.sum(axis=1), 1e-6)
+            ring[i, :n], weight[i, :n] = each.view // sectors, each.weight
+            if each.category >= 0:
+                category[i] = number[each.category]
+        return cls(*(torch.from_numpy(each) for each in (objects, behind, ring, weight, category)))
+
+    def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
+        """Returns what `Fusion.probabilities` computes, before the softmax: (n, objects and none)."""
+        weight = self.weight * (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()[self.ring]
+        total = weight.sum(dim=1, keepdim=True).clamp(min=1e-6)
+        averaged = (weight[..., None] * self.objects).sum(dim=1) / total
+        behind = ((weight * self.behind).sum(dim=1, keepdim=True) / total).clamp(1e-3, 1.0 - 1e-3)
+        total = total.clamp(min=0.05)
+        sharpness = free["sharpness"].exp() * total ** free["growth"].clamp(0.0, 1.0)
+        z = torch.log_softmax(sharpness * torch.log(averaged + free["floor"].exp()), dim=1) + free["offsets"]
+        constant, slope, growth = free["surface"]
+        none = constant + slope * torch.logit(behind) + growth * torch.log(total)
+        return torch.cat([z, none], dim=1)
+
+
+def probabilities(
+    fusion: Fusion, samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors
+) -> Float32[np.ndarray, "n classes"]:
+    """Returns the probability of each category of `MPCAT40[1:]`, for each sample."""
+    rings = np.array(fusion.ring_weights, np.float32)
+    return np.concatenate(
+        [fusion.probabilities(each.mean[None], (each.weight * rings[each.view // sectors])[None]) for each in samples]
+    )
+
+
+def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
+    """Returns the probabilities of each sample by parameters that were fitted to other houses."""
+    houses = sorted({each.house for each in samples})
+    fold = {house: number % min(FOLDS, len(houses)) for number, house in enumerate(houses)}
+    result = np.zeros((len(samples), len(IS_SURFACE)), np.float32)
+    for number in sorted(set(fold.values())):
+        test = [i for i, each in enumerate(samples) if fold[each.house] == number]
+        others = [each for each in samples if fold[each.house] != number]
+        result[test] = probabilities(fit(others), [samples[i] for i in test])
+    return result
+
+
+def judge(
+    p: Float[np.ndarray, "n classes"], samples: Sequence[Sample], among: Bool[np.ndarray, "n goals"] | None = None
+) -> dict[str, Any]:
+    """Returns the quality of the probabilities of goal categories: calibration, and how well they rank.
+
+    Args:
+        p: of each category of `MPCAT40[1:]`, for each sample.
+        samples: the same samples.
+        among: pairs of sample and goal that count; by default those with a probability of at least `PLAUSIBLE`.
+    """
+    from sklearn.metrics import average_precision_score
+
+    goals = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
+    truth = np.array([each.category for each in samples])[:, None] == goals
+    among = p[:, goals] >= PLAUSIBLE if among is None else among
+    q, y = np.clip(p[:, goals][among].astype(np.float64), 1e-4, 1.0 - 1e-4), truth[among]
+    rows = []
+    for low, high in itertools.pairwise(_BINS):
+        inside = (q >= low) & (q < high)
+        if inside.any():
+            mean, true = float(q[inside].mean()), float(y[inside].mean())
+            rows.append({"from": low, "n": int(inside.sum()), "mean": round(mean, 3), "true": round(true, 3)})
+    return {
+        "pairs": len(y),
+        "true": round(float(y.mean()), 4),
+        "log_loss": round(float(-np.where(y, np.log(q), np.log1p(-q)).mean()), 4),
+        "brier": round(float(((q - y) ** 2).mean()), 4),
+        "average_precision": round(float(average_precision_score(y, q)), 4),
+        "calibration": rows,
+    }

@@ -1,0 +1,99 @@
+"""The tool that logs tracks and fits the fusion of views: its log, how it continues one, what it refuses."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sim.episodes.splits import Episode, write_split
+from sim.geometry.pose import Pose
+from sim.interface import MPCAT40, ConfigError
+from tests.helpers.worlds import room, with_box
+from tools import train_tracks
+
+
+@pytest.fixture(scope="module")
+def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("splits") / "tiny"
+    folder.mkdir()
+    furnished = with_box(room(7, 5), "sofa_00", centre_m=(3.0, 0.5, 0.4), half_m=(0.4, 0.8, 0.4))
+    (folder / "seats.xml").write_text(furnished.spec.to_xml())
+    episodes = [Episode(f"tiny_{i}", "seats", "sofa", Pose(-2.0, 0.4 * i, 0.3 * i), 3.5) for i in range(3)]
+    write_split(folder, episodes, {"seats": {"sofa": []}}, version="0.0.1")
+    return folder
+
+
+def played(split: Path, log: Path, episodes: int) -> list[dict]:
+    """The log after this number of episodes; it holds too few tracks for a fit."""
+    args = train_tracks.Args(split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log)
+    with pytest.raises(ConfigError, match="100 are needed"):
+        train_tracks.main(args)
+    return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
+
+
+def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
+    first = played(split, tmp_path, 2)
+    assert [line["steps"] for line in first] == [30, 30]
+    for line in first:
+        content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
+        assert len(content["counts"]) == line["tracks"] > 0
+        assert content["mean"].shape == (len(content["track"]), len(MPCAT40) - 1)
+        assert content["track"].max() < line["tracks"]
+        assert (content["weight"] > 0).all()
+        assert content["counts"][:, MPCAT40.index("sofa")].max() > 100
+        sofa = int(content["counts"][:, MPCAT40.index("sofa")].argmax())
+        seen_as = content["mean"][content["track"] == sofa].mean(axis=0)
+        assert seen_as[MPCAT40.index("sofa") - 1] > 0.2
+    more = played(split, tmp_path, 3)
+    assert more[:2] == first
+    assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
+
+
+def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
+    args = train_tracks.Args(split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path)
+    with pytest.raises(ConfigError, match="100 are needed"):
+        train_tracks.main(args)
+    with pytest.raises(ConfigError, match="holds a run with seed"):
+        train_tracks.main(replace(args, seed=4))
+    (tmp_path / "tracks" / "tiny_0.npz").write_bytes(b"PK")
+    with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of tools/train_tracks\.py"):
+        train_tracks.main(args)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"), [({"split": "val"}, "fitted on 'val'"), ({"semantics": "gt"}, "has nothing to fit")]
+)
+def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
+    with pytest.raises(ConfigError, match=message):
+        train_tracks.main(train_tracks.Args(**{"split": "val", **options}))
+
+
+def test_merged_tracks_are_counted_together():
+    class Merged:
+        """Track 2 became a part of track 1."""
+
+        @property
+        def evidence(self) -> Merged:
+            return self
+
+        @staticmethod
+        def views(tracks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return np.ones((len(tracks), 2, 40), np.float32), np.array([[1.0, 0.0]], np.float32)
+
+        @staticmethod
+        def now() -> np.ndarray:
+            return np.array([0, 1, 1])
+
+        @staticmethod
+        def sizes(tracks: np.ndarray) -> np.ndarray:
+            return np.array([0, 50, 0])[tracks]
+
+    counts = np.zeros((5, len(MPCAT40)), np.int64)
+    counts[1, 3], counts[2, 3] = 10, 5
+    content = train_tracks.logged(Merged(), counts)  # type: ignore[arg-type]
+    assert content["counts"][:, 3].tolist() == [15]
+    assert content["track"].tolist() == [0]
