@@ -103,6 +103,8 @@ def main(args: Args) -> int:
     split = load_split(args.split)
     episodes = tracks_of(args, split)
     samples = samples_of(episodes, seed=args.seed)
+    if not samples:
+        raise ConfigError("The log holds no tracks: play episodes, with --minutes more than 0 or without it.")
     file = args.out or FOLDER / f"{args.semantics}.json"
     about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
     about["tracks"] = sum(len(each["counts"]) for each in episodes)

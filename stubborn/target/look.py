@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float, Float32
 
 from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, ConfigError
@@ -21,13 +21,15 @@ from stubborn.target.viewpoints import ViewpointFinder
 class LookConfig:
     """Probabilities at which a track is visited and accepted, and viewpoints."""
 
-    bar: tuple[tuple[int, float], ...] = ((0, 0.05), (40, 0.05), (100, 0.45), (200, 0.68), (300, 0.8), (500, 0.92))
+    bar: tuple[tuple[int, float], ...] = ((0, 0.05), (40, 0.05), (100, 0.4), (200, 0.57), (300, 0.69), (500, 0.8))
     """(Steps left, probability), with straight lines between: a track is accepted from this probability on. A wrong
     STOP costs what going on would still bring, which is the probability to succeed later; it falls as steps run out."""
     slack: float = 0.12
     """The robot goes on to an accepted track until it is below the bar by this share of it. It stops only above."""
     visit: float = 0.3
     """A track below the bar is looked at from this probability on."""
+    keep: float = 0.6
+    """A look goes on until the probability falls below this share of `visit`."""
     most_looks: int = 2
     """A track is looked at this often at most."""
     look_m: tuple[float, float] = (1.3, 2.2)
@@ -49,9 +51,10 @@ class LookConfig:
             raise ConfigError(
                 f"LookConfig.bar must be pairs of growing steps and probabilities in [0, 1], got {self.bar}."
             )
-        if not (0.0 <= self.slack <= 1.0 and 0.0 < self.visit <= 1.0):
+        if not (0.0 <= self.slack <= 1.0 and 0.0 <= self.keep <= 1.0 and 0.0 < self.visit <= 1.0):
             raise ConfigError(
-                f"LookConfig needs slack in [0, 1] and visit in (0, 1], got {self.slack} and {self.visit}."
+                "LookConfig needs slack and keep in [0, 1] and visit in (0, 1], "
+                f"got {self.slack}, {self.keep} and {self.visit}."
             )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
@@ -73,6 +76,8 @@ class Verdicts:
         self.rejected: set[int] = set()
         """Those that have been looked at and are below the bar. They are accepted after all when it falls below them,
         or when they are seen again and look better."""
+        self.doubtful: list[int] = []
+        """Those that are worth a look."""
         self.looks: dict[int, int] = {}
         self.bar = 1.0
         """The probability from which a track is accepted now."""
@@ -80,27 +85,38 @@ class Verdicts:
     def update(
         self,
         probability: Float32[np.ndarray, " numbers"],
-        in_time: Bool[np.ndarray, " numbers"],
+        distance_m: Float[np.ndarray, " numbers"],
         evidence: Evidence,
         step: int,
+        pursued: int | None = None,
     ) -> None:
-        """Accepts and rejects tracks.
+        """Accepts and rejects tracks, and finds those that are worth a look.
 
         Args:
             probability: of the goal, for each track.
-            in_time: True where the robot can be there before the episode ends.
+            distance_m: of the robot to each.
             evidence: the views of the tracks.
             step: of the episode.
+            pursued: the track that is being looked at.
         """
         c = self.config
         self.bar = 0.5 if self.exact else c.bar_at(step)
+        in_time = step + c.steps_per_metre * distance_m <= MAX_STEPS
         passes = (probability >= self.bar) & (in_time | self.exact)
         remains = probability >= (1.0 - c.slack) * self.bar
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
         self.rejected -= self.accepted
-        for track in self.doubtful(probability):
+        least = np.full(len(probability), c.visit)
+        if pursued is not None:
+            least[pursued] *= c.keep
+        self.doubtful = []
+        for track in np.flatnonzero(probability >= least).tolist():
+            if track in self.accepted or track in self.rejected:
+                continue
             if self.looks.get(track, 0) >= c.most_looks or self._is_seen_around(evidence.near_sectors(track)):
                 self.rejected.add(track)
+            else:
+                self.doubtful.append(track)
 
     def looked(self, track: int) -> None:
         """Counts a look at a track."""
@@ -110,11 +126,6 @@ class Verdicts:
         """Rejects a track that cannot be looked at again."""
         self.rejected.add(track)
         self.accepted.discard(track)
-
-    def doubtful(self, probability: Float32[np.ndarray, " numbers"]) -> list[int]:
-        """Returns the tracks that are worth a look."""
-        decided = self.accepted | self.rejected
-        return [t for t in np.flatnonzero(probability >= self.config.visit).tolist() if t not in decided]
 
     def _is_seen_around(self, sectors: Bool[np.ndarray, " sectors"]) -> bool:
         """Returns True for an object that was seen from directions which are far enough apart."""

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
+from sim.interface import FORWARD_M, CameraModel, Observation, RobotModel, Segmenter
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import nearest
@@ -28,8 +28,14 @@ class TrackSeekerConfig:
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)
-    core_share: float = 0.5
+    core_share: float = 0.7
     """Cells of a track whose mean score is below this share of its highest one are not driven to."""
+    as_good: float = 0.15
+    """Of the accepted tracks the nearest one is approached whose probability is at most this much below the best."""
+    part_share: float = 0.6
+    """A track beside an accepted one, with at least this share of its probability, is driven to as a part of it."""
+    part_gap_voxels: int = 1
+    """Boxes of two tracks with at most this gap are beside each other."""
 
 
 class TrackSeeker:
@@ -72,7 +78,7 @@ class TrackSeeker:
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
         self._accepted: list[int] = []  # accepted tracks that are not set aside
-        self._target: int | None = None  # the one of them that is approached
+        self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
         self._went_nearer = False
@@ -110,15 +116,16 @@ class TrackSeeker:
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         resort = LastResort.STOP if step >= self.target.last_resort_step else LastResort.NONE
         while self._accepted:
-            self._target = self._best_of(self._accepted, pose, self._target)
-            found = self._drive_in(navmap, window, pose, self._target, resort)
+            self._targets = self._best_accepted(pose)
+            found = self._drive_in(navmap, window, pose, self._with_parts(self._targets), resort)
             if found is not None:
+                self.pursued = None
                 return found
-            self._set_aside(self._target)
-        self._target = None
-        doubtful = [t for t in self.verdicts.doubtful(self.probability) if self._is_due(t)]
+            self._set_aside(self._targets)
+        self._targets = []
+        doubtful = [t for t in self.verdicts.doubtful if self._is_due(t)]
         while doubtful:
-            track = self._best_of(doubtful, pose, self.pursued)
+            track = self._best_doubtful(doubtful, pose)
             found = self._look(navmap, window, pose, track)
             if found is not None:
                 self.pursued = track
@@ -157,9 +164,7 @@ class TrackSeeker:
 
     def postpone(self, navmap: NavMap, step: int) -> None:
         """See `Seeker`."""
-        for track in (self._target, self.pursued):
-            if track is not None:
-                self._set_aside(track)
+        self._set_aside(self._targets if self.pursued is None else [*self._targets, self.pursued])
 
     def cells_of(self, navmap: NavMap, tracks: Iterable[int]) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map that some tracks own and that look like the goal."""
@@ -186,12 +191,11 @@ class TrackSeeker:
 
     def _decide(self, navmap: NavMap, pose: Pose) -> None:
         """Updates the verdicts on all tracks."""
-        look, tracks = self.config.look, self._of_episode()
-        numbers = np.arange(len(self.probability))
-        x_m, y_m = tracks.middles(numbers)
-        way_steps = look.steps_per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
+        tracks = self._of_episode()
+        x_m, y_m = tracks.middles(np.arange(len(self.probability)))
+        distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
         rejected = set(self.verdicts.rejected)
-        self.verdicts.update(self.probability, self.step + way_steps <= MAX_STEPS, tracks.evidence, self.step)
+        self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued)
         if rejected != self.verdicts.rejected:
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
@@ -206,17 +210,38 @@ class TrackSeeker:
             self._pursuit = pose, step
         return stuck
 
-    def _best_of(self, tracks: list[int], pose: Pose, before: int | None) -> int:
-        """Returns the track that was chosen before, or the one of highest probability less the cost of its distance."""
-        if before in tracks:
-            return before
+    def _best_accepted(self, pose: Pose) -> list[int]:
+        """Returns the accepted tracks that are about as good as the best one; the nearest of them is approached."""
+        worth = self._worth(self._accepted, pose)
+        return [
+            t for t, w in zip(self._accepted, worth.tolist(), strict=True) if w >= worth.max() - self.config.as_good
+        ]
+
+    def _with_parts(self, tracks: list[int]) -> list[int]:
+        """Returns some tracks and those beside them that may be parts of them: a bed can be several tracks."""
+        result = set(tracks)
+        for track in tracks:
+            others = np.flatnonzero(self.probability >= self.config.part_share * self.probability[track])
+            result.update(self._of_episode().beside(track, others, self.config.part_gap_voxels).tolist())
+        return sorted(result)
+
+    def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:
+        """Returns the track that is being looked at, or the one that is most worth a look."""
+        if self.pursued in tracks:
+            return self.pursued
+        return tracks[int(np.argmax(self._worth(tracks, pose)))]
+
+    def _worth(self, tracks: list[int], pose: Pose) -> Float64[np.ndarray, " tracks"]:
+        """Returns the probability of tracks, less the cost of their distance."""
         x_m, y_m = self._of_episode().middles(np.array(tracks))
         cost = self.config.look.per_metre * np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        return tracks[int(np.argmax(self.probability[tracks] - cost))]
+        return self.probability[tracks].astype(np.float64) - cost
 
-    def _drive_in(self, navmap: NavMap, window: Window, pose: Pose, track: int, resort: LastResort) -> Approach | None:
-        """Returns the approach to a track, on the local window if that is enough, else on the whole map."""
-        cells = self.cells_of(navmap, [track])
+    def _drive_in(
+        self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int], resort: LastResort
+    ) -> Approach | None:
+        """Returns the approach to some tracks, on the local window if that is enough, else on the whole map."""
+        cells = self.cells_of(navmap, tracks)
         for part in (window, self._known(navmap)):
             last = resort if part is not window else LastResort.NONE
             found = approach_on(navmap.view(part), cells[part.index], pose, self.finder, last)
@@ -238,19 +263,20 @@ class TrackSeeker:
         if self.verdicts.looks.get(track, 0) or seen_from.any():
             self.verdicts.give_up(track)
             return None
-        found = self._drive_in(navmap, window, pose, track, LastResort.VERIFY)
+        found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
         if found is None:
-            self._set_aside(track)
+            self._set_aside([track])
         return found
 
     def _is_due(self, track: int) -> bool:
         return self.step >= self._retry_step.get(track, 0)
 
-    def _set_aside(self, track: int) -> None:
-        """Tries a track again later, each time after twice as many steps."""
-        wait = self._wait_steps.get(track, self.target.retry_after_steps)
-        self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
-        self._accepted = [t for t in self._accepted if t != track]
+    def _set_aside(self, tracks: list[int]) -> None:
+        """Tries these tracks again later, each time after twice as many steps."""
+        for track in tracks:
+            wait = self._wait_steps.get(track, self.target.retry_after_steps)
+            self._retry_step[track], self._wait_steps[track] = self.step + wait, 2 * wait
+        self._accepted = [t for t in self._accepted if t not in tracks]
 
     def _known(self, navmap: NavMap) -> Window:
         return navmap.known_window(margin_cells=self.target.margin_cells)

@@ -167,6 +167,11 @@ class Tracks:
         probability = self.evidence.probability[number]
         return Track(number, probability, float(bottom_m), float(top_m), (float(cols_m), float(rows_m)), (x_m, y_m))
 
+    def beside(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
+        """Returns those of some tracks whose box is at most so many voxels from the box of a track."""
+        apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
+        return others[apart.max(axis=1, initial=0) <= gap_voxels]
+
     def footprint(self, number: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the map cells of a track's voxels: rows and columns of a rectangle, and a mask over it."""
         (row, col, _), (last_row, last_col, _) = self._low[number], self._high[number]

@@ -124,6 +124,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "tools.generate_houses": [
         ("--out OUT --split nowhere", "No split 'nowhere'"),
         ("--out OUT --transfer-test", "needs --furniture"),
+        ("--out OUT --only-imported", "needs --furniture"),
         ("--out OUT --furniture nowhere", "has no models.json"),
     ],
     "tools.generate_views": [
@@ -151,6 +152,12 @@ BAD: dict[str, list[tuple[str, str]]] = {
     "tools.train_rednet": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
         ("--views nowhere --val-views nowhere --out OUT", "No shards"),
+    ],
+    "tools.train_tracks": [
+        ("--split val", "fitted on 'val'"),
+        ("--split OUT --semantics gt", "has nothing to fit"),
+        ("--split nowhere --judge", "nowhere"),
+        ("--split val --judge --minutes 0 --log OUT", "holds no tracks"),
     ],
     "tools.train_verifier": [
         ("--semantics gt", "has no verifier to fit"),

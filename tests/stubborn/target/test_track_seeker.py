@@ -17,7 +17,7 @@ from stubborn.target.approach import Approach
 from stubborn.target.fusion import Fusion
 from stubborn.target.look import LookConfig
 from stubborn.target.track_seeker import TrackSeeker
-from stubborn.target.tracks import TrackConfig
+from stubborn.target.tracks import TrackConfig, Tracks
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
 ROOM = boxes_from_plan(
@@ -137,6 +137,40 @@ def test_an_object_that_is_pursued_on_one_spot_is_set_aside_and_driving_begins_t
     assert all(pursues(1.1, step) for step in range(109, 119))  # it got somewhere
     assert not pursues(1.1, 119)
     assert aside == [119]
+
+
+def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
+    """Returns an agent that has seen the table, its tracks, and the number of the most probable one."""
+    agent, seeker = agent_with(0.97)
+    run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=30)
+    assert seeker.tracks is not None
+    return agent, seeker, seeker.tracks, int(np.argmax(seeker.probability))
+
+
+def test_the_nearest_of_equally_good_tracks_is_approached_and_a_much_better_one_before_it():
+    agent, seeker, tracks, one = tracked()
+    assert agent.pose is not None
+    two = tracks._begin()
+    tracks._low[two], tracks._high[two] = tracks._low[one], tracks._high[one]
+    seeker._accepted = [one, two]
+    seeker.probability = np.append(seeker.probability, np.float32(0.0))
+    seeker.probability[[one, two]] = 0.9, 0.85
+    assert seeker._best_accepted(agent.pose) == [one, two]
+    seeker.probability[two] = 0.5
+    assert seeker._best_accepted(agent.pose) == [one]
+
+
+def test_tracks_beside_an_accepted_one_that_may_be_parts_of_it_are_approached_too():
+    _, seeker, tracks, number = tracked()
+    part, far = tracks._begin(), tracks._begin()
+    tracks._low[part] = tracks._high[part] = tracks._high[number] + (2, 0, 0)
+    tracks._low[far] = tracks._high[far] = tracks._high[number] + (3, 0, 0)
+    seeker.probability = np.append(seeker.probability, np.array([0.7, 0.7], np.float32))
+    seeker.probability[number] = 0.9
+    assert part in seeker._with_parts([number])
+    assert far not in seeker._with_parts([number])
+    seeker.probability[part] = 0.4
+    assert part not in seeker._with_parts([number])
 
 
 def test_of_a_track_that_holds_a_part_of_something_else_only_the_core_is_driven_to():
