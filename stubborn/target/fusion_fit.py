@@ -133,41 +133,41 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
 
 @dataclass(frozen=True)
 class _Data:
-    """Samples as tensors, with zeros for views that a sample does not have."""
+    """Samples as tensors: sums over the views of each range of distance, since these share a weight."""
 
     objects: Tensor
-    """(n, views, objects) share of each category in the view's posterior without surfaces."""
+    """(n, rings, objects) weighted sum of the share of each category in the posterior without surfaces."""
     behind: Tensor
-    """(n, views) share of the surfaces."""
-    ring: Tensor
+    """(n, rings) weighted sum of the share of the surfaces."""
     weight: Tensor
+    """(n, rings) sum of the weights."""
     category: Tensor
     """(n,) number of the true object; the last one is none."""
 
     @classmethod
     def of(cls, samples: Sequence[Sample], sectors: int) -> _Data:
-        most = max(len(each.view) for each in samples)
-        shape, kinds = (len(samples), most), int((~IS_SURFACE).sum())
-        objects = np.full((*shape, kinds), 1.0 / kinds, np.float32)
-        behind, weight = np.full(shape, 0.5, np.float32), np.zeros(shape, np.float32)
-        ring, category = np.zeros(shape, np.int64), np.full(len(samples), kinds, np.int64)
+        rings, kinds = len(EvidenceConfig().rings_m) + 1, int((~IS_SURFACE).sum())
+        objects = np.zeros((len(samples), rings, kinds), np.float32)
+        behind, weight = (np.zeros((len(samples), rings), np.float32) for _ in range(2))
+        category = np.full(len(samples), kinds, np.int64)
         number = np.cumsum(~IS_SURFACE) - 1
         for i, each in enumerate(samples):
-            n = len(each.view)
             inside, surface = each.mean[:, ~IS_SURFACE], each.mean[:, IS_SURFACE].sum(axis=1)
-            objects[i, :n] = inside / np.maximum(inside.sum(axis=1, keepdims=True), 1e-3)
-            behind[i, :n] = surface / np.maximum(surface + inside.sum(axis=1), 1e-6)
-            ring[i, :n], weight[i, :n] = each.view // sectors, each.weight
+            of_objects = inside.sum(axis=1)
+            ring = each.view // sectors
+            np.add.at(objects[i], ring, (each.weight / np.maximum(of_objects, 1e-3))[:, None] * inside)
+            np.add.at(behind[i], ring, each.weight * surface / np.maximum(surface + of_objects, 1e-6))
+            np.add.at(weight[i], ring, each.weight)
             if each.category >= 0:
                 category[i] = number[each.category]
-        return cls(*(torch.from_numpy(each) for each in (objects, behind, ring, weight, category)))
+        return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
         """Returns what `Fusion.probabilities` computes, before the softmax: (n, objects and none)."""
-        weight = self.weight * (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()[self.ring]
-        total = weight.sum(dim=1, keepdim=True).clamp(min=1e-6)
-        averaged = (weight[..., None] * self.objects).sum(dim=1) / total
-        behind = ((weight * self.behind).sum(dim=1, keepdim=True) / total).clamp(1e-3, 1.0 - 1e-3)
+        factor = (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()
+        total = (self.weight @ factor)[:, None].clamp(min=1e-6)
+        averaged = torch.einsum("nrc,r->nc", self.objects, factor) / total
+        behind = ((self.behind @ factor)[:, None] / total).clamp(1e-3, 1.0 - 1e-3)
         total = total.clamp(min=0.05)
         sharpness = free["sharpness"].exp() * total ** free["growth"].clamp(0.0, 1.0)
         z = torch.log_softmax(sharpness * torch.log(averaged + free["floor"].exp()), dim=1) + free["offsets"]

@@ -7,11 +7,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
 from sim.interface import MPCAT40, ConfigError, SegmenterSpec
 from stubborn.target.evidence import EvidenceConfig
-from stubborn.target.fusion import FOLDER, Fusion, fusion_for, read_fusion
-from stubborn.target.fusion_fit import PARTS, Sample, fit, judge, left_out, probabilities, samples_of, true_category
+from stubborn.target.fusion import FOLDER, IS_SURFACE, SURFACES, Fusion, fusion_for, read_fusion
+from stubborn.target.fusion_fit import (
+    PARTS,
+    Sample,
+    _Data,
+    fit,
+    judge,
+    left_out,
+    probabilities,
+    samples_of,
+    true_category,
+)
 
 CHAIR, TABLE, WALL = (MPCAT40.index(name) - 1 for name in ("chair", "table", "wall"))
 CLASSES = len(MPCAT40) - 1
@@ -136,6 +147,21 @@ def test_the_fit_finds_how_often_a_category_is_missed():
 
 def test_the_fit_finds_that_far_views_are_worth_less():
     assert fit(drawn(400, far_lies=True)).ring_weights[3] < 0.3 < fit(drawn(400)).ring_weights[3]
+
+
+def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
+    samples = drawn(200, far_lies=True)
+    fusion = fit(samples)
+    free = {
+        "rings": torch.tensor(np.log(fusion.ring_weights)),
+        "sharpness": torch.tensor(np.log(fusion.sharpness)),
+        "growth": torch.tensor(fusion.growth),
+        "floor": torch.tensor(np.log(fusion.floor)),
+        "surface": torch.tensor(fusion.surface),
+        "offsets": torch.tensor([fusion.offsets[name] for name in MPCAT40[1:] if name not in SURFACES]),
+    }
+    p = torch.softmax(_Data.of(samples, 12).log_odds({k: v.float() for k, v in free.items()}), dim=1).numpy()
+    np.testing.assert_allclose(p[:, :-1], probabilities(fusion, samples)[:, ~IS_SURFACE], atol=2e-4)
 
 
 def test_too_few_tracks_are_refused():

@@ -41,7 +41,7 @@ def look(
 
 def of(tracks: Tracks, category: str) -> list:
     """Returns the tracks that are surely of a category; slivers of a side just seen are not."""
-    found = [tracks.track(i) for i in 1 + np.flatnonzero(tracks.sizes(np.arange(1, tracks.count + 1)) >= 12)]
+    found = [tracks.track(i) for i in range(1, tracks.count + 1) if tracks.sizes(np.array([i]))[0] >= 12]
     return [track for track in found if track.category == category and track.probability.max() > 0.5]
 
 
