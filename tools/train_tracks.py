@@ -22,6 +22,8 @@ import json
 import shlex
 import sys
 import time
+import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -53,7 +55,7 @@ from stubborn.target.look import LookConfig
 from stubborn.target.track_seeker import TrackSeeker
 from stubborn.target.tracks import Tracks
 
-CURIOUS = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
+LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 """The agent accepts nothing, and looks at everything that may be the goal."""
 LEAST_VOXELS = 6
 """Smaller tracks are no candidates of the agent's and not logged."""
@@ -215,8 +217,10 @@ class TrackRunner:
             robot=self._env.robot_model,
             success=self._env.success_rule,
             segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
-            config=replace(config, seeker=replace(config.seeker, look=CURIOUS)),
+            config=replace(config, seeker=replace(config.seeker, look=LOOK_AT_ALL)),
         )
+        assert isinstance(self._agent.seeker, TrackSeeker)
+        self._agent.seeker.fusion = Fusion()  # what is logged must not depend on the parameters that the fit replaces
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode to its last step and writes its tracks; returns its line."""
@@ -288,13 +292,14 @@ def read_tracks(file: Path) -> dict[str, np.ndarray]:
     try:
         with np.load(file) as content:
             return {name: content[name] for name in ("counts", "track", "view", "mean", "weight")}
-    except (OSError, ValueError, KeyError, EOFError) as fault:
+    except (OSError, ValueError, LookupError, EOFError, zipfile.BadZipFile, zlib.error) as fault:
         raise ConfigError(f"'{file}' is no file of tools/train_tracks.py: {fault}. Delete the log.") from None
 
 
 def command(args: Args) -> str:
     """Returns the command that gives the same parameters."""
-    options = f"--split {shlex.quote(Path(args.split).name)} --semantics {args.semantics} --episodes {args.episodes}"
+    weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
+    options = f"--split {shlex.quote(args.split)} --semantics {args.semantics}{weights} --episodes {args.episodes}"
     return f"python tools/train_tracks.py {options} --max-steps {args.max_steps} --seed {args.seed}"
 
 

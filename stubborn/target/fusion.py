@@ -48,7 +48,7 @@ class Fusion:
     """Log-odds of no object: a constant, the factor of the log-odds of the surface's share, and the factor of the
     logarithm of the total weight."""
     offsets: Mapping[str, float] = field(default_factory=dict)
-    """Log-odds to add for a category: positive where the segmenter misses it more often than it makes it up."""
+    """Log-odds to add for a category: positive where the segmenter misses it more often than it reports it falsely."""
 
     def __post_init__(self) -> None:
         unknown = sorted(set(self.offsets) - set(MPCAT40[1:]) | set(self.offsets) & set(SURFACES))
@@ -64,7 +64,7 @@ class Fusion:
 
         Args:
             mean: mean posterior of the track's pixels in each view; any values in views without weight.
-            weight: of each view, the factor of its distance included; 0 for views that there are not.
+            weight: of each view, the factor of its distance included; 0 for directions without a view.
         """
         objects, surface = mean[:, :, ~IS_SURFACE], mean[:, :, IS_SURFACE]
         of_objects, of_surface = objects.sum(axis=2), surface.sum(axis=2)
@@ -75,6 +75,7 @@ class Fusion:
         behind = np.clip((weight * behind).sum(axis=1) / total, 1e-3, 1.0 - 1e-3)
         total = np.maximum(total, np.float32(0.05))
         z = (self.sharpness * total**self.growth)[:, None] * np.log(averaged + np.float32(self.floor))
+        z -= z.max(axis=1, keepdims=True)
         z -= np.log(np.exp(z).sum(axis=1, keepdims=True))
         z += self._offsets
         constant, slope, growth = self.surface

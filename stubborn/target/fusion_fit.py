@@ -1,7 +1,7 @@
 """Fits a `Fusion` to tracks whose true category is known, and judges it on houses left out.
 
 The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
-errs differently on other furniture, and an offset that only the houses of the fit need is worse than none. Each track
+makes other errors on other furniture, and an offset that only the houses of the fit need is worse than none. Each track
 enters with all of its views and with random parts of them, because an agent has to decide after few.
 """
 
@@ -189,6 +189,8 @@ def probabilities(
 def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
     """Returns the probabilities of each sample by parameters that were fitted to other houses."""
     houses = sorted({each.house for each in samples})
+    if len(houses) < 2:
+        raise ConfigError("Tracks of at least two houses are needed, got those of one: play more episodes.")
     fold = {house: number % min(FOLDS, len(houses)) for number, house in enumerate(houses)}
     result = np.zeros((len(samples), len(IS_SURFACE)), np.float32)
     for number in sorted(set(fold.values())):
@@ -213,6 +215,8 @@ def judge(
     goals = np.array([MPCAT40_ID[name] - 1 for name in GOAL_CATEGORIES])
     truth = np.array([each.category for each in samples])[:, None] == goals
     among = p[:, goals] >= PLAUSIBLE if among is None else among
+    if not among.any():
+        raise ConfigError("No track of the log may be a goal: play more episodes.")
     q, y = np.clip(p[:, goals][among].astype(np.float64), 1e-4, 1.0 - 1e-4), truth[among]
     rows = []
     for low, high in itertools.pairwise(_BINS):

@@ -39,7 +39,7 @@ class LookConfig:
     per_metre: float = 0.03
     """A track a metre farther away must be this much more probable to come first."""
     steps_per_metre: float = 6.0
-    """Steps that the way to a track takes, turns included: one that cannot be reached in time is not accepted."""
+    """Steps that a metre of the path takes, turns included: a track out of reach in time is not accepted."""
     patience_steps: int = 40
     """A track is set aside after so many steps in which the robot pursued tracks and stayed within `patience_m`."""
     patience_m: float = 1.0
@@ -47,9 +47,9 @@ class LookConfig:
 
     def __post_init__(self) -> None:
         steps = [left for left, _ in self.bar]
-        if not steps or steps != sorted(set(steps)) or not all(0.0 <= p <= 1.0 for _, p in self.bar):
+        if not steps or steps != sorted(set(steps)) or not all(0.0 < p <= 1.0 for _, p in self.bar):
             raise ConfigError(
-                f"LookConfig.bar must be pairs of growing steps and probabilities in [0, 1], got {self.bar}."
+                f"LookConfig.bar must be pairs of growing steps and probabilities in (0, 1], got {self.bar}."
             )
         if not (0.0 <= self.slack <= 1.0 and 0.0 <= self.keep <= 1.0 and 0.0 < self.visit <= 1.0):
             raise ConfigError(
@@ -69,7 +69,7 @@ class Verdicts:
     """The decision on each track, and the number of looks at it."""
 
     def __init__(self, config: LookConfig, *, exact: bool) -> None:
-        """With `exact` posteriors a track is accepted as soon as the goal is its most probable category."""
+        """With `exact` posteriors a track is accepted from a probability of 0.5 on."""
         self.config = config
         self.exact = exact
         self.accepted: set[int] = set()

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, CameraModel, Observation, RobotModel, Segmenter
+from sim.interface import FORWARD_M, CameraModel, ConfigError, Observation, RobotModel, Segmenter
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import nearest
@@ -36,6 +36,13 @@ class TrackSeekerConfig:
     """A track beside an accepted one, with at least this share of its probability, is driven to as a part of it."""
     part_gap_voxels: int = 1
     """Boxes of two tracks with at most this gap are beside each other."""
+
+    def __post_init__(self) -> None:
+        if not (0.0 <= self.core_share <= 1.0 and 0.0 <= self.part_share <= 1.0 and self.as_good >= 0.0):
+            raise ConfigError(
+                "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
+                f"{self.core_share}, {self.part_share} and {self.as_good}."
+            )
 
 
 class TrackSeeker:

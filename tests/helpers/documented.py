@@ -152,7 +152,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
-    f"{_RUN} --episodes 40 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
     f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
     f"{_RUN} --semantics gt --goal toilet": (f"{_RUN} --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",),
@@ -391,6 +390,15 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/reproduce.md
     f"{PYTHON} tools/reproduce.py ablation": (
         f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
+    ),
+    f"{PYTHON} tools/reproduce.py splits --splits val --semantics rednet --agents stubborn stubborn-plus --episodes 200"
+    " --workers 2": (
+        f"{PYTHON} tools/reproduce.py splits --splits val --semantics rednet --agents stubborn stubborn-plus"
+        " --episodes 1 --workers 1 --out {tmp}/tables",
+    ),
+    f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 100 --workers 2": (
+        f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
+        " --out {tmp}/tables",
     ),
     f"{PYTHON} tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits val large --episodes 1 --workers 1 --agents random oracle "

@@ -59,9 +59,12 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_pa
         train_tracks.main(args)
     with pytest.raises(ConfigError, match="holds a run with seed"):
         train_tracks.main(replace(args, seed=4))
-    (tmp_path / "tracks" / "tiny_0.npz").write_bytes(b"PK")
-    with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of tools/train_tracks\.py"):
-        train_tracks.main(args)
+    file = tmp_path / "tracks" / "tiny_0.npz"
+    whole = file.read_bytes()
+    for broken in (b"PK", whole[: len(whole) // 2], whole[:200] + b"\xff" * 50 + whole[250:]):
+        file.write_bytes(broken)
+        with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of tools/train_tracks\.py"):
+            train_tracks.main(args)
 
 
 @pytest.mark.parametrize(

@@ -73,6 +73,12 @@ def test_a_track_without_views_has_no_nan():
     assert p.sum() == pytest.approx(1.0, abs=1e-5)
 
 
+def test_many_views_that_tell_nothing_give_no_nan():
+    uniform = np.full((1, 48, CLASSES), 1.0 / CLASSES, np.float32)
+    p = Fusion(growth=1.0, sharpness=1.5).probabilities(uniform, np.ones((1, 48), np.float32))
+    assert np.isfinite(p).all()
+
+
 @pytest.mark.parametrize(
     "wrong", [{"offsets": {"wall": 1.0}}, {"offsets": {"unicorn": 1.0}}, {"sharpness": 0.0}, {"ring_weights": ()}]
 )

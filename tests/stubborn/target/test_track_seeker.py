@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, MPCAT40_ID, Action, Observation, RobotModel, Scores, SegmenterSpec
+from sim.interface import MAX_STEPS, MPCAT40_ID, Action, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.plus import PlusConfig
@@ -16,7 +16,7 @@ from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.approach import Approach
 from stubborn.target.fusion import Fusion
 from stubborn.target.look import LookConfig
-from stubborn.target.track_seeker import TrackSeeker
+from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.target.tracks import TrackConfig, Tracks
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
@@ -171,6 +171,12 @@ def test_tracks_beside_an_accepted_one_that_may_be_parts_of_it_are_approached_to
     assert far not in seeker._with_parts([number])
     seeker.probability[part] = 0.4
     assert part not in seeker._with_parts([number])
+
+
+@pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}])
+def test_wrong_settings_are_refused(wrong: dict):
+    with pytest.raises(ConfigError, match="TrackSeekerConfig needs"):
+        TrackSeekerConfig(**wrong)
 
 
 def test_of_a_track_that_holds_a_part_of_something_else_only_the_core_is_driven_to():
