@@ -41,7 +41,7 @@ class Sample:
 
     house: str
     category: int
-    """Index in `MPCAT40[1:]` of what it is; -1: no object."""
+    """Index of its true category in `MPCAT40[1:]`; -1: no object."""
     view: Int[np.ndarray, " views"]
     """Numbers of the views, see `Evidence.views`."""
     mean: Float32[np.ndarray, "views classes"]
@@ -49,7 +49,7 @@ class Sample:
 
 
 def true_category(counts: Int[np.ndarray, " ids"]) -> int:
-    """Returns the index in `MPCAT40[1:]` of what a track is, -1: no object, from its pixels of each true id."""
+    """Returns the index of a track's category in `MPCAT40[1:]`, -1: no object, from its pixels of each true id."""
     objects = counts.astype(np.float64)
     objects[0] = 0.0
     objects[1:][IS_SURFACE] = 0.0

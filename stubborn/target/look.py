@@ -27,11 +27,11 @@ class LookConfig:
     slack: float = 0.12
     """The robot goes on to an accepted track until it is below the bar by this share of it. It stops only above."""
     visit: float = 0.3
-    """A track below the bar is looked at from this probability on."""
+    """A track below the bar gets a look from this probability on."""
     keep: float = 0.6
     """A look goes on until the probability falls below this share of `visit`."""
     most_looks: int = 2
-    """A track is looked at this often at most."""
+    """A track gets at most so many looks."""
     look_m: tuple[float, float] = (1.3, 2.2)
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
@@ -74,7 +74,7 @@ class Verdicts:
         self.exact = exact
         self.accepted: set[int] = set()
         self.rejected: set[int] = set()
-        """Those that have been looked at and are below the bar. They are accepted after all when it falls below them,
+        """Those below the bar that had their looks. They are accepted after all when it falls below them,
         or when they are seen again and look better."""
         self.doubtful: list[int] = []
         """Those that are worth a look."""
@@ -97,7 +97,7 @@ class Verdicts:
             distance_m: of the robot to each.
             evidence: the views of the tracks.
             step: of the episode.
-            pursued: the track that is being looked at.
+            pursued: the track of the present look.
         """
         c = self.config
         self.bar = 0.5 if self.exact else c.bar_at(step)
@@ -123,7 +123,7 @@ class Verdicts:
         self.looks[track] = self.looks.get(track, 0) + 1
 
     def give_up(self, track: int) -> None:
-        """Rejects a track that cannot be looked at again."""
+        """Rejects a track that gets no further look."""
         self.rejected.add(track)
         self.accepted.discard(track)
 

@@ -184,7 +184,7 @@ class TrackSeeker:
     def _core(self, navmap: NavMap, track: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the part of a track's footprint that looks like the goal: a rectangle, and a mask over it.
 
-        A track may hold a part of what is beside the object, where the mean score is lower.
+        A track may hold a part of a neighbouring object, where the mean score is lower.
         """
         index, mask = self._of_episode().footprint(track)
         mean = navmap.score_sum[index] / np.maximum(navmap.frames_in_view[index], 1)
@@ -233,7 +233,7 @@ class TrackSeeker:
         return sorted(result)
 
     def _best_doubtful(self, tracks: list[int], pose: Pose) -> int:
-        """Returns the track that is being looked at, or the one that is most worth a look."""
+        """Returns the track of the present look, or the one that is most worth a look."""
         if self.pursued in tracks:
             return self.pursued
         return tracks[int(np.argmax(self._worth(tracks, pose)))]

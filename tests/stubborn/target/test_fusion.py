@@ -124,7 +124,7 @@ def test_a_track_is_what_a_quarter_of_its_pixels_are():
 
 
 def drawn(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
-    """Returns tracks of chairs and tables whose network takes some chairs for tables, or errs from far away."""
+    """Returns tracks of chairs and tables whose network takes some chairs for tables, or is wrong from far away."""
     rng = np.random.default_rng(0)
     result = []
     for i in range(n):
@@ -145,7 +145,7 @@ def test_the_fit_finds_how_often_a_category_is_missed():
     fusion = fit(samples)
     assert fusion.offsets["chair"] - fusion.offsets["table"] > 0.3
     p = probabilities(fusion, [each for each in samples if each.mean[0].argmax() == TABLE])
-    assert p[:, TABLE].mean() == pytest.approx(1.0 / 1.4, abs=0.1)  # of what looks like a table
+    assert p[:, TABLE].mean() == pytest.approx(1.0 / 1.4, abs=0.1)  # true tables among apparent ones
     plain, quality = judge(probabilities(Fusion(), samples), samples), judge(left_out(samples), samples)
     assert quality["log_loss"] < plain["log_loss"]
     assert sum(row["n"] for row in quality["calibration"]) == quality["pairs"]

@@ -1,4 +1,4 @@
-"""Verdicts on tracks by probability, steps left and views, and the places from which a doubtful one is looked at."""
+"""Verdicts on tracks by probability, steps left and views, and the viewpoints for a look at a doubtful one."""
 
 from __future__ import annotations
 
