@@ -145,9 +145,12 @@ class TrackSeeker:
         """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
         if self._accepted:
             at_cell = [t for t in self._accepted if self.cells_of(navmap, [t])[cell]]
-            track = max(at_cell or self._accepted, key=lambda t: self.probability[t])
+            # The cell may belong to a part that is not accepted itself: then the tracks that are approached are meant.
+            near = at_cell or [t for t in self._targets if t in self._accepted] or self._accepted
+            track = max(near, key=lambda t: self.probability[t])
             if self.probability[track] < self.verdicts.bar:  # it looked better from afar
                 self.verdicts.give_up(track)
+                self._accepted.remove(track)
                 return False
             self.confidence = float(self.probability[track])
             self.accepted_cell = self._best_cell(navmap, track)

@@ -173,6 +173,23 @@ def test_tracks_beside_an_accepted_one_that_may_be_parts_of_it_are_approached_to
     assert part not in seeker._with_parts([number])
 
 
+def test_a_stop_at_a_part_judges_the_track_that_is_approached_and_not_a_better_one_elsewhere():
+    agent, seeker, tracks, near = tracked()
+    elsewhere = tracks._begin()
+    tracks._low[elsewhere] = tracks._high[elsewhere] = tracks._low[near] + (60, 0, 0)
+    seeker.probability = np.append(seeker.probability, np.float32(0.99))
+    seeker.probability[near], seeker.verdicts.bar = 0.75, 0.8
+    seeker._accepted, seeker._targets = [near, elsewhere], [near]
+    owned = seeker.cells_of(agent.navmap, [near, elsewhere])
+    of_part = tuple(int(each[0]) for each in np.nonzero(~owned))
+    assert not seeker.judge(agent.navmap, of_part)  # type: ignore[arg-type]
+    assert seeker.verdicts.rejected >= {near}
+    assert seeker._accepted == [elsewhere]
+    seeker.probability[near], seeker._accepted, seeker._targets = 0.85, [near, elsewhere], [near]
+    assert seeker.judge(agent.navmap, of_part)  # type: ignore[arg-type]
+    assert seeker.confidence == pytest.approx(0.85)
+
+
 @pytest.mark.parametrize("wrong", [{"as_good": -0.1}, {"core_share": 1.5}, {"part_share": -1.0}])
 def test_wrong_settings_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="TrackSeekerConfig needs"):
