@@ -21,7 +21,6 @@ import io
 import json
 import shlex
 import sys
-import time
 import zipfile
 import zlib
 from collections.abc import Mapping, Sequence
@@ -34,17 +33,14 @@ import numpy as np
 from jaxtyping import Int
 
 from sim import cli
-from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record, make_segmenter
+from sim.composition.segmenters import KINDS, detector_config, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
-from sim.evaluation.executors import make_executor
-from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
 from sim.files import inside, write_atomically
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
-from sim.paths import code_hash
 from sim.reading import Count as ReadCount
 from sim.reading import Name
 from stubborn.plus import PlusConfig, plus_agent
@@ -54,6 +50,7 @@ from stubborn.target.fusion_fit import PLAUSIBLE, Sample, fit, judge, left_out, 
 from stubborn.target.look import LookConfig
 from stubborn.target.track_seeker import TrackSeeker
 from stubborn.target.tracks import Tracks
+from tools.episode_logs import LogOptions, check, line_of, lines_of
 
 LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 """The agent accepts nothing, and looks at everything that may be the goal."""
@@ -61,30 +58,10 @@ LEAST_VOXELS = 6
 """Smaller tracks are no candidates of the agent's and not logged."""
 
 
-@dataclass(frozen=True)
-class Args:
+@dataclass(frozen=True, kw_only=True)
+class Args(LogOptions):
     """Logs the tracks of episodes, then fits the fusion of views to them."""
 
-    split: str
-    """A folder of a split (tools/generate_houses.py, tools/make_episodes.py), or a shipped split."""
-    semantics: str = "rednet"
-    """The kind of segmentation whose errors are learned; one of `sim.run` that needs verification."""
-    weights: Path | None = None
-    """With --semantics rednet: weights in place of the shipped ones."""
-    episodes: cli.Count = 100
-    """Number of episodes, the first of the split."""
-    max_steps: cli.Count = 300
-    """Steps of an episode."""
-    workers: cli.Count = 1
-    """Number of processes."""
-    minutes: cli.NotNegative | None = None
-    """Time limit of the episodes; 0 runs none."""
-    judge: bool = False
-    """Fit nothing; judge the existing parameters (--out) on these tracks."""
-    seed: cli.Seed = 0
-    """Seed of the episodes."""
-    log: cli.OutFolder | None = None
-    """Folder of the log; None: runs/tracks-<semantics>-<split>."""
     out: cli.OutFile | None = None
     """File of the parameters; None: stubborn/target/fusions/<semantics>.json."""
 
@@ -101,7 +78,7 @@ class TrackLine(msgspec.Struct):
 
 def main(args: Args) -> int:
     """Runs the episodes, then fits and writes, or judges; returns the exit status."""
-    _check(args)
+    check(args)
     split = load_split(args.split)
     episodes = tracks_of(args, split)
     samples = samples_of(episodes, seed=args.seed)
@@ -142,55 +119,11 @@ def compared(samples: Sequence[Sample]) -> dict[str, Any]:
 def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or Path("runs") / f"tracks-{args.semantics}-{split.name}"
-    if args.minutes == 0:
-        lines = read_result_lines(log / "results.jsonl", TrackLine).values
-    else:
-        run = RunDirectory(log, log_config(args, split), TrackLine)
-        try:
-            run_episodes(args, split, run, log)
-            lines = run.lines
-        finally:
-            run.discard_if_empty()
-            run.close()
-    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
-    found = sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
+    runner = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
+    lines = lines_of(args, split, log, TrackLine, runner, {"tracks": 0})
     return [
-        {"house": line["house"], **read_tracks(file_of(log, line["episode_id"]))} for line in found if line["steps"]
+        {"house": line["house"], **read_tracks(file_of(log, line["episode_id"]))} for line in lines if line["steps"]
     ]
-
-
-def log_config(args: Args, split: Split) -> dict[str, Any]:
-    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others."""
-    return {
-        "semantics": args.semantics,
-        "detector": detector_record(detector_config(args.semantics, args.weights)),
-        "seed": args.seed,
-        "max_steps": args.max_steps,
-        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
-        "code": code_hash(parameters=False),
-    }
-
-
-def run_episodes(args: Args, split: Split, run: RunDirectory, log: Path) -> None:
-    """Runs the episodes that are not in the log yet, until the time is up."""
-    done = {line["episode_id"] for line in run.lines}
-    todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
-    print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
-    until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
-    (log / "tracks").mkdir(exist_ok=True)
-    spec = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
-    executor = make_executor("local", workers=args.workers)
-    for line in executor.run(spec, todo, on_death=lambda episode: line_of(episode, 0, 0)):
-        run.append(line)
-        print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line['episode_id']}: {line['tracks']} tracks", flush=True)
-        if time.monotonic() > until_s:
-            return
-
-
-def line_of(episode: Episode, steps: int, tracks: int) -> dict[str, Any]:
-    """Returns a line of the log."""
-    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
-    return about | {"steps": steps, "tracks": tracks}
 
 
 def file_of(log: Path, episode_id: str) -> Path:
@@ -238,12 +171,14 @@ class TrackRunner:
                 observation, _, terminated, truncated, _ = self._env.step(action)
                 ended = terminated or truncated
         except (EpisodeError, PhysicsError):
-            return line_of(episode, 0, 0)
+            return line_of(episode, 0, tracks=0)
         content = logged(self._tracks(), counts)
         buffer = io.BytesIO()
         np.savez_compressed(buffer, allow_pickle=False, **content)
-        write_atomically(file_of(self._log, episode.episode_id), buffer.getvalue())
-        return line_of(episode, self._env.scene.task.num_steps, len(content["counts"]))
+        file = file_of(self._log, episode.episode_id)
+        file.parent.mkdir(exist_ok=True)
+        write_atomically(file, buffer.getvalue())
+        return line_of(episode, self._env.scene.task.num_steps, tracks=len(content["counts"]))
 
     def close(self) -> None:
         """Frees the renderers."""
@@ -307,16 +242,6 @@ def _print(quality: Mapping[str, Any]) -> None:
     print("  " + ", ".join(f"{name} {value}" for name, value in quality.items() if name != "calibration"))
     for row in quality["calibration"]:
         print("  " + ", ".join(f"{name} {value}" for name, value in row.items()))
-
-
-def _check(args: Args) -> None:
-    """Raises ConfigError for arguments that are not allowed."""
-    check_semantics(args.semantics, args.weights)
-    if not KINDS[args.semantics].spec.needs_verification:
-        kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
-        raise ConfigError(f"--semantics '{args.semantics}' has nothing to fit. There is: {', '.join(kinds)}.")
-    if args.split in ("val", "test") and not args.judge:
-        raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,17 +29,14 @@ from typing import Any
 import msgspec
 
 from sim import cli
-from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record, make_segmenter
+from sim.composition.segmenters import KINDS, detector_config, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
-from sim.evaluation.executors import make_executor
-from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.rollout import episode_seed
 from sim.evaluation.workers import RunnerSpec
 from sim.files import write_atomically
 from sim.interface import Action, ConfigError
-from sim.paths import code_hash
 from sim.reading import Count as ReadCount
 from sim.reading import Name, Number
 from stubborn.agent import AgentConfig, StubbornAgent
@@ -48,39 +44,26 @@ from stubborn.target.classifiers import Features
 from stubborn.target.distances import TargetConfig
 from stubborn.target.verification import FOLDER, METHODS, FittedVerifier
 from stubborn.target.verifier_fit import fit, judge_by_category
+from tools.episode_logs import LogOptions, check, line_of, lines_of
 
 NEVER = 1_000_000
 """A step that no episode reaches."""
-BATCH = 100
-"""Number of episodes that are given to the workers together."""
 
 
-@dataclass(frozen=True)
-class Args:
+@dataclass(frozen=True, kw_only=True)
+class Args(LogOptions):
     """Logs candidates that the agent finds, then fits a verifier to them."""
 
+    split: str = "train"
+    """A shipped split, or a folder with the same layout (tools/make_episodes.py)."""
     semantics: str = "noisy"
     """The kind of segmentation whose errors are learned; one of `sim.run` that needs verification."""
-    weights: Path | None = None
-    """With --semantics rednet: weights in place of the shipped ones."""
-    split: str = "train"
-    """A shipped split, or a folder with the same layout."""
     episodes: cli.Count = 400
     """Number of episodes, the first of the split."""
-    workers: cli.Count = 1
-    """Number of processes."""
-    minutes: cli.NotNegative | None = None
-    """Time limit of the episodes; 0 runs none."""
-    judge: bool = False
-    """Fit nothing; judge the existing parameters (--out) on these candidates, by category."""
     max_steps: cli.Count = 200
     """Steps of an episode; an agent never verifies what it first finds after step 200."""
     least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled classifier."""
-    seed: cli.Seed = 0
-    """Seed of the episodes."""
-    log: cli.OutFolder | None = None
-    """Folder of the log; None: runs/verifier-<semantics>-<split>."""
     out: cli.OutFile | None = None
     """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
 
@@ -147,55 +130,8 @@ def main(args: Args) -> int:
 def candidates_of(args: Args, split: Split) -> list[dict[str, Any]]:
     """Returns the lines of the first `args.episodes` episodes; those that are not in the log yet are run now."""
     log = args.log or Path("runs") / f"verifier-{args.semantics}-{split.name}"
-    if args.minutes == 0:
-        lines = read_result_lines(log / "results.jsonl", CandidateLine).values
-    else:
-        run = RunDirectory(log, log_config(args, split), CandidateLine)
-        try:
-            run_episodes(args, split, run)
-            lines = run.lines
-        finally:
-            run.discard_if_empty()
-            run.close()
-    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
-    return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
-
-
-def log_config(args: Args, split: Split) -> dict[str, Any]:
-    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others.
-
-    The hash of the code is that of the modules without fitted parameters, since the episodes do not use them.
-    """
-    return {
-        "semantics": args.semantics,
-        "detector": detector_record(detector_config(args.semantics, args.weights)),
-        "seed": args.seed,
-        "max_steps": args.max_steps,
-        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
-        "code": code_hash(parameters=False),
-    }
-
-
-def run_episodes(args: Args, split: Split, run: RunDirectory) -> None:
-    """Runs the episodes that are not in the log yet, until the time is up."""
-    done = {line["episode_id"] for line in run.lines}
-    todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
-    print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
-    until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
-    executor = make_executor("local", workers=args.workers)
-    spec = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
-    # In batches: a house is loaded once per batch, and a run that is cut short is still balanced.
-    for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
-        for line in executor.run(spec, batch, on_death=lambda episode: line_of(episode, 0, [])):
-            run.append(line)
-            if time.monotonic() > until_s:
-                return
-
-
-def line_of(episode: Episode, steps: int, candidates: list[list[float]]) -> dict[str, Any]:
-    """Returns a line of the log."""
-    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
-    return about | {"steps": steps, "candidates": candidates}
+    runner = RunnerSpec(f"{__name__}:{CandidateRunner.__name__}", args)  # a script is `__main__` in its workers too
+    return lines_of(args, split, log, CandidateLine, runner, {"candidates": []})
 
 
 class CandidateRunner:
@@ -233,7 +169,7 @@ class CandidateRunner:
             steps = self._env.scene.task.num_steps
         except (EpisodeError, PhysicsError):
             steps = 0
-        return line_of(episode, steps, self._recorder.candidates)
+        return line_of(episode, steps, candidates=self._recorder.candidates)
 
     def close(self) -> None:
         """Frees the renderers."""
@@ -276,12 +212,7 @@ def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
 
 def _check(args: Args) -> None:
     """Raises ConfigError for arguments that are not allowed."""
-    check_semantics(args.semantics, args.weights)
-    if not KINDS[args.semantics].spec.needs_verification:
-        kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
-        raise ConfigError(f"--semantics '{args.semantics}' has no verifier to fit. There is: {', '.join(kinds)}.")
-    if args.split in ("val", "test") and not args.judge:
-        raise ConfigError(f"Verifiers are never fitted on '{args.split}'; use --judge there.")
+    check(args)
     if args.workers < 1:
         raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
     if args.minutes is not None and not args.minutes >= 0.0:

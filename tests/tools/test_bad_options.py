@@ -155,14 +155,14 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "tools.train_tracks": [
         ("--split val", "fitted on 'val'"),
-        ("--split OUT --semantics gt", "has nothing to fit"),
+        ("--split OUT --semantics gt", "makes no errors to learn"),
         ("--split nowhere --judge", "nowhere"),
         ("--split val --judge --minutes 0 --log OUT", "holds no tracks"),
     ],
     "tools.train_verifier": [
-        ("--semantics gt", "has no verifier to fit"),
+        ("--semantics gt", "makes no errors to learn"),
         ("--split nowhere", "Unknown split"),
-        ("--split val", "never fitted on 'val'"),
+        ("--split val", "fitted on 'val'"),
     ],
     "tools.trap_report": [
         ("--out OUT --split nowhere", "Unknown split"),

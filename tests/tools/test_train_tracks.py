@@ -68,7 +68,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("options", "message"), [({"split": "val"}, "fitted on 'val'"), ({"semantics": "gt"}, "has nothing to fit")]
+    ("options", "message"), [({"split": "val"}, "fitted on 'val'"), ({"semantics": "gt"}, "makes no errors to learn")]
 )
 def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
     with pytest.raises(ConfigError, match=message):
