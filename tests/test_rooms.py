@@ -36,6 +36,7 @@ ROOMS = (
 AGENT_ROOMS = (
     (
         "stubborn.raster",
+        "stubborn.network_files",
         "stubborn.navmap",
         "stubborn.canvas",
         "stubborn.surface_kernels",

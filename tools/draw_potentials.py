@@ -20,7 +20,7 @@ from sim import cli
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.twin.potential_files import Batch, SampleSet, held_back
 from stubborn.exploration.patches import LAYERS
-from stubborn.exploration.poni_net import SHIPPED, Predictor, load_poni
+from stubborn.exploration.poni_net import FILES, SHIPPED, Predictor
 
 COLOURS = {"unknown": (255, 255, 255), "seen": (224, 224, 224), "obstacle": (110, 110, 110), "trail": (150, 190, 255)}
 LEAST_SPREAD = 0.3
@@ -48,7 +48,7 @@ def main(args: Args) -> int:
     files = [file for file in sorted(args.samples.glob("*.npz")) if held_back(file)]
     if not files:
         raise ConfigError(f"No samples of a held-back plan in '{args.samples}': tools/train_poni.py writes them.")
-    predictor = Predictor(load_poni(args.weights)[0])
+    predictor = Predictor(FILES.load(args.weights)[0])
     rng = np.random.default_rng(args.seed)
     maps = []
     for file in rng.permutation(np.array([str(file) for file in files])).tolist():

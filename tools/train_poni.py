@@ -37,7 +37,7 @@ from sim.reading import Number, convert, reason_of
 from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
-from stubborn.exploration.poni_net import MAPS, PoniNet, PoniNetConfig, save_poni
+from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 from stubborn.segmentation.checkpoints import read_checkpoint
 from stubborn.segmentation.training import exponential_average
 
@@ -248,7 +248,7 @@ class Trainer:
         if total < progress.best:
             progress.best = total
             options = {key: str(value) for key, value in asdict(self.args).items()}
-            save_poni(self.args.out / "poni.safetensors", model, {"val": row, "options": options, "plans": self.plans})
+            FILES.save(self.args.out / "poni.safetensors", model, {"val": row, "options": options, "plans": self.plans})
 
     def _log(self, losses: Sequence[tuple[float, float]]) -> None:
         """Writes a row of the training curve."""

@@ -34,7 +34,7 @@ from sim.interface import ConfigError
 from sim.plans.plan import read_plan
 from sim.reading import Count, Number, convert, reason_of
 from sim.twin.semexp import SemExpEnv
-from stubborn.exploration.semexp_net import NetConfig, save_weights
+from stubborn.exploration.semexp_net import FILES, NetConfig
 from stubborn.segmentation.checkpoints import read_checkpoint
 
 try:
@@ -125,7 +125,7 @@ class Run:
             vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
         )  # fmt: skip
         if not self._resumed():
-            save_weights(args.out / "start.safetensors", self.policy.net)
+            FILES.save(args.out / "start.safetensors", self.policy.net)
         self.envs.seed(args.seed * 1_000_003 + self.goals)
 
     @property
@@ -163,7 +163,7 @@ class Run:
             "options": options,
             "torch": torch.__version__,
         }
-        save_weights(self.args.out / "semexp.safetensors", policy.net, card)
+        FILES.save(self.args.out / "semexp.safetensors", policy.net, card)
 
     def _resumed(self) -> bool:
         """Loads the state of the run, and returns whether there is one.

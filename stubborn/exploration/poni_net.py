@@ -9,32 +9,26 @@ from __future__ import annotations
 
 import functools
 import itertools
-import json
-import os
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import msgspec
 import numpy as np
 import torch
 from jaxtyping import Float, Float32, UInt8
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor, nn
 from torch.nn import functional
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
-from sim.reading import convert, reason_of
 from stubborn.exploration.patches import LAYERS
+from stubborn.network_files import Family
 
 SHIPPED = Path(__file__).with_name("weights") / "poni.safetensors"
 """The weights that ship."""
 CHANNELS = len(LAYERS) + len(GOAL_CATEGORIES)
 MAPS = 1 + len(GOAL_CATEGORIES)
 """Number of predicted maps: the area potential, then the object potential of each goal category."""
-_CONFIG_KEY = "poni_config"
 
 _Width = Annotated[int, msgspec.Meta(ge=1, le=1024)]
 
@@ -107,71 +101,9 @@ def shared_predictor(file: str | None) -> Predictor:
     """Returns the predictor with the weights of a file, or with those that ship; explorers share it.
 
     Raises:
-        ConfigError: see `load_poni`.
+        ConfigError: see `Family.load`.
     """
-    return Predictor(load_poni(SHIPPED if file is None else Path(file))[0])
-
-
-def save_poni(file: Path, model: PoniNet, metadata: Mapping[str, Any] | None = None) -> None:
-    """Writes weights with 16 bits, the sizes and some JSON values as safetensors. The file is replaced in one step.
-
-    Raises:
-        ConfigError: it cannot be written.
-    """
-    tensors = {
-        name: (tensor.half() if tensor.is_floating_point() else tensor).contiguous().cpu()
-        for name, tensor in model.state_dict().items()
-    }
-    values = {_CONFIG_KEY: asdict(model.config)} | dict(metadata or {})
-    header = {key: json.dumps(value) for key, value in values.items()}
-    part = file.with_name(file.name + ".part")
-    try:
-        part.write_bytes(save(tensors, metadata=header))
-        os.replace(part, file)
-    except (SafetensorError, OSError) as error:
-        part.unlink(missing_ok=True)
-        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
-
-
-def load_poni(file: Path) -> tuple[PoniNet, dict[str, Any]]:
-    """Returns a network in evaluation mode with the weights of a file, and the file's metadata.
-
-    Raises:
-        ConfigError: the file does not exist, is broken, or holds another network (the first difference is given).
-    """
-    if not file.is_file():
-        raise ConfigError(f"No weights at '{file}': tools/train_poni.py writes them.")
-    try:
-        with safe_open(file, framework="pt") as stream:
-            header = stream.metadata() or {}
-            tensors: dict[str, Tensor] = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118
-        metadata = {key: msgspec.json.decode(text) for key, text in header.items()}
-    except (SafetensorError, OSError, ValueError, RecursionError) as error:
-        raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
-    where = f"Weights '{file}' are of no network that predicts potentials"
-    if _CONFIG_KEY not in metadata:
-        raise ConfigError(f"{where}: their header has no '{_CONFIG_KEY}' (tools/train_poni.py writes it).")
-    config = convert(metadata.pop(_CONFIG_KEY), PoniNetConfig, where=where)
-    with torch.device("meta"):  # takes no memory, so that a size in the header cannot ask for more than the file has
-        wanted = PoniNet(config).state_dict()
-    _check(file, tensors, wanted)
-    model = PoniNet(config)
-    model.load_state_dict(tensors)
-    return model.eval(), metadata
-
-
-def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
-    """Raises ConfigError for the first tensor that is missing, of another shape, unknown, or not finite."""
-    for name in (*wanted, *given):
-        there, want = given.get(name), wanted.get(name)
-        if there is None or want is None:
-            reason = "is missing" if there is None else "is not in it"
-            raise ConfigError(f"Weights '{file}' are of another network: '{name}' {reason}.")
-        if there.shape != want.shape:
-            shapes = f"{tuple(there.shape)}, not {tuple(want.shape)}"
-            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is {shapes}.")
-        if not bool(torch.isfinite(there).all()):
-            raise ConfigError(f"Weights '{file}': '{name}' holds NaN or infinity.")
+    return Predictor(FILES.load(SHIPPED if file is None else Path(file))[0])
 
 
 def _conv(channels_in: int, channels_out: int, size: int, *, stride: int = 1) -> nn.Sequential:
@@ -181,3 +113,7 @@ def _conv(channels_in: int, channels_out: int, size: int, *, stride: int = 1) ->
         nn.BatchNorm2d(channels_out),
         nn.ReLU(inplace=True),
     )
+
+
+FILES = Family("poni", PoniNetConfig, PoniNet, "tools/train_poni.py")
+"""Reads and writes files of weights."""

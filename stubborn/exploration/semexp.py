@@ -61,9 +61,9 @@ class SemExpConfig:
         Raises:
             ConfigError: the file of weights does not exist, or holds no network of `semexp`.
         """
-        from stubborn.exploration.semexp_net import load_weights, scores  # imports PyTorch
+        from stubborn.exploration.semexp_net import FILES, scores  # imports PyTorch
 
-        net = load_weights(SHIPPED if self.weights is None else Path(self.weights))
+        net = FILES.load(SHIPPED if self.weights is None else Path(self.weights))[0]
         return SemExpExplorer(self, net.config.view, lambda given: scores(net, given))
 
 

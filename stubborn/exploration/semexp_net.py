@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import Annotated
 
+import msgspec
 import numpy as np
 import torch
 from jaxtyping import Float
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor, nn
 from torch.nn.functional import avg_pool2d
 
-from sim.interface import GOAL_CATEGORIES, ConfigError
-from sim.reading import convert, reason_of
+from sim.interface import GOAL_CATEGORIES
 from stubborn.exploration.semexp_input import GEOMETRY, PolicyInput, ViewConfig
+from stubborn.network_files import Family
 
-_CONFIG_KEY = "semexp_config"
-_MOST = 512
-"""Largest size that a header may give."""
-MAX_WEIGHT = 1e6
+_Size = Annotated[int, msgspec.Meta(ge=1, le=512)]
 _FASTER = 8.0
 """Factor of the shares that the last convolution gets, by which their weights are learned faster."""
 _START = {
@@ -43,13 +35,16 @@ TRUTH = ("path to the target", "floor never seen", "steps left")
 class NetConfig:
     """Sizes of the network and of its input."""
 
-    goal_cells: int = 15
-    local_pool: int = 4
-    global_pool: int = 16
-    relations: int = 8
+    goal_cells: _Size = 15
+    local_pool: _Size = 4
+    global_pool: _Size = 16
+    relations: _Size = 8
     """Layers into which the goal categories are mixed, with weights that depend on the goal."""
-    width: int = 24
+    width: _Size = 24
     """Channels of the convolutions."""
+
+    def __post_init__(self) -> None:
+        self.view  # noqa: B018 - raises for sizes that do not fit each other
 
     @property
     def view(self) -> ViewConfig:
@@ -207,70 +202,5 @@ def scores(net: SemExpNet, given: PolicyInput) -> Float[np.ndarray, " goals"]:
         return net(*as_tensors(given))[0][0].numpy()
 
 
-def save_weights(file: Path, net: SemExpNet, metadata: Mapping[str, Any] | None = None) -> None:
-    """Writes weights and sizes as safetensors; `metadata` are values that JSON can hold. The file is replaced at once.
-
-    Raises:
-        ConfigError: the file cannot be written.
-    """
-    header = {_CONFIG_KEY: json.dumps(asdict(net.config))}
-    header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
-    part = file.with_name(file.name + ".part")
-    tensors = {name: tensor.detach().contiguous().cpu() for name, tensor in net.state_dict().items()}
-    try:
-        part.write_bytes(save(tensors, metadata=header))
-        os.replace(part, file)
-    except (SafetensorError, OSError) as error:
-        part.unlink(missing_ok=True)
-        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
-
-
-def load_weights(file: Path) -> SemExpNet:
-    """Returns the network of a file of weights, for evaluation.
-
-    Raises:
-        ConfigError: the file does not exist, is broken, or holds another network.
-    """
-    if not file.is_file():
-        raise ConfigError(f"No weights at '{file}': tools/train_semexp.py makes them.")
-    try:
-        with safe_open(file, framework="pt") as stream:
-            header = stream.metadata() or {}
-            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118 - no dict
-    except (SafetensorError, OSError) as error:
-        raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
-    net = SemExpNet(_config(file, header))
-    for name, wanted in net.state_dict().items():
-        given = tensors.get(name)
-        if given is None or given.shape != wanted.shape:
-            told = "is missing" if given is None else f"is {tuple(given.shape)}, not {tuple(wanted.shape)}"
-            raise ConfigError(f"Weights '{file}' are of another network: '{name}' {told}.")
-        if not bool((given.abs() <= MAX_WEIGHT).all()):  # NaN is not
-            raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")
-    unknown = sorted(set(tensors) - set(net.state_dict()))
-    if unknown:
-        raise ConfigError(f"Weights '{file}' are of another network: '{unknown[0]}' is not in it.")
-    net.load_state_dict(tensors)
-    return net.eval()
-
-
-def _config(file: Path, header: Mapping[str, str]) -> NetConfig:
-    """Returns the sizes in the header.
-
-    Raises:
-        ConfigError: there are none, or they make no sense.
-    """
-    where = f"Weights '{file}' are not of semexp"
-    if _CONFIG_KEY not in header:
-        raise ConfigError(f"{where}: their header has no '{_CONFIG_KEY}'.")
-    try:
-        stored = json.loads(header[_CONFIG_KEY])
-    except (ValueError, RecursionError):
-        raise ConfigError(f"{where}: '{_CONFIG_KEY}' in their header is no JSON.") from None
-    config = convert(stored, NetConfig, where=where)
-    sizes = asdict(config)
-    wrong = [name for name, size in sizes.items() if not 1 <= size <= _MOST]
-    if wrong:
-        raise ConfigError(f"{where}: {wrong[0]} is {sizes[wrong[0]]}, it must be 1 to {_MOST}.")
-    config.view  # noqa: B018 - raises for sizes that do not fit each other
-    return config
+FILES = Family("semexp", NetConfig, SemExpNet, "tools/train_semexp.py", half=False)
+"""Reads and writes files of weights."""

@@ -6,8 +6,6 @@ run: PyTorch files are read with `torch.load(weights_only=True)`.
 
 from __future__ import annotations
 
-import json
-import os
 import pickle
 import struct
 import zipfile
@@ -18,12 +16,11 @@ from typing import Annotated, Any
 
 import msgspec
 import torch
-from safetensors import SafetensorError, safe_open
-from safetensors.torch import save
 from torch import Tensor
 
 from sim.interface import ConfigError
-from sim.reading import Number, convert, reason_of, require_small_zip
+from sim.reading import Number, convert, require_small_zip
+from stubborn.network_files import read_weights, require_fit, write_weights
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
 
@@ -38,7 +35,6 @@ _BROKEN_PICKLE = (
 MAX_CHECKPOINT_BYTES = 2 << 30
 MAX_SIZE = 4096
 """Largest number of channels, blocks or classes that a header may give."""
-MAX_WEIGHT = 1e12
 
 
 class _Calibration(msgspec.Struct):
@@ -63,19 +59,8 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
         metadata: values that JSON can hold, for the file's header.
         half: store numbers with 16 bits.
     """
-    tensors = {
-        name: (tensor.half() if half and tensor.is_floating_point() else tensor).contiguous().cpu()
-        for name, tensor in model.state_dict().items()
-    }
-    header = {_CONFIG_KEY.format(family=family(model)): json.dumps(asdict(model.config))}
-    header |= {key: json.dumps(value) for key, value in (metadata or {}).items()}
-    part = file.with_name(file.name + ".part")
-    try:
-        part.write_bytes(save(tensors, metadata=header))  # `save_file` writes a file that only its owner can read
-        os.replace(part, file)
-    except (SafetensorError, OSError) as error:
-        part.unlink(missing_ok=True)
-        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
+    key = _CONFIG_KEY.format(family=family(model))
+    write_weights(file, model, {key: asdict(model.config)} | dict(metadata or {}), half=half)
 
 
 def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
@@ -89,17 +74,15 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     if not file.is_file():
         raise ConfigError(f"No weights at '{file}'.")
     if file.suffix == ".safetensors":
-        tensors, metadata = _read_safetensors(file)
+        tensors, metadata = read_weights(file)
     else:
         tensors, metadata = read_checkpoint(file), {}
     convert(metadata, _Metadata, where=f"Weights '{file}', header")
     config = _config(file, metadata)
     tensors = unwrap(tensors, file)
-    with torch.device("meta"):  # takes no memory, so that a size in the header cannot ask for more than the file has
-        wanted = build_network(config).state_dict()
-    _check(file, tensors, wanted)
+    require_fit(file, tensors, lambda: build_network(config))
     model = build_network(config)
-    model.load_state_dict({name: tensors[name] for name in wanted})
+    model.load_state_dict(tensors)
     return model.eval(), metadata
 
 
@@ -118,26 +101,6 @@ def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:
         if not isinstance(value, Tensor):
             raise ConfigError(f"Weights '{file}': '{name}' is a {type(value).__name__}, not a tensor.")
     return tensors
-
-
-def _read_safetensors(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
-    try:
-        with safe_open(file, framework="pt") as stream:
-            header = stream.metadata() or {}
-            return {name: stream.get_tensor(name) for name in stream.keys()}, _decoded(header)  # noqa: SIM118 - no dict
-    except (SafetensorError, OSError) as error:
-        raise ConfigError(f"Weights '{file}' cannot be read: {error}.") from None
-
-
-def _decoded(header: Mapping[str, str]) -> dict[str, Any]:
-    """Returns the header's values decoded from JSON; values that are not JSON (in foreign files) stay strings."""
-    decoded: dict[str, Any] = {}
-    for key, text in header.items():
-        try:
-            decoded[key] = msgspec.json.decode(text)
-        except (ValueError, RecursionError):
-            decoded[key] = text
-    return decoded
 
 
 def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mapping[str, Any]:
@@ -185,23 +148,6 @@ def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
             raise ConfigError(f"{where}: a size of {largest}, at most {MAX_SIZE} is allowed.")
         return config
     return PUBLISHED
-
-
-def _check(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
-    """Raises ConfigError for the first different name or shape, in the network's order."""
-    for name, tensor in wanted.items():
-        if name not in given:
-            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")
-        if given[name].shape != tensor.shape:
-            raise ConfigError(
-                f"Weights '{file}' are of another network: '{name}' is {tuple(given[name].shape)}, "
-                f"not {tuple(tensor.shape)}."
-            )
-    for name, tensor in given.items():
-        if name not in wanted:
-            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
-        if tensor.is_floating_point() and not bool((tensor.abs() <= MAX_WEIGHT).all()):  # NaN is not
-            raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")
 
 
 def _whole_numbers(values: Mapping[str, Any]) -> Iterator[int]:

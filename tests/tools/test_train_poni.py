@@ -15,7 +15,7 @@ from sim.interface import ConfigError
 from sim.plans.export import export_plans
 from sim.plans.plan import write_plan
 from sim.twin.potential_files import held_back
-from stubborn.exploration.poni_net import CHANNELS, Predictor, load_poni
+from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
 from tools import draw_potentials
 from tools.train_poni import Args, loss_of, main
@@ -46,7 +46,7 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     options = {"plans": (plans,), "out": tmp_path / "out", "walks": 2, "maps": 3, "most_steps": 30, "batch": 2}
     assert main(Args(**options, minutes=0.005)) == 0  # type: ignore[arg-type]
     out = tmp_path / "out"
-    model, metadata = load_poni(out / "poni.safetensors")
+    model, metadata = FILES.load(out / "poni.safetensors")
     assert metadata["plans"] == 2
     maps = Predictor(model).predict(np.zeros((CHANNELS, 128, 128), np.uint8))
     assert np.isfinite(maps).all()

@@ -12,7 +12,7 @@ from sim.interface import ConfigError
 from sim.plans.export import export_plans
 from sim.plans.plan import write_plan
 from stubborn.exploration.semexp import SemExpConfig
-from stubborn.exploration.semexp_net import load_weights
+from stubborn.exploration.semexp_net import FILES
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.worlds import room, with_box
 from tools import compare_explorers, train_semexp
@@ -49,7 +49,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     first = rows(out / "train.csv")
     assert int(first[-1]["goals"]) >= 8
     assert int(first[-1]["steps"]) >= int(first[-1]["goals"])
-    before, start = (load_weights(out / f"{name}.safetensors").state_dict() for name in ("semexp", "start"))
+    before, start = (FILES.load(out / f"{name}.safetensors")[0].state_dict() for name in ("semexp", "start"))
     assert any((before[name] != start[name]).any() for name in before)
     assert "goals 8" in capsys.readouterr().out
     with (out / "train.csv").open("a") as stream:  # a row that was written after the state
@@ -59,7 +59,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     assert again[: len(first)] == first
     assert int(again[len(first)]["goals"]) > int(first[-1]["goals"])
     assert "continues from" in capsys.readouterr().out
-    after = load_weights(out / "semexp.safetensors").state_dict()
+    after = FILES.load(out / "semexp.safetensors")[0].state_dict()
     assert any((after[name] != before[name]).any() for name in before)
     assert SemExpConfig(weights=str(out / "semexp.safetensors")).make(SMALL_CAMERA).view.cells == 60
     assert train_semexp.main(options(plans, out, goals=33, beside=(tmp_path / "none",))) == 0

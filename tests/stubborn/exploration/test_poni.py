@@ -13,7 +13,7 @@ from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.patches import LAYERS, patch_around
 from stubborn.exploration.poni import PoniConfig, PoniExplorer
-from stubborn.exploration.poni_net import MAPS, SHIPPED, PoniNet, PoniNetConfig, Predictor, load_poni, save_poni
+from stubborn.exploration.poni_net import FILES, MAPS, SHIPPED, PoniNet, PoniNetConfig, Predictor
 from stubborn.navmap import NavMap
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.ground import ground, route_of
@@ -181,8 +181,8 @@ def test_settings_that_make_no_sense_are_refused(options: dict[str, float]):
 def test_weights_are_read_back_with_their_sizes(tmp_path: Path):
     torch.manual_seed(0)
     model = PoniNet(SMALL).eval()
-    save_poni(tmp_path / "net.safetensors", model.half().float(), {"plans": 7})
-    loaded, metadata = load_poni(tmp_path / "net.safetensors")
+    FILES.save(tmp_path / "net.safetensors", model.half().float(), {"plans": 7})
+    loaded, metadata = FILES.load(tmp_path / "net.safetensors")
     assert (loaded.config, metadata) == (SMALL, {"plans": 7})
     channels = (np.random.default_rng(0).random((len(LAYERS) + len(GOAL_CATEGORIES), 32, 32)) < 0.1).astype(np.uint8)
     one, other = (Predictor(each).predict(channels) for each in (model, loaded))
@@ -196,38 +196,38 @@ def test_weights_are_read_back_with_their_sizes(tmp_path: Path):
 def test_a_wrong_file_is_refused_with_the_reason(tmp_path: Path):
     file = tmp_path / "net.safetensors"
     with pytest.raises(ConfigError, match="No weights at"):
-        load_poni(file)
+        FILES.load(file)
     file.write_bytes(b"something else")
     with pytest.raises(ConfigError, match="cannot be read"):
-        load_poni(file)
+        FILES.load(file)
     from safetensors.torch import save_file
 
     save_file({"a": torch.zeros(2)}, file)
-    with pytest.raises(ConfigError, match="of no network that predicts potentials"):
-        load_poni(file)
+    with pytest.raises(ConfigError, match="are not of poni"):
+        FILES.load(file)
     model = PoniNet(SMALL)
     del model.head
-    save_poni(file, model)
+    FILES.save(file, model)
     with pytest.raises(ConfigError, match=r"'head\.weight' is missing"):
-        load_poni(file)
+        FILES.load(file)
     model = PoniNet(SMALL)
     model.head = torch.nn.Conv2d(4, 2, 1)
-    save_poni(file, model)
+    FILES.save(file, model)
     with pytest.raises(ConfigError, match=r"'head\.weight' is \(2, 4, 1, 1\), not \(88, 4, 1, 1\)"):
-        load_poni(file)
+        FILES.load(file)
     model = PoniNet(SMALL)
     with torch.no_grad():
         model.head.weight[0, 0] = torch.nan
-    save_poni(file, model)
+    FILES.save(file, model)
     with pytest.raises(ConfigError, match=r"'head\.weight' holds NaN"):
-        load_poni(file)
+        FILES.load(file)
     with pytest.raises(ConfigError, match="multiple of 16"):
         PoniNetConfig(cells=40)
 
 
 def test_the_shipped_network_is_small_and_reads_the_categories():
     assert SHIPPED.stat().st_size < 5e6
-    predictor = Predictor(load_poni(SHIPPED)[0])
+    predictor = Predictor(FILES.load(SHIPPED)[0])
     navmap = corridor()
     rectangle(navmap, (1.5, 3.0), (0.2, 0.9), wall=True)
     navmap.goals_seen[navmap.seen_obstacle & (navmap.frame.mesh()[1] < 1.0)] = 1 << BED

@@ -18,12 +18,11 @@ from stubborn.exploration.patches import patch_around
 from stubborn.exploration.semexp import SHIPPED, SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import GEOMETRY, PolicyInput, ViewConfig, observe
 from stubborn.exploration.semexp_net import (
+    FILES,
     TRUTH,
     NetConfig,
     SemExpNet,
     as_tensors,
-    load_weights,
-    save_weights,
     scores,
 )
 from stubborn.navmap import NavMap
@@ -205,8 +204,8 @@ def test_the_network_scores_every_goal_cell_and_learns_from_everything_it_is_giv
 
 def test_weights_are_read_back_and_wrong_files_refused_by_a_sentence(net: SemExpNet, tmp_path: Path):
     file = tmp_path / "semexp.safetensors"
-    save_weights(file, net, {"steps": 3})
-    again = load_weights(file)
+    FILES.save(file, net, {"steps": 3})
+    again = FILES.load(file)[0]
     assert again.config == net.config
     given = observe(open_map(), Pose(0.0, 0.0, 0.0), "bed", VIEW)
     np.testing.assert_array_equal(scores(again, given), scores(net, given))
@@ -218,8 +217,8 @@ def test_weights_are_read_back_and_wrong_files_refused_by_a_sentence(net: SemExp
         "No weights at": None,
         "cannot be read": b"nothing",
         "header has no 'semexp_config'": (tensors, {}),
-        "are not of semexp: .*width.* must be 1 to 512": (tensors, {"semexp_config": '{"width": 4096}'}),
-        "is no JSON": (tensors, {"semexp_config": "{"}),
+        "are not of semexp, field .width": (tensors, {"semexp_config": '{"width": 4096}'}),
+        "are not of semexp": (tensors, {"semexp_config": "{"}),
         "'goal.weight' is missing": ({k: v for k, v in tensors.items() if k != "goal.weight"}, header),
         r"'goal.weight' is \(2,\), not \(21, 6\)": (tensors | {"goal.weight": torch.zeros(2)}, header),
         "'odd' is not in it": (tensors | {"odd": torch.zeros(2)}, header),
@@ -232,7 +231,7 @@ def test_weights_are_read_back_and_wrong_files_refused_by_a_sentence(net: SemExp
         elif content is not None:
             save_file(content[0], bad, metadata=content[1])
         with pytest.raises(ConfigError, match=message):
-            load_weights(bad)
+            FILES.load(bad)
 
 
 def test_the_shipped_weights_are_small_and_choose_in_a_few_milliseconds():

@@ -1,0 +1,145 @@
+"""Files of weights: safetensors whose header holds the size of the network; written in one step, checked when read.
+
+The header's values are JSON. One of them, named `<family>_config`, holds the size; the others tell how the weights were
+made. Only modules that need PyTorch import this one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import msgspec
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save
+from torch import Tensor, nn
+
+from sim.interface import ConfigError
+from sim.reading import convert, reason_of
+
+MAX_WEIGHT = 1e12
+"""Largest magnitude of a number in a file of weights."""
+
+ConfigT = TypeVar("ConfigT")
+NetworkT = TypeVar("NetworkT", bound=nn.Module)
+
+
+@dataclass(frozen=True)
+class Family(Generic[ConfigT, NetworkT]):
+    """A kind of network whose files are told apart by their header."""
+
+    name: str
+    """The header's entry is `<name>_config`."""
+    config: type[ConfigT]
+    """A frozen dataclass of sizes with bounds, the type of the network's attribute `config`."""
+    build: Callable[[ConfigT], NetworkT]
+    made_by: str
+    """The tool that writes such files."""
+    half: bool = True
+    """Whether numbers are stored with 16 bits."""
+
+    @property
+    def key(self) -> str:
+        """The header's entry with the size."""
+        return f"{self.name}_config"
+
+    def save(self, file: Path, model: NetworkT, metadata: Mapping[str, Any] | None = None) -> None:
+        """Writes a network with some JSON values for the header; see `write_weights`."""
+        size: Any = model.config
+        write_weights(file, model, {self.key: asdict(size)} | dict(metadata or {}), half=self.half)
+
+    def load(self, file: Path) -> tuple[NetworkT, dict[str, Any]]:
+        """Returns the network of a file, in evaluation mode, and the rest of the file's header.
+
+        Raises:
+            ConfigError: the file does not exist, is broken, or holds another network (the first difference is given).
+        """
+        if not file.is_file():
+            raise ConfigError(f"No weights at '{file}': {self.made_by} makes them.")
+        tensors, header = read_weights(file)
+        where = f"Weights '{file}' are not of {self.name}"
+        if self.key not in header:
+            raise ConfigError(f"{where}: their header has no '{self.key}'.")
+        config = convert(header.pop(self.key), self.config, where=where)
+        require_fit(file, tensors, lambda: self.build(config))
+        model = self.build(config)
+        model.load_state_dict(tensors)
+        return model.eval(), header
+
+
+def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, half: bool = True) -> None:
+    """Writes the tensors of a network.
+
+    Args:
+        file: it is replaced in one step.
+        model: the network.
+        header: values that JSON can hold.
+        half: store numbers with 16 bits.
+
+    Raises:
+        ConfigError: the file cannot be written.
+    """
+    tensors = {
+        name: (tensor.half() if half and tensor.is_floating_point() else tensor).detach().contiguous().cpu()
+        for name, tensor in model.state_dict().items()
+    }
+    part = file.with_name(file.name + ".part")
+    try:
+        content = save(tensors, metadata={key: json.dumps(value) for key, value in header.items()})
+        part.write_bytes(content)  # `save_file` writes a file that only its owner can read
+        os.replace(part, file)
+    except (SafetensorError, OSError) as error:
+        part.unlink(missing_ok=True)
+        raise ConfigError(f"Weights '{file}' cannot be written: {reason_of(error)}.") from None
+
+
+def read_weights(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
+    """Returns the tensors of a safetensors file by name, and its header; values that are no JSON stay text.
+
+    Raises:
+        ConfigError: the file cannot be read.
+    """
+    try:
+        with safe_open(file, framework="pt") as stream:
+            header = stream.metadata() or {}
+            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118 - no dict
+    except (SafetensorError, OSError) as error:
+        raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
+    decoded: dict[str, Any] = {}
+    for key, text in header.items():
+        try:
+            decoded[key] = msgspec.json.decode(text)
+        except (ValueError, RecursionError):
+            decoded[key] = text
+    return tensors, decoded
+
+
+def require_fit(file: Path, given: Mapping[str, Tensor], build: Callable[[], nn.Module]) -> None:
+    """Raises ConfigError for the first tensor that is missing, unknown, of another shape, or with NaN.
+
+    Args:
+        file: the file of the tensors, for the message.
+        given: the tensors.
+        build: returns the network. It is called without memory for its numbers, so that a size in a header cannot ask
+            for more than the file has.
+    """
+    with torch.device("meta"):
+        wanted = build().state_dict()
+    for name, tensor in wanted.items():
+        if name not in given:
+            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")
+        if given[name].shape != tensor.shape:
+            raise ConfigError(
+                f"Weights '{file}' are of another network: '{name}' is {tuple(given[name].shape)}, "
+                f"not {tuple(tensor.shape)}."
+            )
+    for name, tensor in given.items():
+        if name not in wanted:
+            raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
+        if tensor.is_floating_point() and not bool((tensor.abs() <= MAX_WEIGHT).all()):  # NaN is not
+            raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")
