@@ -11,8 +11,6 @@ the best evaluation so far, `curve.png` the picture of the two curves.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import sys
 import time
@@ -28,18 +26,19 @@ from torch import Tensor
 from torch.nn import functional
 from torch.optim.swa_utils import AveragedModel
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
+
 from sim import cli
-from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.plans.plan import read_plan
 from sim.reading import Count as ReadCount
-from sim.reading import Number, convert, reason_of
+from sim.reading import Number
 from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
-from stubborn.segmentation.checkpoints import read_checkpoint
 from stubborn.segmentation.training import exponential_average
+from tools.training_files import append_row, load_state, read_columns, save_state
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
@@ -237,7 +236,7 @@ class Trainer:
             row |= {f"{name}_choices": choices.count}
             row |= {f"{name}_{key}": value for key, value in choices.shares().items()}
         row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
-        _append(self.args.out / "val.csv", row)
+        append_row(self.args.out / "val.csv", row)
         print(
             f"held back: area {mean[0]:.4f}, objects {mean[1]:.4f}; best frontier chosen: area "
             f"{row['area_predicted_best']}, objects {row['objects_predicted_best']} (random "
@@ -256,30 +255,21 @@ class Trainer:
         progress = self.progress
         per_s = round(self.args.batch * progress.step / max(progress.spent_s, 1e-9), 1)
         row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 3), "area": area, "objects": objects}
-        _append(self.args.out / "train.csv", row | {"samples_per_s": per_s})
+        append_row(self.args.out / "train.csv", row | {"samples_per_s": per_s})
+
+    def _parts(self) -> dict[str, Any]:
+        """Returns what `state.pt` holds besides the progress."""
+        return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 
     def _save_state(self) -> None:
-        """Writes the state of the run; the file is replaced in one step."""
-        content = io.BytesIO()
-        parts = {"model": self.model, "average": self.average, "optimiser": self.optimiser}
-        state = {name: part.state_dict() for name, part in parts.items()}
-        torch.save(state | {"progress": msgspec.to_builtins(self.progress)}, content)
-        write_atomically(self.args.out / "state.pt", content.getvalue())
+        save_state(self.args.out / "state.pt", self._parts(), msgspec.to_builtins(self.progress))
 
     def _resume(self) -> None:
         """Continues from the state of an earlier process, if there is one."""
-        file = self.args.out / "state.pt"
-        if not file.exists():
-            return
-        content = read_checkpoint(file)
-        self.progress = convert(content.get("progress"), _Progress, where=f"The state '{file}' of the run")
-        try:
-            self.model.load_state_dict(content["model"])
-            self.average.load_state_dict(content["average"])
-            self.optimiser.load_state_dict(content["optimiser"])
-        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
-            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
-        print(f"continues from step {self.progress.step}, {self.progress.spent_s / 60:.1f} min", flush=True)
+        done = load_state(self.args.out / "state.pt", self._parts(), _Progress)
+        if done is not None:
+            self.progress = done
+            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
 
 
 def draw_curve(out: Path) -> None:
@@ -289,7 +279,7 @@ def draw_curve(out: Path) -> None:
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    train, val = (_columns(out / name) for name in ("train.csv", "val.csv"))
+    train, val = (read_columns(out / name) for name in ("train.csv", "val.csv"))
     figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.2))
     for axis, name in zip(axes, ("area", "objects"), strict=False):
         if train:
@@ -313,28 +303,9 @@ def draw_curve(out: Path) -> None:
     pyplot.close(figure)
 
 
-def _columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers; nothing where there is no file."""
-    if not file.exists():
-        return {}
-    with file.open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    return {key: [float(row[key]) for row in rows] for key in (rows[0] if rows else ())}
-
-
 def _targets(batch: Batch) -> tuple[Tensor, Tensor]:
     """Returns the true potentials of a batch and which of them count."""
     return torch.from_numpy(batch.potentials), torch.from_numpy(batch.counts)
-
-
-def _append(file: Path, row: dict[str, Any]) -> None:
-    """Appends a row to a CSV file; the keys of the first row are its heading."""
-    new = not file.exists()
-    with file.open("a", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, list(row))
-        if new:
-            writer.writeheader()
-        writer.writerow(row)
 
 
 if __name__ == "__main__":

@@ -12,8 +12,6 @@ The same command continues a killed run: `state.pt` holds weights, their average
 from __future__ import annotations
 
 import copy
-import csv
-import io
 import math
 import sys
 import time
@@ -29,12 +27,13 @@ from torch import Tensor
 from torch.optim.swa_utils import AveragedModel
 from torch.utils.data import DataLoader
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
+
 from sim import cli
-from sim.files import write_atomically
 from sim.interface import CameraModel, ConfigError
 from sim.reading import Count as ReadCount
-from sim.reading import Number, convert, reason_of
-from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
+from sim.reading import Number
+from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.dataset import (
     RareObjectRepeats,
     ViewDataset,
@@ -51,6 +50,7 @@ from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from stubborn.segmentation.unet import MobileEncoder, UNet
+from tools.training_files import append_row, load_state, save_state
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
@@ -135,18 +135,12 @@ def main(args: Args) -> int:
 class _Progress(msgspec.Struct):
     """How far a run is, as `state.pt` holds it."""
 
+    size: str
     step: ReadCount
     spent_s: Number
     best: float
     """-inf before the first evaluation."""
     total: ReadCount
-
-
-class _State(msgspec.Struct):
-    """The part of `state.pt` that is no tensor."""
-
-    size: str
-    progress: _Progress
 
 
 class Trainer:
@@ -281,7 +275,7 @@ class Trainer:
         iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
-        _append(self.args.out / "val.csv", row | iou.by_category)
+        append_row(self.args.out / "val.csv", row | iou.by_category)
         print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, of all {iou.everything:.3f}", flush=True)
         if iou.goals > self.best:
             self.best = iou.goals
@@ -317,7 +311,7 @@ class Trainer:
         loader = self.args.batch * (self.step - self.first_step) / max(self.loading_s, 1e-9)
         row = {"step": self.step, "of": self.total, "hours": round(self.spent_s / 3600, 4), "loss": round(loss, 4)}
         row |= {"rate": f"{rate:.2e}", "views_per_s": round(self._views_per_s(), 2)}
-        _append(self.args.out / "train.csv", row | {"loader_views_per_s": round(loader, 1)})
+        append_row(self.args.out / "train.csv", row | {"loader_views_per_s": round(loader, 1)})
 
     def _print_loss(self, loss: float) -> None:
         self._printed_s = time.perf_counter()
@@ -326,20 +320,13 @@ class Trainer:
     def _views_per_s(self) -> float:
         return self.args.batch * self.step / max(self.spent_s, 1e-9)
 
+    def _parts(self) -> dict[str, Any]:
+        """Returns what `state.pt` holds besides the progress."""
+        return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
+
     def _save_state(self) -> None:
-        """Writes the state of the run; the file is replaced in one step."""
-        content = io.BytesIO()
-        torch.save(
-            {
-                "model": self.model.state_dict(),
-                "average": self.average.state_dict(),
-                "optimiser": self.optimiser.state_dict(),
-                "progress": {"step": self.step, "spent_s": self.spent_s, "best": self.best, "total": self.total},
-                "size": self.size,
-            },
-            content,
-        )
-        write_atomically(self.args.out / "state.pt", content.getvalue())
+        progress = {"size": self.size, "step": self.step, "spent_s": self.spent_s, "best": self.best}
+        save_state(self.args.out / "state.pt", self._parts(), progress | {"total": self.total})
 
     def _resume(self) -> None:
         """Loads the state of the run, if there is one.
@@ -347,25 +334,19 @@ class Trainer:
         Raises:
             ConfigError: the run is of another size, or its state is broken.
         """
-        file = self.args.out / "state.pt"
-        if not file.exists():
+        done = load_state(
+            self.args.out / "state.pt", self._parts(), _Progress, device=self.device, check=self._require_size
+        )
+        if done is None:
             return
-        content = read_checkpoint(file, device=self.device)
-        own = {key: content.get(key) for key in ("size", "progress")}
-        state = convert(own, _State, where=f"The state '{file}' of the run")
-        if state.size != self.size:
-            raise ConfigError(f"--out '{self.args.out}' holds a run of size '{state.size}'; take another folder.")
-        try:
-            self.model.load_state_dict(content["model"])
-            self.average.load_state_dict(content["average"])
-            self.optimiser.load_state_dict(content["optimiser"])
-        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
-            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
-        progress = state.progress
-        self.step, self.spent_s, self.best = progress.step, progress.spent_s, progress.best
+        self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
         if self.args.hours is not None:
-            self.total = max(progress.total, self.step)
+            self.total = max(done.total, self.step)
         print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+
+    def _require_size(self, done: _Progress) -> None:
+        if done.size != self.size:
+            raise ConfigError(f"--out '{self.args.out}' holds a run of size '{done.size}'; take another folder.")
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:
@@ -416,20 +397,6 @@ def _device(name: str) -> torch.device:
     if name == "cuda" and not torch.cuda.is_available():
         raise ConfigError("--device cuda: PyTorch sees no CUDA device here.")
     return torch.device(name)
-
-
-def _append(file: Path, row: dict[str, Any]) -> None:
-    """Appends a row to a CSV file; the keys of the first row are its heading."""
-    heading: list[str] = []
-    if file.exists():
-        with file.open(newline="", encoding="utf-8", errors="replace") as stream:
-            heading = next(csv.reader(stream), [])
-    if not heading:
-        heading = list(row)
-        with file.open("w", newline="") as stream:
-            csv.writer(stream).writerow(heading)
-    with file.open("a", newline="") as stream:
-        csv.DictWriter(stream, heading, extrasaction="ignore").writerow(row)
 
 
 def _check(args: Args) -> None:

@@ -30,12 +30,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 
 from sim import cli
 from sim.files import write_atomically
-from sim.interface import ConfigError
 from sim.plans.plan import read_plan
-from sim.reading import Count, Number, convert, reason_of
+from sim.reading import Count, Number
 from sim.twin.semexp import SemExpEnv
 from stubborn.exploration.semexp_net import FILES, NetConfig
-from stubborn.segmentation.checkpoints import read_checkpoint
 
 try:
     from stable_baselines3 import PPO
@@ -46,6 +44,7 @@ except ImportError as error:
 
 from tools.plan_split import split_plans
 from tools.semexp_policy import SemExpPolicy
+from tools.training_files import append_row, load_state, save_state
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
@@ -149,12 +148,8 @@ class Run:
 
     def save(self) -> None:
         """Writes the state and the weights; each file is replaced in one step."""
-        content, policy = io.BytesIO(), self.policy
         progress = {"goals": self.goals, "steps": self.steps, "spent_s": self.spent_s}
-        torch.save(
-            {"net": policy.net.state_dict(), "optimiser": policy.optimizer.state_dict(), "progress": progress}, content
-        )
-        write_atomically(self.args.out / "state.pt", content.getvalue())
+        save_state(self.args.out / "state.pt", self._parts(), progress)
         options = {key: [str(f) for f in v] if isinstance(v, tuple) else v for key, v in asdict(self.args).items()}
         options["out"] = str(self.args.out)
         card = {
@@ -163,7 +158,11 @@ class Run:
             "options": options,
             "torch": torch.__version__,
         }
-        FILES.save(self.args.out / "semexp.safetensors", policy.net, card)
+        FILES.save(self.args.out / "semexp.safetensors", self.policy.net, card)
+
+    def _parts(self) -> dict[str, Any]:
+        """Returns what `state.pt` holds besides the progress."""
+        return {"net": self.policy.net, "optimiser": self.policy.optimizer}
 
     def _resumed(self) -> bool:
         """Loads the state of the run, and returns whether there is one.
@@ -171,18 +170,10 @@ class Run:
         Raises:
             ConfigError: the state is broken, or of another network.
         """
-        file = self.args.out / "state.pt"
-        if not file.exists():
+        done = load_state(self.args.out / "state.pt", self._parts(), _Progress)
+        if done is None:
             return False
-        content = read_checkpoint(file)
-        progress = convert(content.get("progress"), _Progress, where=f"The state '{file}' of the run")
-        policy = self.policy
-        try:
-            policy.net.load_state_dict(content["net"])
-            policy.optimizer.load_state_dict(content["optimiser"])
-        except (KeyError, RuntimeError, ValueError, TypeError, AttributeError) as error:
-            raise ConfigError(f"The state '{file}' of the run is of another network: {reason_of(error)}.") from None
-        self.goals, self.steps, self.spent_s = progress.goals, progress.steps, progress.spent_s
+        self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
         _cut(self.args.out / "train.csv", self.goals)
         print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
         return True
@@ -230,23 +221,13 @@ class _Watch(BaseCallback):
             row[name] = round(float(np.mean([each[name] for each in self._episodes])), 4) if self._episodes else ""
         for name in ("entropy_loss", "value_loss", "explained_variance", "approx_kl"):  # of the update before
             row[name] = round(float(logged.get(f"train/{name}", np.nan)), 4)
-        _append(run.args.out / "train.csv", row)
+        append_row(run.args.out / "train.csv", row)
         if now_s - self._printed_s >= run.args.print_s:
             self._printed_s = now_s
             print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
         if now_s - self._saved_s >= run.args.save_s:
             self._saved_s = now_s
             run.save()
-
-
-def _append(file: Path, row: dict[str, Any]) -> None:
-    """Appends a row to a CSV file, which begins with the names of the columns."""
-    fresh = not file.exists()
-    with file.open("a", newline="", encoding="utf-8") as stream:
-        table = csv.DictWriter(stream, list(row))
-        if fresh:
-            table.writeheader()
-        table.writerow(row)
 
 
 def _cut(file: Path, goals: int) -> None:

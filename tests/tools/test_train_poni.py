@@ -64,7 +64,7 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
         draw_potentials.main(replace(draw, samples=tmp_path))
 
     capsys.readouterr()
-    assert main(Args(**options, minutes=0.01)) == 0  # type: ignore[arg-type]
+    assert main(Args(**options, minutes=0.05)) == 0  # type: ignore[arg-type]
     printed = capsys.readouterr().out
     assert "2 plans, 0 made" in printed
     assert f"continues from step {first[-1]['step']}," in printed
