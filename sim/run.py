@@ -14,7 +14,6 @@ from sim import cli
 from sim.analysis import display
 from sim.composition.agents import SPECS
 from sim.composition.options import RunOptions
-from sim.evaluation.parallel import Shard
 from stubborn.agents import EXPLORERS
 
 Args = RunOptions
@@ -30,6 +29,7 @@ def main(options: RunOptions) -> int:
     from sim.composition.checks import check_options  # these bring MuJoCo, which a list does not need
     from sim.composition.playing import report_house, run_missing
     from sim.composition.runner import plan_episodes
+    from sim.evaluation.parallel import Shard
 
     check_options(options)
     if options.house is None and options.split == "test":

@@ -1,4 +1,4 @@
-"""Compiled loops over the pixels of one frame, for `stubborn.mapping`: surfaces, ground points, scores of cells.
+"""Compiled loops over the pixels of one frame: surfaces, ground points, evidence and scores of cells.
 
 They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
 Sums are in float32 and in a fixed order, because maps, and so the agent's path, depend on the last digit.
@@ -6,8 +6,11 @@ Sums are in float32 and in a fixed order, because maps, and so the agent's path,
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
-from numba import njit
+
+from sim.geometry.compiling import njit
 
 _PAIRS = ((1, 0), (0, 1), (1, 1), (1, -1))
 """Rows and columns to one of two opposite neighbours."""
@@ -49,6 +52,155 @@ def smooth_surfaces(depth, jump_1_m, every, change, count):
 
 
 @njit(cache=True)
+def shows_no_noise(depth, every, change, count, limit):
+    """Returns whether the median of the changes by `smooth_surfaces`, as 1 / depth, is less than `limit` (float32).
+
+    Pixels without neighbours on one surface do not count. With none that does there is no median: False.
+    """
+    total = below = 0
+    largest_below, least_above = np.float32(-np.inf), np.float32(np.inf)
+    for i in range(count.shape[0]):
+        for j in range(count.shape[1]):
+            if count[i, j] == 0:
+                continue
+            d = depth[i * every, j * every]
+            rough = abs(change[i, j]) / (d * d)
+            total += 1
+            if rough < limit:
+                below += 1
+                largest_below = max(largest_below, rough)
+            else:
+                least_above = min(least_above, rough)
+    if total > 0 and 2 * below == total:  # the median is the mean of the middle two
+        return np.float32(0.5) * (largest_below + least_above) < limit
+    return 2 * below > total
+
+
+@njit(cache=True)
+def nearest_down_columns(depth):
+    """Returns, for each pixel (rows, cols), the least depth in its column from the first row to its own."""
+    nearest = depth.copy()
+    for r in range(1, depth.shape[0]):
+        for c in range(depth.shape[1]):
+            above, here = nearest[r - 1, c], depth[r, c]
+            nearest[r, c] = above if above < here else here
+    return nearest
+
+
+@njit(cache=True)
+def count_obstacle_points(
+    depth, confirmed, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, low_m, top_m, eye_m, solid, tall
+):
+    """Counts the points of each cell in the obstacle band and at eye level, no further than 2.
+
+    Args:
+        depth: see `ground_points`; also all up to `far_m`.
+        low_m: heights from here to `top_m` are in the band.
+        eye_m: heights that differ by no more than this from the camera's are at eye level.
+               Points off the grid do not count.
+        solid: (rows, cols) uint8 zeros, is set to the number of points in the band; also `tall`, at eye level.
+    """
+    in_band, at_eye_level = np.empty(depth.shape[1], np.bool_), np.empty(depth.shape[1], np.bool_)
+    for r in range(depth.shape[0]):
+        line, sure, rise = depth[r], confirmed[r], up[r]
+        for c in range(line.size):  # without a branch, so that it is vectorised
+            height_m = line[c] * rise + camera_m
+            counts = sure[c] & (line[c] >= near_m) & (line[c] < far_m)
+            in_band[c] = counts & (height_m >= low_m) & (height_m <= top_m)
+            at_eye_level[c] = counts & (abs(height_m - camera_m) <= eye_m)
+        for c in range(line.size):
+            if not (in_band[c] or at_eye_level[c]):
+                continue
+            col, row = np.int32(line[c] * x_slope[c] + x_cells), np.int32(line[c] * y_slope[c] + y_cells)
+            if not (0 <= row < solid.shape[0] and 0 <= col < solid.shape[1]):
+                continue
+            if in_band[c] and solid[row, col] < 2:
+                solid[row, col] += 1
+            if at_eye_level[c] and tall[row, col] < 2:
+                tall[row, col] += 1
+
+
+@njit(cache=True)
+def sees_past(row, col, grid, sight, nearest_m, drop_m, near_m, far_m, margin_m):
+    """Returns whether a frame saw past a cell; see `stubborn.mapping.occupancy.SightLines.passes`.
+
+    Args:
+        row: of the cell; also `col`.
+        grid: x and y of the grid's corner, and the edge of a cell.
+        sight: x, y, cos and sin of the camera's pose; the first entry and the step of its rays up; those to the left.
+        nearest_m: (h, w) float32; see `stubborn.mapping.occupancy.SightLines`.
+        drop_m: from the camera down to the end of the band.
+        near_m: cells nearer than this or, with the margin, not nearer than `far_m` are not seen through.
+        margin_m: the frame must see farther than this past the cell's centre.
+    """
+    corner_x_m, corner_y_m, cell_m = grid
+    camera_x_m, camera_y_m, cos, sin, up, up_step, left, left_step = sight
+    dx = corner_x_m + (col + 0.5) * cell_m - camera_x_m
+    dy = corner_y_m + (row + 0.5) * cell_m - camera_y_m
+    ahead_m, left_m = cos * dx + sin * dy, cos * dy - sin * dx
+    if not (ahead_m > near_m and ahead_m + margin_m < far_m):
+        return False
+    image_row = int(np.ceil((up + drop_m / ahead_m) / up_step))
+    if image_row >= nearest_m.shape[0]:
+        return False
+    half_m = cell_m * math.sqrt(0.5)
+    for side_m in (-half_m, 0.0, half_m):
+        image_col = int(np.rint((left - (left_m + side_m) / ahead_m) / left_step))
+        if image_col < 0 or image_col >= nearest_m.shape[1]:
+            return False
+        if not nearest_m[image_row, image_col] > ahead_m + margin_m:
+            return False
+    return True
+
+
+@njit(cache=True)
+def cells_seen_past(rows, cols, grid, sight, nearest_m, drop_m, near_m, far_m, margin_m):
+    """Returns `sees_past` of each of some cells (n,)."""
+    passed = np.empty(rows.size, np.bool_)
+    for i in range(rows.size):
+        passed[i] = sees_past(rows[i], cols[i], grid, sight, nearest_m, drop_m, near_m, far_m, margin_m)
+    return passed
+
+
+@njit(cache=True)
+def enter_evidence(
+    part, solid, tall, evidence, obstacle, eye_level, single, hit, miss, obstacle_from, most, grid, sight, nearest_m,
+    drop_m, near_m, far_m, margin_m,
+):  # fmt: skip
+    """Enters the points of a frame into the obstacle layers; see `stubborn.mapping.occupancy.Occupancy.add`.
+
+    Args:
+        part: the first row, the row after the last, the same of columns: a rectangle with all that the frame shows.
+        solid: (rows, cols) uint8 number of points in the obstacle band, at most 2; also `tall`, at eye level.
+        evidence: (rows, cols) int8, is changed; also `obstacle` and `eye_level`, bool.
+        single: evidence of one point; `hit` that of two.
+        miss: evidence that is removed where the frame sees past a cell.
+        obstacle_from: a cell with at least so much evidence is an obstacle.
+        most: evidence does not grow beyond this.
+        grid: see `sees_past`; also all that follow.
+    """
+    for row in range(part[0], part[1]):
+        for col in range(part[2], part[3]):
+            if tall[row, col] != 0 and (hit if tall[row, col] > 1 else single) > 0:
+                eye_level[row, col] = True
+            if solid[row, col] == 0 and evidence[row, col] == 0:
+                continue
+            found = 0 if solid[row, col] == 0 else hit if solid[row, col] > 1 else single
+            known = int(evidence[row, col])
+            if found == 0 and known == 0:
+                continue
+            if found == 0 and miss > 0 and sees_past(
+                row, col, grid, sight, nearest_m, drop_m, near_m, far_m, margin_m
+            ):  # fmt: skip
+                known = max(known - miss, 0)
+            known = min(known + found, most)
+            evidence[row, col] = known
+            obstacle[row, col] = known >= obstacle_from
+            if known <= 0:
+                eye_level[row, col] = False
+
+
+@njit(cache=True)
 def ground_points(
     depth, confirmed, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, valid, rows, cols, height_m
 ):
@@ -79,23 +231,62 @@ def ground_points(
 
 
 @njit(cache=True)
-def highest_scores(flat, target, other, in_view, target_of, other_of):
+def cells_of_pixels(
+    depth, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, top_m, height, width, rows, cols
+):
+    """Computes the cell of each depth pixel, and returns the first and last row and the first and last column of all.
+
+    Args:
+        depth: see `ground_points`; also all up to `far_m`.
+        top_m: points above this have no cell, but count in what is returned.
+        height: number of rows of the grid; also `width`, of columns. Points off the grid do not count.
+        rows: (h, w) int32, is set to the row of each pixel, -1 without a cell; also `cols`.
+    """
+    first_row = first_col = 2**31 - 1
+    last_row = last_col = -1
+    for r in range(depth.shape[0]):
+        for c in range(depth.shape[1]):
+            d = depth[r, c]
+            rows[r, c] = cols[r, c] = -1
+            if not (d >= near_m and d < far_m):
+                continue
+            col, row = np.int32(d * x_slope[c] + x_cells), np.int32(d * y_slope[c] + y_cells)
+            if not (0 <= row < height and 0 <= col < width):
+                continue
+            first_row, last_row = min(first_row, row), max(last_row, row)
+            first_col, last_col = min(first_col, col), max(last_col, col)
+            if d * up[r] + camera_m <= top_m:
+                rows[r, c], cols[r, c] = row, col
+    return first_row, last_row, first_col, last_col
+
+
+@njit(cache=True)
+def highest_scores(rows, cols, target, other, in_view, target_of, other_of):
     """Reduces pixels to cells: the highest target score, and the highest other score where the target's is highest.
 
     Args:
-        flat: (n,) row-major cell of each pixel.
-        target: (n,) float32 score of the target; also `other`, the highest of any other category.
-        in_view: (cells,) bool, is set to True where a pixel lies.
-        target_of: (cells,) float32 zeros, is set to the highest target score.
-        other_of: (cells,) float32 zeros, is set to the highest other score of the pixels with that target score.
+        rows: (h, w) row of each pixel's cell, -1: none; also `cols`.
+        target: (h, w) float32 score of the target; also `other`, the highest of any other category.
+        in_view: (rows, cols) bool, is set to True where a pixel lies.
+        target_of: (rows, cols) float32 zeros, is set to the highest target score.
+        other_of: (rows, cols) float32 zeros, is set to the highest other score of the pixels with that target score.
+
+    Returns:
+        Whether a target score in a cell is more than 0.
     """
-    for i in range(flat.size):
-        in_view[flat[i]] = True
-        if target[i] > target_of[flat[i]]:
-            target_of[flat[i]] = target[i]
-    for i in range(flat.size):
-        if target[i] == target_of[flat[i]] and other[i] > other_of[flat[i]]:
-            other_of[flat[i]] = other[i]
+    scored = False
+    for i in range(rows.shape[0]):
+        for j in range(rows.shape[1]):
+            row, col = rows[i, j], cols[i, j]
+            if row < 0:
+                continue
+            in_view[row, col] = True
+            if target[i, j] > target_of[row, col]:
+                target_of[row, col], other_of[row, col] = target[i, j], other[i, j]
+                scored = True
+            elif target[i, j] == target_of[row, col] and other[i, j] > other_of[row, col]:
+                other_of[row, col] = other[i, j]
+    return scored
 
 
 @njit(cache=True)
@@ -118,3 +309,15 @@ def goal_bits(posteriors, channels, first, every, least):
                 if channel[first + i * every, first + j * every] > least:
                     bits[i, j] |= bit
     return bits
+
+
+@njit(cache=True)
+def scores_of_category(semantic, category):
+    """Returns, as float32 images, 1 where a pixel has the category, and 1 where it has another one; 0 is none."""
+    target, other = np.empty(semantic.shape, np.float32), np.empty(semantic.shape, np.float32)
+    for r in range(semantic.shape[0]):
+        for c in range(semantic.shape[1]):
+            here = semantic[r, c]
+            target[r, c] = np.float32(here == category)
+            other[r, c] = np.float32((here != 0) & (here != category))
+    return target, other

@@ -8,49 +8,66 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from sim.geometry.compiling import njit
 
 
 @njit(cache=True)
 def distance_within(mask, reach):
     """Returns the distance from every cell's centre to that of the nearest True cell, (rows, cols) float32 in cells.
 
-    Distances up to `reach` cells, a whole number, are exact; all others are `reach`.
+    Distances up to `reach` cells, a whole number up to 180, are exact; all others are `reach`.
     """
+    if reach > 180:
+        raise ValueError("distance_within: reach must be at most 180 cells, so that squares are 16-bit numbers.")
     rows, cols = mask.shape
-    one, beyond = np.float32(1.0), np.float32(reach + 1)  # whole numbers in float32 throughout: that is vectorised best
-    squared = np.full((rows + 1, cols), beyond, np.float32)  # first the distance to a True cell of the same column
+    width = cols + reach  # the columns at the end are far from everything, so that a line may run on into the next one
+    one, beyond = np.uint16(1), np.uint16(reach + 1)  # short numbers throughout: many of them are computed at once
+    gap = np.full((rows, width), beyond, np.uint16)  # first the distance to a True cell of the same column
     for row in range(rows):
-        above, here, marked = (
-            squared[row - 1],
-            squared[row],
-            mask[row],
-        )  # index -1, the last row, is used where there is none before
+        here, marked = gap[row], mask[row]
         for col in range(cols):
-            gap = above[col] + one
-            gap = gap if gap < beyond else beyond
-            here[col] = np.float32(0.0) if marked[col] else gap
+            here[col] = beyond * np.uint16(not marked[col])
+    for row in range(1, rows):
+        above, here = gap[row - 1], gap[row]
+        for col in range(width):
+            here[col] = min(np.uint16(above[col] + one), here[col])
     for row in range(rows - 2, -1, -1):
-        below, here = squared[row + 1], squared[row]
-        for col in range(cols):
-            gap = below[col] + one
-            here[col] = gap if gap < here[col] else here[col]
+        below, here = gap[row + 1], gap[row]
+        for col in range(width):
+            here[col] = min(np.uint16(below[col] + one), here[col])
+    squared = gap.reshape(-1)
+    for i in range(squared.size):
+        squared[i] = np.uint16(squared[i] * squared[i])
+    least = squared.copy()
+    for step in range(1, reach + 1):
+        away, shifted, later = np.uint16(step * step), squared[step:], least[step:]
+        for i in range(squared.size - step):
+            least[i] = min(np.uint16(shifted[i] + away), least[i])
+        for i in range(squared.size - step):
+            later[i] = min(np.uint16(squared[i] + away), later[i])
     result = np.empty((rows, cols), np.float32)
-    limit, cut = np.float32(reach * reach), np.float32(reach)
+    limit, cut = np.uint16(reach * reach), np.float32(reach)
     for row in range(rows):
-        line, least = squared[row] * squared[row], result[row]
-        least[:] = line
-        for step in range(1, min(reach, cols - 1) + 1):
-            away, shifted, later = np.float32(step * step), line[step:], least[step:]
-            for col in range(cols - step):
-                other = shifted[col] + away
-                least[col] = other if other < least[col] else least[col]
-            for col in range(cols - step):
-                other = line[col] + away
-                later[col] = other if other < later[col] else later[col]
+        here, line = least[row * width : row * width + cols], result[row]
         for col in range(cols):
-            root = np.sqrt(least[col])  # outside of the choice: a branch would not be vectorised
-            least[col] = root if least[col] <= limit else cut
+            root = np.sqrt(np.float32(here[col]))  # outside of the choice: a branch would not be vectorised
+            line[col] = root if here[col] <= limit else cut
+    return result
+
+
+@njit(cache=True)
+def speeds(clearance_m, least_m, open_m, edge_speed, rise):
+    """Returns the speed at some clearances (rows, cols); all numbers are float32.
+
+    It is `edge_speed` up to the clearance `least_m`, and `rise` more, which is 1, from `open_m` more on.
+    """
+    rows, cols = clearance_m.shape
+    one, result = np.float32(1.0), np.empty((rows, cols), np.float32)
+    for row in range(rows):
+        for col in range(cols):
+            speed = edge_speed + rise * ((clearance_m[row, col] - least_m) / open_m)
+            result[row, col] = min(max(speed, edge_speed), one)
     return result
 
 

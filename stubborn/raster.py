@@ -49,8 +49,9 @@ def connected(
     """Returns the connected part of a mask that contains a cell; empty when that cell is not in the mask."""
     if not mask[row, col]:
         return np.zeros_like(mask)
-    _, parts = cv2.connectedComponents(np.ascontiguousarray(mask).view(np.uint8), connectivity=connectivity)
-    return np.asarray(parts) == parts[row, col]
+    image = mask.astype(np.uint8, order="C")  # a copy, which OpenCV fills
+    cv2.floodFill(image, None, (int(col), int(row)), 2, flags=connectivity)
+    return image == 2
 
 
 def numbered_parts(

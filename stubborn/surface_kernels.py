@@ -6,7 +6,8 @@ They are apart from their users because numba compiles them, so that no annotati
 import math
 
 import numpy as np
-from numba import njit
+
+from sim.geometry.compiling import njit
 
 
 @njit(cache=True)

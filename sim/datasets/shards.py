@@ -15,7 +15,8 @@ import json
 import os
 import tarfile
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -30,8 +31,15 @@ from sim.interface import MPCAT40, ConfigError
 from sim.reading import read_json
 
 JPEG_QUALITY = 92
-PNG_LEVEL = 1
-"""Level of zlib, the fastest: twice as fast as the default, with files a tenth larger."""
+PNG_OPTIONS = (
+    cv2.IMWRITE_PNG_COMPRESSION, 1,
+    cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE,
+    cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_PAETH,
+)  # fmt: skip
+"""The fastest level of zlib, for runs of equal bytes, after one filter for all rows.
+
+OpenCV's own choice tries five filters on each row: it takes twice as long, and the files are 10 to 80 % larger.
+"""
 INDEX_FILE = "index.json"
 
 
@@ -51,7 +59,7 @@ class ShardNote:
     config: dict[str, Any] = field(default_factory=dict)
     """Options and versions that the bytes depend on."""
     seconds: dict[str, float] = field(default_factory=dict)
-    """Time by stage: render, encode, write."""
+    """Time by stage: render, encode (while the next view is rendered), write."""
 
 
 def shard_name(number: int) -> str:
@@ -77,13 +85,11 @@ def write_shard(
             note_file.unlink()
         with part.open("wb") as stream, tarfile.open(fileobj=stream, mode="w", format=tarfile.USTAR_FORMAT) as archive:
             began = time.perf_counter()
-            for view in views:
+            for view in _encoded_beside(views, rgb_format):
                 began = _lap(seconds, "render", began)
-                members = _encoded(view, rgb_format)
-                seen = np.bincount(view.semantic.reshape(-1), minlength=len(MPCAT40))
-                pixels, views_with, count = pixels + seen, views_with + (seen > 0), count + 1
-                began = _lap(seconds, "encode", began)
-                for suffix, content in members:
+                seconds["encode"] += view.seconds
+                pixels, views_with, count = pixels + view.pixels, views_with + (view.pixels > 0), count + 1
+                for suffix, content in view.members:
                     archive.addfile(_entry(f"{view.key}.{suffix}", len(content)), io.BytesIO(content))
                 began = _lap(seconds, "write", began)
         digest, size = _sha256(part), part.stat().st_size
@@ -152,8 +158,41 @@ def write_index(folder: Path, notes: Sequence[ShardNote], *, command: str, confi
     return index
 
 
-def _encoded(view: View, rgb_format: str) -> list[tuple[str, bytes]]:
-    png = (cv2.IMWRITE_PNG_COMPRESSION, PNG_LEVEL)
+@dataclass(frozen=True)
+class _Encoded:
+    """A view as it is written."""
+
+    key: str
+    members: list[tuple[str, bytes]]
+    """Suffix and content of its files."""
+    pixels: NDArray[np.int64]
+    """Number of pixels of each category."""
+    seconds: float
+    """Time that this took."""
+
+
+def _encoded_beside(views: Iterable[View], rgb_format: str) -> Iterator[_Encoded]:
+    """Yields encoded views; one is encoded in a thread while the caller's thread renders the next."""
+    with ThreadPoolExecutor(max_workers=1) as thread:
+        earlier: Future[_Encoded] | None = None
+        for view in views:
+            begun = thread.submit(_encoded, view, rgb_format)
+            if earlier is not None:
+                yield earlier.result()
+            earlier = begun
+        if earlier is not None:
+            yield earlier.result()
+
+
+def _encoded(view: View, rgb_format: str) -> _Encoded:
+    began = time.perf_counter()
+    pixels = cv2.calcHist([view.semantic], [0], None, [len(MPCAT40)], [0, len(MPCAT40)])  # exact below 2^24 pixels
+    members = _members(view, rgb_format)
+    return _Encoded(view.key, members, np.asarray(pixels, np.int64).reshape(-1), time.perf_counter() - began)
+
+
+def _members(view: View, rgb_format: str) -> list[tuple[str, bytes]]:
+    png = PNG_OPTIONS
     rgb_options = (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY) if rgb_format == "jpg" else png
     members = [
         (f"rgb.{rgb_format}", _image(f".{rgb_format}", cv2.cvtColor(view.rgb, cv2.COLOR_RGB2BGR), rgb_options)),

@@ -4,7 +4,8 @@ They are apart from their users because numba compiles them, so that no annotati
 """
 
 import numpy as np
-from numba import njit
+
+from sim.geometry.compiling import njit
 
 BOUNDARY_M = 1e-9
 """Points outside by at most this much count as inside."""

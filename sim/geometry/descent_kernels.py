@@ -1,7 +1,8 @@
 """The compiled loop that follows a field of distances down to its source (`sim.houses.hazards.steepest_path`)."""
 
 import numpy as np
-from numba import njit
+
+from sim.geometry.compiling import njit
 
 
 @njit(cache=True)

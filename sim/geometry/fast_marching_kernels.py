@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from sim.geometry.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")
@@ -247,20 +248,20 @@ def advance_first_order(
             entries += 1
             waiting += 1
     number = current = 0
+    one, row = np.uint64(1), np.uint64(width)  # of signed indices numba would test whether they count from the end
     while waiting > 0 and number * bucket <= limit:
         while top[current] >= 0:
             entry = top[current]
-            cell, top[current] = int(cell_of[entry]), below[entry]
+            cell, top[current] = np.uint64(cell_of[entry]), below[entry]
             below[entry], unused = unused, entry
             if bucket_of[cell] != current:
                 continue
             bucket_of[cell] = -1
             waiting -= 1
-            for step in (-width, -1, 1, width):
-                near = cell + step
+            for near in (cell - row, cell - one, cell + one, cell + row):
                 if time[near] <= time[cell] or not cost[near] < math.inf:
                     continue
-                arrival = _first_order_time(time, near, width, float(cost[near]))
+                arrival = _first_order_time(time, near, row, float(cost[near]))
                 if arrival >= time[near] - 1e-9:
                     continue
                 time[near] = arrival
@@ -295,10 +296,13 @@ def _doubled(values: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 @njit(cache=True)
-def _first_order_time(time: NDArray[np.float64], cell: int, width: int, crossing: float) -> float:
-    """Returns the travel time to a cell that takes `crossing` seconds to cross, from the times of its neighbours."""
-    x = min(time[cell - 1], time[cell + 1])
-    y = min(time[cell - width], time[cell + width])
+def _first_order_time(time: NDArray[np.float64], cell: np.uint64, row: np.uint64, crossing: float) -> float:
+    """Returns the travel time to a cell that takes `crossing` seconds to cross, from the times of its neighbours.
+
+    Neighbours of one column are `row` cells apart.
+    """
+    x = min(time[cell - np.uint64(1)], time[cell + np.uint64(1)])
+    y = min(time[cell - row], time[cell + row])
     if abs(x - y) >= crossing:
         return min(x, y) + crossing
     return 0.5 * (x + y + math.sqrt(2.0 * crossing * crossing - (x - y) * (x - y)))

@@ -15,6 +15,7 @@ from jaxtyping import Bool, Float64, Int64
 from numpy.typing import ArrayLike
 
 from sim.errors import ConfigError
+from sim.geometry.segment_kernels import mask_near_segment
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,6 +134,10 @@ class GridFrame:
 
         It has at least one row and one column, at the edge of the grid where the points are off it.
         """
+        return self.part(*self.around(x_m, y_m, margin_m))
+
+    def around(self, x_m: Sequence[float], y_m: Sequence[float], margin_m: float) -> tuple[slice, slice]:
+        """Returns the rows and columns of `patch`."""
         # In plain Python: agents do this several times a step, and NumPy takes ten times as long for two points.
         low = self.cell(min(x_m) - margin_m, min(y_m) - margin_m)
         high = self.cell(max(x_m) + margin_m, max(y_m) + margin_m)
@@ -140,7 +145,7 @@ class GridFrame:
             slice(min(max(first, 0), size - 1), min(max(last, 0), size - 1) + 1)
             for first, last, size in zip(low, high, self.shape, strict=True)
         )
-        return self.part(rows, cols)
+        return rows, cols
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +161,11 @@ class Window:
         """The index of this rectangle in an array of the larger grid."""
         return self.rows, self.cols
 
+    @property
+    def corner(self) -> tuple[int, int]:
+        """Row and column in the larger grid of this rectangle's first cell."""
+        return self.rows.start, self.cols.start
+
 
 def cells_near_segment(
     frame: GridFrame, start_xy_m: tuple[float, float], end_xy_m: tuple[float, float], radius_m: float
@@ -165,10 +175,8 @@ def cells_near_segment(
     The result is the index of a small rectangle of `frame` and the mask inside it.
     """
     (x0, y0), (x1, y1) = start_xy_m, end_xy_m
-    patch = frame.patch((x0, x1), (y0, y1), radius_m)
-    x_m, y_m = patch.frame.mesh()
-    dx, dy = x1 - x0, y1 - y0
-    length_sq = dx * dx + dy * dy
-    along = np.clip(((x_m - x0) * dx + (y_m - y0) * dy) / length_sq, 0.0, 1.0) if length_sq > 0 else 0.0
-    gap_sq = (x_m - x0 - along * dx) ** 2 + (y_m - y0 - along * dy) ** 2
-    return patch.index, gap_sq <= radius_m * radius_m
+    rows, cols = frame.around((x0, x1), (y0, y1), radius_m)
+    cell_m = frame.cell_m
+    corner_m = frame.origin_xy_m[0] + cols.start * cell_m, frame.origin_xy_m[1] + rows.start * cell_m
+    size = rows.stop - rows.start, cols.stop - cols.start
+    return (rows, cols), mask_near_segment(*size, *corner_m, cell_m, x0, y0, x1, y1, radius_m)

@@ -15,7 +15,7 @@ from stubborn.frame_kernels import goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
-from stubborn.mapping.projection import GroundPoints, Rays, sight_window_cells
+from stubborn.mapping.projection import Rays, in_range, sight_window_cells
 from stubborn.navmap import NavMap
 
 _GOAL_CHANNELS = np.array([MPCAT40_ID[goal] - 1 for goal in GOAL_CATEGORIES], np.int64)
@@ -116,15 +116,20 @@ class Mapper:
         window = self._sight_window(navmap, camera_pose)
         rays, c = self._obstacle_rays, self.config
         surfaces = Surfaces.of(rays.sample(depth), c.occupancy)
-        points = rays.project(surfaces.depth, surfaces.confirmed(c.occupancy.neighbours), camera_pose, window)
+        solid, tall = rays.count_obstacles(
+            surfaces.depth,
+            surfaces.confirmed(c.occupancy.neighbours),
+            camera_pose,
+            window,
+            band_m=(c.obstacle_min_height_m, self._obstacle_top_m),
+            eye_level_halfwidth_m=c.eye_level_halfwidth_m,
+        )
         view = navmap.view(window)
-        solid = (points.height_m >= c.obstacle_min_height_m) & (points.height_m <= self._obstacle_top_m)
-        tall = np.abs(points.height_m - self.camera.height_m) <= c.eye_level_halfwidth_m
         sight = SightLines.of_frame(
             surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
         )
-        in_band, at_eye_level = _cells(points, solid, window), _cells(points, tall, window)
-        self._occupancy.add(view, in_band, at_eye_level, sight, self._occupancy.evidence_of_one(surfaces))
+        part = in_range(self.camera, camera_pose, window.frame)
+        self._occupancy.add(view, part, solid, tall, sight, self._occupancy.evidence_of_one(surfaces))
         self._drops.add(view, surfaces.depth, camera_pose)
         return surfaces.exact
 
@@ -146,24 +151,26 @@ class Mapper:
         camera_pose = self._camera_pose(pose)
         window = self._sight_window(navmap, camera_pose)
         rays, score_pick = self._rays_for(scores.target.shape)
-        target = scores.target[score_pick]
-        d, confirmed = self._confirm(target, rays.sample(depth))
-        confirmed &= self._inner(scores.target, rim_px)[score_pick] | (target <= self.config.candidate_score)
-        points = rays.project(d, np.ones(d.shape, np.bool_), camera_pose, window)
-        if points.rows.size == 0:
-            return NOTHING_SIGHTED
-        navmap.grow_known(_span(points.rows, window.rows.start), _span(points.cols, window.cols.start))
-        low = points.height_m <= self.config.score_max_height_m
-        flat = _cells(points, low, window)
-        target = np.where(confirmed, target, 0.0)[points.valid][low]
-        other = scores.best_other[score_pick][points.valid][low]
-        self.layers.add(navmap.view(window), FrameScores(window.frame.shape, flat, target, other), step)
+        d, target, other = rays.sample(depth), scores.target[score_pick], scores.best_other[score_pick]
         found = target > self.config.candidate_score
-        if not found.any():
+        if found.any():
+            d, confirmed = self._confirm(found, d)
+            confirmed &= self._inner(scores.target, rim_px)[score_pick] | ~found
+            target, found = np.where(confirmed, target, np.float32(0.0)), found & confirmed
+        cells = rays.cells_below(d, camera_pose, window, self.config.score_max_height_m)
+        if cells.span is None:
             return NOTHING_SIGHTED
-        sure = confirmed & (scores.target[score_pick] > self.config.candidate_score)
-        self._drop_candidates(navmap.view(window), d, sure, rays, camera_pose)
-        return _note_sighting(navmap, window, np.unique(flat[found]), pose)
+        row, col = (indices.start for indices in cells.span)
+        part = navmap.frame.part(*(_moved(indices, by) for indices, by in zip(cells.span, window.corner, strict=True)))
+        navmap.grow_known(*part.index)
+        frame = FrameScores(part.frame.shape, cells.rows - row, cells.cols - col, target, other)
+        self.layers.add(navmap.view(part), frame, step)
+        shown = found & (cells.rows >= 0)
+        if not shown.any():
+            return NOTHING_SIGHTED
+        self._drop_candidates(navmap.view(window), d, found, rays, camera_pose)
+        flat = cells.rows[shown] * np.int32(window.frame.shape[1]) + cells.cols[shown]
+        return _note_sighting(navmap, window, np.unique(flat), pose)
 
     def add_goals(
         self,
@@ -187,14 +194,13 @@ class Mapper:
         np.bitwise_or.at(seen, (points.rows[low], points.cols[low]), bits[points.valid][low])
 
     def _confirm(
-        self, target: Float32[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
+        self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
     ) -> tuple[Float32[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
         """Returns depth smoothed over the target, and False at target pixels off the surface of most neighbours.
 
         At the rim of an object a noisy depth image shows what is behind or in front of it.
         """
         confirmed = np.ones(d.shape, np.bool_)
-        found = target > self.config.candidate_score
         rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
         if rows.size == 0 or self.config.occupancy.neighbours == 0:
             return d, confirmed
@@ -267,10 +273,5 @@ def _note_sighting(navmap: NavMap, window: Window, flat: Int32[np.ndarray, " n"]
     return Sighting(rows, cols, distance_m)
 
 
-def _cells(points: GroundPoints, which: Bool[np.ndarray, " n"], window: Window) -> Int32[np.ndarray, " some"]:
-    """Returns the row-major cells of some of the points."""
-    return points.rows[which] * np.int32(window.frame.shape[1]) + points.cols[which]
-
-
-def _span(indices: Int32[np.ndarray, " n"], offset: int) -> slice:
-    return slice(int(indices.min()) + offset, int(indices.max()) + offset + 1)
+def _moved(indices: slice, by: int) -> slice:
+    return slice(indices.start + by, indices.stop + by)

@@ -19,7 +19,7 @@ class ObjectLayers(Protocol):
     """Writes one frame of scores into the object layers."""
 
     def add(self, view: NavMap, frame: FrameScores, step: int) -> None:
-        """Enters a frame seen at `step` into a view of the map that contains everything in range."""
+        """Enters a frame seen at `step` into a view of the map that contains everything in it."""
         ...
 
 
@@ -29,16 +29,17 @@ class FrameScores:
     def __init__(
         self,
         shape: tuple[int, int],
-        flat: Int[np.ndarray, " n"],
-        target: Float32[np.ndarray, " n"],
-        other: Float32[np.ndarray, " n"],
+        rows: Int[np.ndarray, "h w"],
+        cols: Int[np.ndarray, "h w"],
+        target: Float32[np.ndarray, "h w"],
+        other: Float32[np.ndarray, "h w"],
     ) -> None:
-        """`flat` is the row-major cell of each pixel; `target` and `other` are its scores in [0, 1]."""
+        """`rows` and `cols` are the cell of each pixel, negative: none; `target` and `other` are scores in [0, 1]."""
         in_view, highest, other_of = np.zeros(shape, np.bool_), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-        highest_scores(flat, target, other, in_view.reshape(-1), highest.reshape(-1), other_of.reshape(-1))
+        scored = highest_scores(rows, cols, target, other, in_view, highest, other_of)
         self.in_view: Bool[np.ndarray, "rows cols"] = in_view
         """True where a pixel lies."""
-        self.target: Float32[np.ndarray, "rows cols"] | None = highest if (target > 0).any() else None
+        self.target: Float32[np.ndarray, "rows cols"] | None = highest if scored else None
         """Highest score of the target; 0 out of view. None: 0 everywhere."""
         self.other: Float32[np.ndarray, "rows cols"] = other_of
         """Highest score of any other category where the target's is highest; 0 out of view."""

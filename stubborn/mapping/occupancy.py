@@ -13,12 +13,18 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32, Int, Int8, UInt8
+from jaxtyping import Bool, Float32, Int, UInt8
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
-from stubborn.frame_kernels import smooth_surfaces
+from stubborn.frame_kernels import (
+    cells_seen_past,
+    enter_evidence,
+    nearest_down_columns,
+    shows_no_noise,
+    smooth_surfaces,
+)
 from stubborn.navmap import NavMap
 
 
@@ -64,15 +70,14 @@ class Surfaces:
     @classmethod
     def of(cls, depth: Float32[np.ndarray, "h w"], config: OccupancyConfig) -> Surfaces:
         """Returns the surfaces of an image in metres, where 0 is no distance."""
-        change, count = _smoothed(depth, config, every=4)
-        some = count > 0
-        if some.any():
-            rough_1_m = np.median(np.abs(change[some]) / np.square(depth[::4, ::4][some]))
-            # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
-            if rough_1_m < config.exact_1_m:
-                return cls(depth, None)
+        every = 4
+        change, count = _smoothed(depth, config, every)
+        # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
+        if shows_no_noise(depth, every, change, count, np.float32(config.exact_1_m)):
+            return cls(depth, None)
+        some = bool(count.any())
         change, count = _smoothed(depth, config, every=1)
-        return cls(change + depth if some.any() else depth, count)
+        return cls(change + depth if some else depth, count)
 
     @property
     def exact(self) -> bool:
@@ -141,7 +146,7 @@ class SightLines:
         The band ends `rise_m` above the camera. Where this is positive, the rows count that reach its top a metre away.
         """
         first = int(np.count_nonzero(up > max(rise_m, 0.0)))
-        return cls(np.minimum.accumulate(depth[first:], axis=0), up[first:], left, pose)
+        return cls(nearest_down_columns(depth[first:]), up[first:], left, pose)
 
     def towards(self, target_m: Float32[np.ndarray, " w"]) -> SightLines:
         """Returns the same, cut off at the nearest target point of each column; inf: no target."""
@@ -161,23 +166,14 @@ class SightLines:
 
         The middle and both sides of a cell are tested. Cells outside the image or the range are not seen through.
         """
-        x_m, y_m = frame.centres(rows, cols)
+        return cells_seen_past(rows, cols, *self.geometry(frame), drop_m, *range_m, margin_m)
+
+    def geometry(self, frame: GridFrame) -> tuple[tuple[float, ...], tuple[float, ...], Float32[np.ndarray, "h w"]]:
+        """Returns `grid`, `sight` and `nearest_m` of `stubborn.frame_kernels.sees_past`."""
         cos, sin = math.cos(self.pose.yaw_rad), math.sin(self.pose.yaw_rad)
-        dx, dy = x_m - self.pose.x_m, y_m - self.pose.y_m
-        ahead_m, left_m = cos * dx + sin * dy, cos * dy - sin * dx
-        passed = np.zeros(ahead_m.shape, np.bool_)
-        near = np.flatnonzero((ahead_m > range_m[0]) & (ahead_m + margin_m < range_m[1]))
-        ahead_m, left_m = ahead_m[near], left_m[near]
-        row = np.ceil((self.up[0] + drop_m / ahead_m) / (self.up[0] - self.up[1])).astype(np.intp)
-        column_step = self.left[0] - self.left[1]
-        half_m = frame.cell_m * math.sqrt(0.5)
-        columns = np.rint(
-            (self.left[0] - (left_m + half_m * np.array([[-1.0], [0.0], [1.0]])) / ahead_m) / column_step
-        ).astype(np.intp)  # (3, cells)
-        inside = (row < self.up.size) & (columns.min(axis=0) >= 0) & (columns.max(axis=0) < self.left.size)
-        near, ahead_m, row, columns = near[inside], ahead_m[inside], row[inside], columns[:, inside]
-        passed[near] = self.nearest_m[row, columns].min(axis=0) > ahead_m + margin_m
-        return passed
+        steps = [(float(ray[0]), float(ray[0] - ray[1])) for ray in (self.up, self.left)]
+        grid = (*frame.origin_xy_m, frame.cell_m)
+        return grid, (self.pose.x_m, self.pose.y_m, cos, sin, *steps[0], *steps[1]), self.nearest_m
 
 
 class Occupancy:
@@ -190,25 +186,27 @@ class Occupancy:
         self._drop_m = camera.height_m - min_height_m
 
     def add(
-        self, view: NavMap, solid: Int[np.ndarray, " n"], tall: Int[np.ndarray, " m"], sight: SightLines, single: int
+        self,
+        view: NavMap,
+        part: tuple[slice, slice],
+        solid: UInt8[np.ndarray, "rows cols"],
+        tall: UInt8[np.ndarray, "rows cols"],
+        sight: SightLines,
+        single: int,
     ) -> None:
-        """Enters a frame into the obstacle layers of a view that contains everything in range.
+        """Enters a frame into the obstacle layers of a view, where `part` contains everything in range.
 
-        `solid` and `tall` are the row-major cells of the points in the obstacle band and at eye level;
-        `single` is the evidence from a cell's only point, see `evidence_of_one`.
+        `solid` and `tall` are the numbers of points in the obstacle band and at eye level in each cell, where 2 also
+        means more; `single` is the evidence from a cell's only point, see `evidence_of_one`.
         """
-        hits = self._hits(view.frame.shape, solid, single)
-        view.seen_at_eye_level |= self._hits(view.frame.shape, tall, single) > 0
-        rows, cols = np.divmod(np.flatnonzero((hits | view.obstacle_evidence) != 0), view.frame.shape[1])
-        evidence, hit = view.obstacle_evidence[rows, cols], hits[rows, cols]
-        if self.config.miss:
-            contested = np.flatnonzero((hit == 0) & (evidence > 0))
-            passed = contested[self.passes(view.frame, rows[contested], cols[contested], sight, self.config.margin_m)]
-            evidence[passed] = np.maximum(evidence[passed] - self.config.miss, 0)
-        evidence = np.minimum(evidence + hit, self.config.most).astype(np.int8)
-        view.obstacle_evidence[rows, cols] = evidence
-        view.seen_obstacle[rows, cols] = evidence >= self.config.obstacle_from
-        view.seen_at_eye_level[rows, cols] &= evidence > 0
+        c, (rows, cols) = self.config, part
+        bounds = rows.start, rows.stop, cols.start, cols.stop
+        layers = view.obstacle_evidence, view.seen_obstacle, view.seen_at_eye_level
+        rule = single, c.hit, c.miss, c.obstacle_from, c.most
+        range_m = self.camera.min_depth_m, self.camera.max_depth_m
+        enter_evidence(
+            bounds, solid, tall, *layers, *rule, *sight.geometry(view.frame), self._drop_m, *range_m, c.margin_m
+        )
 
     def passes(
         self,
@@ -225,13 +223,3 @@ class Occupancy:
     def evidence_of_one(self, surfaces: Surfaces) -> int:
         """Returns the evidence from a single point in a cell: all in an exact image, half in a noisy one."""
         return self.config.hit if surfaces.exact else self.config.hit // 2
-
-    def _hits(self, shape: tuple[int, int], cells: Int[np.ndarray, " n"], single: int) -> Int8[np.ndarray, "rows cols"]:
-        """Returns the evidence from one frame's points."""
-        evidence = np.zeros(shape, np.int8)
-        evidence.reshape(-1)[cells] = single
-        if single == self.config.hit:
-            return evidence
-        counts = np.bincount(cells, minlength=evidence.size)
-        evidence.reshape(-1)[counts > 1] = self.config.hit
-        return evidence

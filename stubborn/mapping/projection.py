@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float32, Int32
+from jaxtyping import Bool, Float32, Int32, UInt8
 
-from sim.geometry.grid import Window
+from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel
-from stubborn.frame_kernels import ground_points
+from stubborn.frame_kernels import cells_of_pixels, count_obstacle_points, ground_points
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,18 @@ class GroundPoints:
     """Column of each point on the window's grid."""
     height_m: Float32[np.ndarray, " n"]
     """Height of each point above the floor."""
+
+
+@dataclass(frozen=True)
+class PixelCells:
+    """The cells of a window that the depth pixels of one frame lie in."""
+
+    rows: Int32[np.ndarray, "h w"]
+    """Row of each pixel's cell; -1: the pixel has no distance, or shows a point that is too high."""
+    cols: Int32[np.ndarray, "h w"]
+    """Column of it."""
+    span: tuple[slice, slice] | None
+    """Rows and columns of the smallest rectangle that holds all points, those too high included; None: no point."""
 
 
 class Rays:
@@ -59,25 +72,62 @@ class Rays:
 
         The window must contain everything in range: see `sight_window_cells`.
         """
+        valid = np.empty(d.shape, np.bool_)
+        rows, cols, height_m = np.empty(d.size, np.int32), np.empty(d.size, np.int32), np.empty(d.size, np.float32)
+        n = ground_points(d, confirmed, *self._onto_ground(camera_pose, window), valid, rows, cols, height_m)
+        return GroundPoints(valid, rows[:n], cols[:n], height_m[:n])
+
+    def cells_below(self, d: Float32[np.ndarray, "h w"], camera_pose: Pose, window: Window, top_m: float) -> PixelCells:
+        """Returns the cells of the points that `project` gives, as far as they are not higher than `top_m`."""
+        rows, cols = np.empty(d.shape, np.int32), np.empty(d.shape, np.int32)
+        onto = self._onto_ground(camera_pose, window)
+        first_row, last_row, first_col, last_col = cells_of_pixels(
+            d, *onto, np.float32(top_m), *window.frame.shape, rows, cols
+        )
+        span = (slice(first_row, last_row + 1), slice(first_col, last_col + 1)) if last_row >= 0 else None
+        return PixelCells(rows, cols, span)
+
+    def count_obstacles(
+        self,
+        d: Float32[np.ndarray, "h w"],
+        confirmed: Bool[np.ndarray, "h w"],
+        camera_pose: Pose,
+        window: Window,
+        *,
+        band_m: tuple[float, float],
+        eye_level_halfwidth_m: float,
+    ) -> tuple[UInt8[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
+        """Returns how many points that `project` gives are in each cell within a band of heights, and at eye level.
+
+        Two also means more. At eye level is what differs by no more than `eye_level_halfwidth_m` from the camera's
+        height.
+        """
+        solid, tall = np.zeros(window.frame.shape, np.uint8), np.zeros(window.frame.shape, np.uint8)
+        limits_m = (np.float32(limit_m) for limit_m in (*band_m, eye_level_halfwidth_m))
+        count_obstacle_points(d, confirmed, *self._onto_ground(camera_pose, window), *limits_m, solid, tall)
+        return solid, tall
+
+    def _onto_ground(self, camera_pose: Pose, window: Window) -> tuple[Any, ...]:
+        """Returns the arguments of the kernels from `x_slope` to `far_m`."""
         cos, sin = math.cos(camera_pose.yaw_rad), math.sin(camera_pose.yaw_rad)
         frame, camera = window.frame, self.camera
         x_cells = np.float32((camera_pose.x_m - frame.origin_xy_m[0]) / frame.cell_m)
         y_cells = np.float32((camera_pose.y_m - frame.origin_xy_m[1]) / frame.cell_m)
         x_slope = ((cos - sin * self.left) / frame.cell_m).astype(np.float32)
         y_slope = ((sin + cos * self.left) / frame.cell_m).astype(np.float32)
-        camera_m, near_m, far_m = (
-            np.float32(distance_m) for distance_m in (camera.height_m, camera.min_depth_m, camera.max_depth_m)
-        )
-        valid = np.empty(d.shape, np.bool_)
-        rows, cols, height_m = np.empty(d.size, np.int32), np.empty(d.size, np.int32), np.empty(d.size, np.float32)
-        n = ground_points(
-            d, confirmed, x_slope, y_slope, x_cells, y_cells, self.up, camera_m, near_m, far_m, valid, rows, cols,
-            height_m,
-        )  # fmt: skip
-        return GroundPoints(valid, rows[:n], cols[:n], height_m[:n])
+        limits_m = (np.float32(limit) for limit in (camera.height_m, camera.min_depth_m, camera.max_depth_m))
+        return x_slope, y_slope, x_cells, y_cells, self.up, *limits_m
 
 
 def sight_window_cells(camera: CameraModel, cell_m: float) -> int:
     """Returns the edge, in cells, of a square around the camera that contains every point within its range."""
     farthest_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
     return 2 * (math.ceil(farthest_m / cell_m) + 1) + 1
+
+
+def in_range(camera: CameraModel, camera_pose: Pose, frame: GridFrame) -> tuple[slice, slice]:
+    """Returns the rows and columns of a rectangle that holds all cells that a frame shows a part of."""
+    far_m = camera.max_depth_m / math.cos(0.5 * camera.hfov_rad)
+    yaws_rad = (camera_pose.yaw_rad + side * 0.5 * camera.hfov_rad for side in (-1.0, 1.0))
+    ends = [(camera_pose.x_m + far_m * math.cos(yaw), camera_pose.y_m + far_m * math.sin(yaw)) for yaw in yaws_rad]
+    return frame.around(*zip(camera_pose.xy_m, *ends, strict=True), margin_m=2.0 * frame.cell_m)

@@ -12,7 +12,7 @@ from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, ConfigError
-from stubborn.grid_kernels import distance_within
+from stubborn.grid_kernels import distance_within, speeds
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import ProvenGround
 from stubborn.raster import connected, distance_to
@@ -107,7 +107,10 @@ class Planner:
 
     def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
         """Returns a new mask of depth obstacles, drops, and the marks of a layer that the body has not proved wrong."""
-        return view.seen_obstacle | view.seen_drop | (view.collision_marks(layer) & ~self.proven_ground(view).body)
+        blocked = view.collision_marks(layer) > self.proven_ground(view).body
+        blocked |= view.seen_obstacle
+        blocked |= view.seen_drop
+        return blocked
 
     def unseen(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""
@@ -172,5 +175,5 @@ class Planner:
     def _speed(self, clearance_m: Float32[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
         """Returns 1 in the open and less near obstacles."""
         c = self.config
-        share = (clearance_m - np.float32(c.dilation_m)) / np.float32(max(c.clearance_m - c.dilation_m, 1e-6))
-        return np.clip(c.edge_speed + (1.0 - c.edge_speed) * share, c.edge_speed, 1.0)
+        numbers = c.dilation_m, max(c.clearance_m - c.dilation_m, 1e-6), c.edge_speed, 1.0 - c.edge_speed
+        return speeds(clearance_m, *(np.float32(number) for number in numbers))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
+from stubborn.frame_kernels import scores_of_category
 
 STRIDE_PX = 4
 """Edge of the image block of one posterior."""
@@ -24,10 +25,7 @@ class GroundTruthSegmenter:
         """
         if goal not in MPCAT40_ID:
             raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
-        semantic = observation["semantic"]
-        target = semantic == MPCAT40_ID[goal]
-        other = (semantic != 0) & ~target
-        return Scores(target.astype(np.float32), other.astype(np.float32))
+        return Scores(*scores_of_category(observation["semantic"], np.uint8(MPCAT40_ID[goal])))
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the category of each pixel, mpcat40 ids (h, w)."""

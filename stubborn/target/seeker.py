@@ -161,9 +161,10 @@ class TargetSeeker:
         """Returns the approach to the nearest acceptable candidate, else to any; None when none can be reached now."""
         whole = self._known(navmap)
         if step >= self._retry_step:
-            navmap.view(whole).set_aside[:] = False
-        parts = self.parts(navmap)
-        if not (parts.mask & ~navmap.set_aside[whole.index]).any():
+            navmap.set_aside[whole.index] = False
+        # Mostly there is none, and the highest score says so in a tenth of the time.
+        parts = self.parts(navmap) if navmap.score_max[whole.index].max() > self.candidate_score else None
+        if parts is None or not (parts.mask & ~navmap.set_aside[whole.index]).any():
             self._far, self._pursued = False, None
             return None
         candidates = self._candidates(navmap, parts)

@@ -266,13 +266,13 @@ def test_the_split_for_last_measurements_is_announced_in_one_line_on_stderr(caps
         assert told.out == ""
 
 
-def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_video() -> None:
+def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_numba_nor_video() -> None:
     """They take more than half of the time of a start."""
     code = "import sys; from sim.run import entry; entry(['--list-agents']); print(sorted(sys.modules))"
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert "stubborn-plus" in told
     assert "sim.composition.agents" in told
-    for package in ("'mujoco'", "'torch'", "'av'", "'OpenGL'"):
+    for package in ("'mujoco'", "'torch'", "'numba'", "'av'", "'OpenGL'"):
         assert package not in told
 
 

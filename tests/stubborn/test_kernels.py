@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import math
 
+import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sim.geometry.grid import GridFrame
+from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
-from sim.interface import CameraModel
-from stubborn.grid_kernels import bilinear, distance_within
+from sim.interface import MPCAT40_ID, CameraModel
+from stubborn.frame_kernels import shows_no_noise
+from stubborn.grid_kernels import bilinear, distance_within, speeds
 from stubborn.mapping.object_layers import FrameScores
-from stubborn.mapping.occupancy import OccupancyConfig, Surfaces
-from stubborn.mapping.projection import Rays, sight_window_cells
-from stubborn.raster import distance_to
+from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces
+from stubborn.mapping.projection import Rays, in_range, sight_window_cells
+from stubborn.navmap import NavMap
+from stubborn.raster import connected, distance_to
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 CAMERA = CameraModel()
+POSE = Pose(0.31, -0.77, 0.6)
 
 
 def depth_image(rng: np.random.Generator, noise_m: float) -> NDArray[np.float32]:
@@ -26,6 +31,11 @@ def depth_image(rng: np.random.Generator, noise_m: float) -> NDArray[np.float32]
     depth = patches + rng.normal(0.0, 1.0, patches.shape) * noise_m
     depth[rng.random(depth.shape) < 0.05] = 0.0
     return np.clip(depth, 0.0, 5.0).astype(np.float32)
+
+
+def sight_window() -> Window:
+    """Returns a window that holds all that the camera sees from `POSE`."""
+    return GridFrame.around_start(600, 0.05).window_at(POSE.x_m, POSE.y_m, sight_window_cells(CAMERA, 0.05))
 
 
 def smoothed(depth: NDArray[np.float32], jump_1_m: float) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -65,10 +75,9 @@ def test_an_exact_image_is_left_alone_and_all_of_it_counts() -> None:
 
 def test_pixels_are_projected_as_float32_arithmetic_has_it() -> None:
     rng = np.random.default_rng(1)
-    rays = Rays(CAMERA, 2, 4)
-    depth, pose = depth_image(rng, noise_m=0.01), Pose(0.31, -0.77, 0.6)
+    rays, pose, window = Rays(CAMERA, 2, 4), POSE, sight_window()
+    depth = depth_image(rng, noise_m=0.01)
     confirmed = rng.random(depth.shape) < 0.9
-    window = GridFrame.around_start(600, 0.05).window_at(pose.x_m, pose.y_m, sight_window_cells(CAMERA, 0.05))
     points = rays.project(depth, confirmed, pose, window)
     valid = confirmed & (depth >= CAMERA.min_depth_m) & (depth < CAMERA.max_depth_m)
     cos, sin, frame = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad), window.frame
@@ -84,12 +93,136 @@ def test_pixels_are_projected_as_float32_arithmetic_has_it() -> None:
     assert np.array_equal(points.height_m, (depth * rays.up[:, None] + np.float32(CAMERA.height_m))[valid])
 
 
+@pytest.mark.parametrize("pixels", [0, 1, 2, 3, 4, 31, 32])
+def test_an_image_shows_no_noise_where_the_median_change_is_less_than_the_limit(pixels: int) -> None:
+    rng = np.random.default_rng(pixels)
+    for _ in range(50):
+        depth = rng.uniform(0.5, 5.0, (16, 32)).astype(np.float32)
+        change = rng.normal(0.0, 1e-3, (4, 8)).astype(np.float32)
+        count = np.zeros((4, 8), np.uint8)
+        count.reshape(-1)[rng.permutation(32)[:pixels]] = 3
+        some = count > 0
+        rough = np.abs(change[some]) / np.square(depth[::4, ::4][some])
+        median = np.median(rough) if pixels else np.float32(np.inf)
+        for limit in (median, np.nextafter(median, np.float32(0.0)), np.nextafter(median, np.float32(1.0))):
+            assert shows_no_noise(depth, 4, change, count, np.float32(limit)) == (median < np.float32(limit))
+
+
+def test_points_are_counted_in_the_cells_that_they_are_projected_to() -> None:
+    rng = np.random.default_rng(4)
+    rays, window = Rays(CAMERA, 2, 4), sight_window()
+    depth = depth_image(rng, noise_m=0.01)
+    confirmed = rng.random(depth.shape) < 0.9
+    counted = rays.count_obstacles(depth, confirmed, POSE, window, band_m=(0.1, 0.88), eye_level_halfwidth_m=0.06)
+    points = rays.project(depth, confirmed, POSE, window)
+    in_band = (points.height_m >= 0.1) & (points.height_m <= 0.88)
+    at_eye_level = np.abs(points.height_m - CAMERA.height_m) <= 0.06
+    for count, which in zip(counted, (in_band, at_eye_level), strict=True):
+        flat = points.rows[which] * window.frame.shape[1] + points.cols[which]
+        expected = np.bincount(flat, minlength=count.size).reshape(count.shape)
+        assert expected.max() > 2
+        assert np.array_equal(count, np.minimum(expected, 2))
+    rows, cols = in_range(CAMERA, POSE, window.frame)
+    assert not any(np.delete(np.delete(count, rows, 0), cols, 1).any() for count in counted)
+
+
+def test_pixels_have_the_cells_that_they_are_projected_to() -> None:
+    rays, window = Rays(CAMERA, 2, 4), sight_window()
+    depth = depth_image(np.random.default_rng(5), noise_m=0.01)
+    points = rays.project(depth, np.ones(depth.shape, np.bool_), POSE, window)
+    cells = rays.cells_below(depth, POSE, window, 1.2)
+    low = points.height_m <= 1.2
+    expected_rows, expected_cols = (np.full(depth.shape, -1, np.int32) for _ in range(2))
+    expected_rows[points.valid], expected_cols[points.valid] = (
+        np.where(low, points.rows, -1),
+        np.where(low, points.cols, -1),
+    )
+    assert np.array_equal(cells.rows, expected_rows)
+    assert np.array_equal(cells.cols, expected_cols)
+    assert cells.span == tuple(slice(at.min(), at.max() + 1) for at in (points.rows, points.cols))
+    assert rays.cells_below(np.zeros_like(depth), POSE, window, 1.2).span is None
+
+
+def seen_past(sight: SightLines, frame: GridFrame, rows: NDArray, cols: NDArray, drop_m: float) -> NDArray[np.bool_]:
+    """Returns what `SightLines.passes` does, with a margin of 5 cm."""
+    x_m, y_m = frame.centres(rows, cols)
+    cos, sin = math.cos(sight.pose.yaw_rad), math.sin(sight.pose.yaw_rad)
+    dx, dy = x_m - sight.pose.x_m, y_m - sight.pose.y_m
+    ahead_m, left_m = cos * dx + sin * dy, cos * dy - sin * dx
+    passed = np.zeros(ahead_m.shape, np.bool_)
+    near = np.flatnonzero((ahead_m > CAMERA.min_depth_m) & (ahead_m + 0.05 < CAMERA.max_depth_m))
+    ahead_m, left_m = ahead_m[near], left_m[near]
+    row = np.ceil((sight.up[0] + drop_m / ahead_m) / (sight.up[0] - sight.up[1])).astype(np.intp)
+    side_m = frame.cell_m * math.sqrt(0.5) * np.array([[-1.0], [0.0], [1.0]])
+    column_step = sight.left[0] - sight.left[1]
+    columns = np.rint((sight.left[0] - (left_m + side_m) / ahead_m) / column_step).astype(np.intp)
+    inside = (row < sight.up.size) & (columns.min(axis=0) >= 0) & (columns.max(axis=0) < sight.left.size)
+    near, ahead_m, row, columns = near[inside], ahead_m[inside], row[inside], columns[:, inside]
+    passed[near] = sight.nearest_m[row, columns].min(axis=0) > ahead_m + 0.05
+    return passed
+
+
+def test_a_frame_sees_past_the_cells_before_its_nearest_surfaces() -> None:
+    rays, frame = Rays(CAMERA, 2, 4), sight_window().frame
+    depth = np.maximum(depth_image(np.random.default_rng(6), noise_m=0.0), np.float32(2.5))
+    sight = SightLines.of_frame(depth, rays.up, rays.left, POSE, rise_m=0.0)
+    first = np.count_nonzero(rays.up > 0.0)
+    assert np.array_equal(sight.nearest_m, np.minimum.accumulate(depth[first:], axis=0))
+    rows, cols = (index.reshape(-1) for index in np.indices(frame.shape))
+    passed = sight.passes(frame, rows, cols, 0.78, (CAMERA.min_depth_m, CAMERA.max_depth_m), 0.05)
+    assert np.array_equal(passed, seen_past(sight, frame, rows, cols, 0.78))
+    assert passed.sum() > 100
+
+
+@pytest.mark.parametrize("single", [0, 1, 2])
+def test_evidence_grows_where_points_are_and_falls_where_the_frame_sees_past(single: int) -> None:
+    rng = np.random.default_rng(7)
+    rays, window, config = Rays(CAMERA, 2, 4), sight_window(), OccupancyConfig()
+    shape = window.frame.shape
+    view = NavMap.empty(window.frame)
+    view.obstacle_evidence[:] = rng.integers(0, config.most + 1, shape) * (rng.random(shape) < 0.5)
+    view.seen_obstacle[:] = view.obstacle_evidence >= config.obstacle_from
+    view.seen_at_eye_level[:] = (view.obstacle_evidence > 0) & (rng.random(shape) < 0.5)
+    part = in_range(CAMERA, POSE, window.frame)
+    solid, tall = np.zeros((2, *shape), np.uint8)
+    for count in (solid, tall):
+        count[part] = rng.integers(0, 3, count[part].shape) * (rng.random(count[part].shape) < 0.3)
+    depth = np.maximum(depth_image(rng, noise_m=0.0), np.float32(2.5))
+    sight = SightLines.of_frame(depth, rays.up, rays.left, POSE, rise_m=0.0)
+    evidence, eye_level = view.obstacle_evidence.copy(), view.seen_at_eye_level.copy()
+    of_count = np.array([0, single, config.hit])
+    rows, cols = (index.reshape(-1) for index in np.indices(shape))
+    passed = seen_past(sight, window.frame, rows, cols, CAMERA.height_m - 0.1).reshape(shape)
+    eye_level |= of_count[tall] > 0
+    changed = (of_count[solid] > 0) | (evidence > 0)
+    lost = config.miss * (passed & (of_count[solid] == 0))
+    assert ((lost > 0) & (evidence > 0)).sum() > 100
+    evidence = np.minimum(np.maximum(evidence - lost, 0) + of_count[solid], config.most)
+    eye_level[changed & (evidence == 0)] = False
+    Occupancy(CAMERA, config, 0.1).add(view, part, solid, tall, sight, single)
+    assert np.array_equal(view.obstacle_evidence, evidence)
+    assert np.array_equal(view.seen_obstacle, evidence >= config.obstacle_from)
+    assert np.array_equal(view.seen_at_eye_level, eye_level)
+
+
+def test_the_ground_truth_scores_the_goal_and_all_other_categories_but_void() -> None:
+    semantic = np.random.default_rng(8).integers(0, 41, (6, 9)).astype(np.uint8)
+    semantic[0, 0] = MPCAT40_ID["chair"]
+    target, other = GroundTruthSegmenter().scores({"semantic": semantic}, "chair")
+    is_chair = semantic == MPCAT40_ID["chair"]
+    assert target.dtype == other.dtype == np.float32
+    assert np.array_equal(target, is_chair)
+    assert np.array_equal(other, (semantic != 0) & ~is_chair)
+
+
 @pytest.mark.parametrize("hits", [0.0, 0.2])
 def test_a_cell_has_the_other_score_of_the_pixel_with_its_highest_target_score(hits: float) -> None:
     rng = np.random.default_rng(2)
-    flat = rng.integers(0, 40, 200).astype(np.int32)
-    target, other = (rng.random((2, 200)) * (rng.random((2, 200)) < [[hits], [1.0]])).astype(np.float32)
-    frame = FrameScores((5, 8), flat, target, other)
+    flat = rng.integers(-1, 40, (10, 20)).astype(np.int32)
+    rows, cols = np.where(flat < 0, -1, flat // 8), np.where(flat < 0, -1, flat % 8)
+    target, other = (rng.random((2, 10, 20)) * (rng.random((2, 10, 20)) < [[[hits]], [[1.0]]])).astype(np.float32)
+    frame = FrameScores((5, 8), rows, cols, target, other)
+    flat, target, other = flat.reshape(-1), target.reshape(-1), other.reshape(-1)
     for cell in range(40):
         here = np.flatnonzero(flat == cell)
         highest = target[here].max(initial=0.0)
@@ -108,6 +241,30 @@ def test_distances_within_a_reach_are_exact_and_others_are_the_reach(share: floa
     near = exact <= 6.0
     assert found[near] == pytest.approx(exact[near], rel=1e-6)
     assert (found[~near] == 6.0).all()
+
+
+def test_a_reach_whose_square_is_no_short_number_is_refused() -> None:
+    with pytest.raises(ValueError, match="at most 180 cells"):
+        distance_within(np.ones((2, 2), np.bool_), 181)
+
+
+def test_the_speed_rises_with_the_clearance() -> None:
+    clearance_m = np.random.default_rng(9).uniform(0.0, 0.5, (20, 30)).astype(np.float32)
+    share = (clearance_m - np.float32(0.15)) / np.float32(0.15)
+    found = speeds(clearance_m, *(np.float32(number) for number in (0.15, 0.15, 0.35, 1.0 - 0.35)))
+    assert np.array_equal(found, np.clip(0.35 + (1.0 - 0.35) * share, 0.35, 1.0))
+
+
+@pytest.mark.parametrize("connectivity", [4, 8])
+def test_the_part_of_a_cell_is_the_one_that_opencv_numbers_like_it(connectivity: int) -> None:
+    rng = np.random.default_rng(10)
+    for mask in (rng.random((30, 40)) < 0.55, (rng.random((40, 30)) < 0.55).T, np.ones((3, 1), np.bool_)):
+        given = mask.copy()
+        _, parts = cv2.connectedComponents(np.ascontiguousarray(mask).view(np.uint8), connectivity=connectivity)
+        for row, col in zip(*(rng.integers(0, n, 20) for n in mask.shape), strict=True):
+            expected = (parts == parts[row, col]) & mask[row, col]
+            assert np.array_equal(connected(mask, row, col, connectivity=connectivity), expected)
+        assert np.array_equal(mask, given)
 
 
 def test_a_point_amid_cells_has_their_mean_and_one_off_the_grid_has_none() -> None:

@@ -16,7 +16,7 @@ import pytest
 import webdataset
 
 from sim.datasets import shards
-from sim.datasets.shards import read_note, write_index, write_shard
+from sim.datasets.shards import PNG_OPTIONS, read_note, write_index, write_shard
 from sim.datasets.views import View, is_bare, sample_views
 from sim.env.scene import Scene
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError
@@ -119,6 +119,16 @@ def test_webdataset_and_our_reader_see_the_same_views(scene: Scene, tmp_path: Pa
         assert np.array_equal(depth, view.depth_mm)
 
 
+def test_images_are_stored_without_loss_and_smaller_than_opencvs_own_choice_makes_them(scene: Scene) -> None:
+    sizes = np.zeros(2, np.int64)
+    for view in sample_views(scene, np.random.default_rng(3), 4, stem="s", record={}):
+        for image in (view.depth_mm, view.semantic):
+            ours, theirs = cv2.imencode(".png", image, PNG_OPTIONS)[1], cv2.imencode(".png", image)[1]
+            assert np.array_equal(np.asarray(cv2.imdecode(ours, cv2.IMREAD_UNCHANGED)), image)
+            sizes += len(ours), len(theirs)
+    assert sizes[0] < sizes[1]
+
+
 def test_a_shard_has_a_note_only_while_it_is_complete(scene: Scene, tmp_path: Path) -> None:
     tar, note = tmp_path / "views-000000.tar", tmp_path / "views-000000.json"
     assert read_note(tmp_path, "views-000000", verify=False) is None
@@ -147,7 +157,7 @@ def test_a_full_disk_is_one_sentence_and_leaves_no_half_shard(
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         return [("json", b"{}")]
 
-    monkeypatch.setattr(shards, "_encoded", full)
+    monkeypatch.setattr(shards, "_members", full)
     with pytest.raises(ConfigError, match="No space left on device"):
         write_shard(tmp_path, "views-000000", views, house="room", config={})
     assert list(tmp_path.iterdir()) == []

@@ -66,6 +66,23 @@ def test_the_disc_swept_along_a_segment_is_every_cell_near_it():
             assert swept[row, col] == (gap_m <= radius_m)
 
 
+def test_the_cells_near_a_segment_are_those_of_float64_arithmetic():
+    frame, rng = GridFrame.around_start(80, 0.05), np.random.default_rng(0)
+    for number in range(200):
+        x0, y0, x1, y1 = rng.uniform(-2.2, 2.2, 4).tolist()
+        x1, y1 = (x0, y0) if number % 4 == 0 else (x1, y1)
+        radius_m = 0.05 * math.ceil(rng.uniform(0.0, 8.0))
+        patch = frame.patch((x0, x1), (y0, y1), radius_m)
+        x_m, y_m = patch.frame.mesh()
+        dx, dy = x1 - x0, y1 - y0
+        length_sq = dx * dx + dy * dy
+        along = np.clip(((x_m - x0) * dx + (y_m - y0) * dy) / length_sq, 0.0, 1.0) if length_sq > 0 else 0.0
+        gap_sq = (x_m - x0 - along * dx) ** 2 + (y_m - y0 - along * dy) ** 2
+        index, inside = cells_near_segment(frame, (x0, y0), (x1, y1), radius_m)
+        assert index == patch.index
+        assert np.array_equal(inside, gap_sq <= radius_m * radius_m)
+
+
 def test_ahead_goes_along_the_heading():
     np.testing.assert_allclose(Pose(1.0, 2.0, math.pi / 2).ahead(0.5), (1.0, 2.5))
 

@@ -1,0 +1,43 @@
+"""`njit` of numba without the import of numba, which takes longer than those of NumPy and OpenCV together.
+
+A list of the agents imports the agents with their kernels, but calls none of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+
+class Kernel:
+    """A function that numba compiles, or loads from its cache, at the first call."""
+
+    def __init__(self, function: Callable[..., Any], options: dict[str, Any]) -> None:
+        """`options` are those of `numba.njit`."""
+        self.__doc__ = function.__doc__
+        self._function = function
+        self._options = options
+        self._compiled: Callable[..., Any] | None = None
+
+    def __call__(self, *args: Any) -> Any:
+        """Returns the result of the compiled function."""
+        return (self._compiled or self.compiled())(*args)
+
+    def compiled(self) -> Callable[..., Any]:
+        """Returns numba's function. In the kernel's module it also takes the place of all kernels.
+
+        numba compiles calls of other kernels only where it finds its own functions.
+        """
+        if self._compiled is None:
+            import numba
+
+            self._compiled = numba.njit(**self._options)(self._function)
+            names = self._function.__globals__
+            names |= {name: value.compiled() for name, value in names.items() if isinstance(value, Kernel)}
+        assert self._compiled is not None
+        return self._compiled
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:
+    """Returns a decorator for a function that numba is to compile, with the options of `numba.njit`."""
+    return lambda function: Kernel(function, options)

@@ -1,0 +1,49 @@
+"""Kernels are compiled when they are called, and not before."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+
+from sim.geometry.compiling import Kernel, njit
+
+
+@njit()
+def add_twice(values, more):
+    """Adds a number to all values, and again."""
+    for i in range(values.size):
+        values[i] += twice(more)
+
+
+@njit()
+def twice(value):
+    """Returns two times a value."""
+    return 2 * value
+
+
+def test_a_kernel_that_calls_a_later_one_does_what_its_function_does() -> None:
+    values = np.arange(3.0)
+    add_twice(values, 1.5)
+    assert values.tolist() == [3.0, 4.0, 5.0]
+    assert type(twice).__module__.startswith("numba.")
+
+
+def test_a_kernel_keeps_its_docstring_and_is_the_same_function_at_each_call() -> None:
+    kernel = njit()(lambda value: value + 1)
+    assert isinstance(kernel, Kernel)
+    assert (kernel(1), kernel(2)) == (2, 3)
+    assert kernel.compiled() is kernel.compiled()
+    assert add_twice.__doc__ == "Adds a number to all values, and again."
+
+
+def test_kernels_bring_numba_when_they_are_called_and_not_when_they_are_imported() -> None:
+    code = """
+import sys
+import numpy as np
+from stubborn.grid_kernels import distance_within
+print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0], "numba" in sys.modules)
+"""
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert told.split() == ["False", "0.0", "True"]
