@@ -27,6 +27,7 @@ from sim.interface import (
 )
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import Explorer, ExplorerConfig, Ground, ReadsSemantics, run_explorer
+from stubborn.grid_kernels import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.object_layers import ObjectLayers
@@ -72,6 +73,11 @@ class AgentConfig:
             )
         if self.recentre_every_steps < 1:
             raise ConfigError(f"AgentConfig.recentre_every_steps must be >= 1, got {self.recentre_every_steps}.")
+        if self.planning.reach_cells(self.cell_m) > MAX_REACH:
+            raise ConfigError(
+                "PlanningConfig.dilation_m, clearance_m and preferred_clearance_m must be at most "
+                f"{(MAX_REACH - 2) * self.cell_m:g} m with AgentConfig.cell_m = {self.cell_m:g}."
+            )
 
 
 class StubbornAgent:

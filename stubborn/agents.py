@@ -10,6 +10,7 @@ from typing import Any
 
 from sim.interface import Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
+from stubborn.baselines.cloned import ClonedConfig, cloned_agent
 from stubborn.baselines.random import RandomConfig, random_agent
 from stubborn.baselines.single_frame import latest_frame_agent, single_frame_agent
 from stubborn.draw import make_painter
@@ -101,6 +102,12 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         "poni": _stubborn_spec(
             "stubborn that goes to the frontier with the best predicted potential (PONI, 2022)",
             AgentConfig(explorer=PoniConfig()),
+        ),
+        "cloned": AgentSpec(
+            make=cloned_agent,
+            description="end-to-end: a recurrent policy cloned from demonstrations, without a map",
+            config=ClonedConfig(),
+            sensors=("depth",),
         ),
         "random": AgentSpec(
             make=random_agent,

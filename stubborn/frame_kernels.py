@@ -91,13 +91,12 @@ def nearest_down_columns(depth):
 def count_obstacle_points(
     depth, confirmed, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, low_m, top_m, eye_m, solid, tall
 ):
-    """Counts the points of each cell in the obstacle band and at eye level, no further than 2.
+    """Counts the points of each cell in the obstacle band and at eye level, at most 2 each; those off the grid do not.
 
     Args:
         depth: see `ground_points`; also all up to `far_m`.
         low_m: heights from here to `top_m` are in the band.
         eye_m: heights that differ by no more than this from the camera's are at eye level.
-               Points off the grid do not count.
         solid: (rows, cols) uint8 zeros, is set to the number of points in the band; also `tall`, at eye level.
     """
     in_band, at_eye_level = np.empty(depth.shape[1], np.bool_), np.empty(depth.shape[1], np.bool_)
@@ -141,7 +140,7 @@ def sees_past(row, col, grid, sight, nearest_m, drop_m, near_m, far_m, margin_m)
     if not (ahead_m > near_m and ahead_m + margin_m < far_m):
         return False
     image_row = int(np.ceil((up + drop_m / ahead_m) / up_step))
-    if image_row >= nearest_m.shape[0]:
+    if image_row < 0 or image_row >= nearest_m.shape[0]:
         return False
     half_m = cell_m * math.sqrt(0.5)
     for side_m in (-half_m, 0.0, half_m):

@@ -11,14 +11,17 @@ import numpy as np
 
 from sim.geometry.compiling import njit
 
+MAX_REACH = 180
+"""Largest distance in cells that `distance_within` computes: its square is a 16-bit number, also twice."""
+
 
 @njit(cache=True)
 def distance_within(mask, reach):
     """Returns the distance from every cell's centre to that of the nearest True cell, (rows, cols) float32 in cells.
 
-    Distances up to `reach` cells, a whole number up to 180, are exact; all others are `reach`.
+    Distances up to `reach` cells, a whole number up to `MAX_REACH`, are exact; all others are `reach`.
     """
-    if reach > 180:
+    if reach > MAX_REACH:
         raise ValueError("distance_within: reach must be at most 180 cells, so that squares are 16-bit numbers.")
     rows, cols = mask.shape
     width = cols + reach  # the columns at the end are far from everything, so that a line may run on into the next one
@@ -60,7 +63,7 @@ def distance_within(mask, reach):
 def speeds(clearance_m, least_m, open_m, edge_speed, rise):
     """Returns the speed at some clearances (rows, cols); all numbers are float32.
 
-    It is `edge_speed` up to the clearance `least_m`, and `rise` more, which is 1, from `open_m` more on.
+    It rises linearly from `edge_speed` at `least_m` to `edge_speed + rise`, at most 1, at `least_m + open_m`.
     """
     rows, cols = clearance_m.shape
     one, result = np.float32(1.0), np.empty((rows, cols), np.float32)

@@ -82,12 +82,15 @@ def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, ha
         half: store numbers with 16 bits.
 
     Raises:
-        ConfigError: the file cannot be written.
+        ConfigError: a number is not finite in the file, or the file cannot be written.
     """
     tensors = {
         name: (tensor.half() if half and tensor.is_floating_point() else tensor).detach().contiguous().cpu()
         for name, tensor in model.state_dict().items()
     }
+    for name, tensor in tensors.items():
+        if tensor.is_floating_point() and not bool(torch.isfinite(tensor).all()):
+            raise ConfigError(f"Weights '{file}' are not written: '{name}' has a number that is not finite.")
     part = file.with_name(file.name + ".part")
     try:
         content = save(tensors, metadata={key: json.dumps(value) for key, value in header.items()})
@@ -141,5 +144,8 @@ def require_fit(file: Path, given: Mapping[str, Tensor], build: Callable[[], nn.
     for name, tensor in given.items():
         if name not in wanted:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is not in it.")
-        if tensor.is_floating_point() and not bool((tensor.abs() <= MAX_WEIGHT).all()):  # NaN is not
+        if tensor.is_complex():
+            raise ConfigError(f"Weights '{file}': '{name}' holds complex numbers.")
+        # In 32 bits, since the bound itself is infinity in 16 bits; NaN is not within it.
+        if tensor.is_floating_point() and not bool((tensor.float().abs() <= MAX_WEIGHT).all()):
             raise ConfigError(f"Weights '{file}': '{name}' holds NaN, infinity or a number beyond {MAX_WEIGHT:g}.")

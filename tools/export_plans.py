@@ -107,16 +107,26 @@ def _export_named(out: Path, split: str, name: str) -> Exported:
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
-    name = f"{config.pool}_{config.kind or 'any'}_{seed:06d}"
+    name = name_of(config, seed)
     if (out / f"{name}.npz").is_file():
         return Exported(name, "exists")
     source = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
+    return _export(out, name, source, lambda: house_of(config, seed))
 
-    def make() -> House:
-        text = house_text(generate_house(seed, config).spec, str(assets_dir() / "textures"))
-        return House(name, mujoco.MjSpec.from_string(text))
 
-    return _export(out, name, source, make)
+def name_of(config: HouseConfig, seed: int) -> str:
+    """Returns the name of a generated house."""
+    return f"{config.pool}_{config.kind or 'any'}_{seed:06d}"
+
+
+def house_of(config: HouseConfig, seed: int) -> House:
+    """Returns the house of a seed.
+
+    Raises:
+        HouseError: no house can be generated from it.
+    """
+    text = house_text(generate_house(seed, config).spec, str(assets_dir() / "textures"))
+    return House(name_of(config, seed), mujoco.MjSpec.from_string(text))
 
 
 def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported:

@@ -188,6 +188,7 @@ TABLES: Mapping[str, PaperTable] = {
             "poni",
             "semexp",
             *(f"semexp --config agent.explorer.{control}" for control in CONTROLS),
+            "cloned",
             "random",
             "oracle",
         ),

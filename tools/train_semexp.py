@@ -44,7 +44,7 @@ except ImportError as error:
 
 from tools.plan_split import split_plans
 from tools.semexp_policy import SemExpPolicy
-from tools.training_files import append_row, load_state, save_state
+from tools.training_files import append_row, cut_rows, load_state, save_state
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
@@ -174,7 +174,7 @@ class Run:
         if done is None:
             return False
         self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
-        _cut(self.args.out / "train.csv", self.goals)
+        cut_rows(self.args.out / "train.csv", "goals", self.goals)
         print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
         return True
 
@@ -228,15 +228,6 @@ class _Watch(BaseCallback):
         if now_s - self._saved_s >= run.args.save_s:
             self._saved_s = now_s
             run.save()
-
-
-def _cut(file: Path, goals: int) -> None:
-    """Removes the rows of the curve that are later than the state of the run."""
-    if file.is_file():
-        heading, *lines = file.read_text(encoding="utf-8").splitlines()
-        column = heading.split(",").index("goals")
-        kept = [line for line in lines if int(line.split(",")[column]) <= goals]
-        write_atomically(file, "".join(f"{line}\n" for line in (heading, *kept)))
 
 
 def curves(files: Sequence[Path]) -> bytes:

@@ -31,13 +31,28 @@ def append_row(file: Path, row: Mapping[str, Any]) -> None:
         table.writerow(row)
 
 
+def cut_rows(file: Path, column: str, most: int) -> None:
+    """Removes the rows of a curve that are later than the state from which a run continues.
+
+    Args:
+        file: a CSV file; nothing is done where there is none.
+        column: name of a column of whole numbers.
+        most: rows with a larger number in it are removed.
+    """
+    if file.is_file():
+        heading, *lines = file.read_text(encoding="utf-8").splitlines()
+        number = heading.split(",").index(column)
+        kept = [line for line in lines if int(line.split(",")[number]) <= most]
+        write_atomically(file, "".join(f"{line}\n" for line in (heading, *kept)))
+
+
 def read_columns(file: Path) -> dict[str, list[float]]:
-    """Returns the columns of a CSV file of numbers; nothing where there is no file."""
+    """Returns the columns of a CSV file of numbers, NaN for empty fields; nothing where there is no file."""
     if not file.exists():
         return {}
     with file.open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    return {key: [float(row[key]) for row in rows] for key in (rows[0] if rows else ())}
+    return {key: [float(row[key] or "nan") for row in rows] for key in (rows[0] if rows else ())}
 
 
 def save_state(file: Path, parts: Mapping[str, Any], progress: Mapping[str, Any]) -> None:

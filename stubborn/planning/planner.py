@@ -50,6 +50,10 @@ class PlanningConfig:
         if not 0.0 < self.edge_speed <= 1.0:
             raise ConfigError(f"PlanningConfig.edge_speed must lie in (0, 1], got {self.edge_speed}.")
 
+    def reach_cells(self, cell_m: float) -> int:
+        """Returns the distance to obstacles, in cells, beyond which no cost and no rule depends on it."""
+        return math.ceil(max(self.dilation_m, self.clearance_m, self.preferred_clearance_m) / cell_m) + 2
+
 
 @dataclass(frozen=True)
 class FreeSpace:
@@ -134,7 +138,8 @@ class Planner:
         )
         # An obstacle cell under the robot is a cell that the obstacle only just enters.
         obstacles[own_index][own] = False
-        clearance_m = distance_within(obstacles, self._reach_cells(view.frame)) * np.float32(view.frame.cell_m)
+        cell_m = view.frame.cell_m
+        clearance_m = distance_within(obstacles, self.config.reach_cells(cell_m)) * np.float32(cell_m)
         traversable = clearance_m > self.config.dilation_m + 1e-4
         traversable |= self.proven_ground(view).centre
         traversable[own_index] |= own
@@ -144,11 +149,6 @@ class Planner:
         if costly is not None:
             speed[costly] *= self.config.unseen_speed
         return FreeSpace(view.frame, traversable, clearance_m, reachable, speed)
-
-    def _reach_cells(self, frame: GridFrame) -> int:
-        """Returns the distance to obstacles beyond which no cost and no rule depends on it."""
-        c = self.config
-        return math.ceil(max(c.dilation_m, c.clearance_m, c.preferred_clearance_m) / frame.cell_m) + 2
 
     def route(self, goal: Goal, pose: Pose) -> Route | None:
         """Returns the route to the nearest goal cell by travel time.

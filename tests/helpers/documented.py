@@ -92,6 +92,13 @@ _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
 _HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
+_SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
+_SEARCHES = (
+    f"{PYTHON} tools/twin_demonstrations.py --first-seed 19 --houses 2 --kind studio --episodes 4 "
+    "--out {tmp}/demonstrations/searches"
+)
+_TRAIN_CLONED = f"{PYTHON} tools/train_cloned.py --demonstrations {{tmp}}/demonstrations --minutes 0.1 --threads 2"
+_CLONED = f"{_TRAIN_CLONED} --streams 2 --out {{tmp}}/cloned"
 _PLANS = (f"{PYTHON} tools/export_plans.py --pool train --kind studio --houses 4 --out {{tmp}}/plans",)
 _EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 3"
 _VIEWS = (
@@ -283,6 +290,30 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent cloned --semantics gt": (
+        f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent cloned --semantics gt --split val --episodes 60 --workers 2": (
+        f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
+    f"{PYTHON} tools/render_demonstrations.py runs/shown/oracle --out runs/demonstrations": (
+        _SHOWN,
+        f"{PYTHON} tools/render_demonstrations.py {{tmp}}/shown/oracle --out {{tmp}}/demonstrations",
+    ),
+    f"{PYTHON} tools/twin_demonstrations.py --houses 112 --episodes 40 --out runs/demonstrations/searches": (
+        _SEARCHES,
+    ),
+    f"{PYTHON} tools/train_cloned.py --demonstrations runs/demonstrations --minutes 30 --threads 2 --out runs/cloned": (
+        _SEARCHES,
+        _CLONED,
+    ),
+    f"{_RUN} --agent cloned --semantics gt --config agent.weights=runs/cloned/cloned.safetensors": (
+        _SEARCHES,
+        _CLONED,
+        f"{_RUN} --agent cloned --semantics gt --config agent.weights={{tmp}}/cloned/cloned.safetensors {_SMALL} "
+        "--episodes 1 --out {tmp}/run",
     ),
     # docs/houses.md
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (

@@ -20,6 +20,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sim.configuration import read_settings
+from sim.datasets.demonstrations import Demonstration, read_demonstration, write_demonstration
 from sim.datasets.shards import ShardNote, read_note
 from sim.episodes import habitat
 from sim.episodes.splits import read_unreachable
@@ -75,6 +76,15 @@ PLAN = Plan(
     span_instance=np.zeros(6, np.uint16),
     instances=("wall_00",),
     categories=np.ones(1, np.uint8),
+)
+SHOWN = Demonstration(
+    depth_mm=np.zeros((2, 3, 4), np.uint16),
+    semantic=np.zeros((2, 3, 4), np.uint8),
+    poses=np.zeros((2, 3), np.float32),
+    actions=np.zeros(2, np.uint8),
+    goal="bed",
+    house="h",
+    success=True,
 )
 SHAPE = {
     "rgba": np.ones((1, 4)),
@@ -169,6 +179,7 @@ READERS = (
     Reader("a.pth", written(lambda f: torch.save({"model_state": {"a": torch.zeros(3)}}, f), "b.pth"), read_checkpoint),
     Reader("a.tar", shard, lambda file: list(read_shard(file))),
     Reader("plan.npz", written(lambda f: write_plan(f, PLAN), "p.npz"), read_plan),
+    Reader("shown.npz", written(lambda f: write_demonstration(f, SHOWN), "s.npz"), read_demonstration),
     Reader("a.xml", lambda _: room(3, 3).spec.to_xml().encode(), load_house),
 )
 JUNK: tuple[Any, ...] = (

@@ -4,9 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from sim.interface import Action, CameraModel, Observation, RobotModel, Scores, SegmenterSpec
+from sim.interface import Action, CameraModel, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents, draw
-from stubborn.agent import StubbornAgent
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.planning.planner import PlanningConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, Trace, boxes_from_plan, run_episode
 
@@ -155,3 +156,9 @@ def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: 
     _, y_m = agent.navmap.frame.centres(rows, cols)
     assert rows.size > 10
     assert (np.abs(y_m).max() > 1.1) == exact  # beside the bed
+
+
+def test_a_clearance_beyond_what_distances_are_computed_for_is_refused():
+    AgentConfig(planning=PlanningConfig(clearance_m=8.9))
+    with pytest.raises(ConfigError, match=r"clearance_m and preferred_clearance_m must be at most 8\.9 m"):
+        AgentConfig(planning=PlanningConfig(clearance_m=9.0))

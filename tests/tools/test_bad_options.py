@@ -142,6 +142,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("nowhere.mp4 --out OUT", "'nowhere.mp4' cannot be read as a video"),
         ("README.md --out OUT", "'README.md' cannot be read as a video"),
     ],
+    "tools.render_demonstrations": [("nowhere --out OUT", "is no run"), ("--out OUT", "Name at least one run")],
     "tools.reproduce": [("dinner --out OUT", "dinner"), ("ablation --split nowhere --out OUT", "Unknown split")],
     "tools.show_mistakes": [
         ("nowhere --out OUT", "is no run"),
@@ -149,6 +150,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "tools.show_views": [("--views nowhere --out OUT", "No shards")],
     "tools.split_report": [("--splits nowhere", "Unknown split")],
+    "tools.train_cloned": [("--demonstrations nowhere --out OUT", "No demonstration in 'nowhere'")],
     "tools.train_rednet": [
         ("--views nowhere --val-views nowhere --out OUT --size vast", "--size must be one of"),
         ("--views nowhere --val-views nowhere --out OUT", "No shards"),
@@ -169,6 +171,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --agents nobody", "nobody"),
         ("--out OUT --traps pit", "pit"),
     ],
+    "tools.twin_demonstrations": [("--out OUT --kind castle", "castle")],
     "tools.unpack_views": [("--views nowhere --out OUT", "No shards")],
 }
 

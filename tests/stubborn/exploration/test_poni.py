@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from stubborn.exploration.patches import LAYERS, patch_around
 from stubborn.exploration.poni import PoniConfig, PoniExplorer
 from stubborn.exploration.poni_net import FILES, MAPS, SHIPPED, PoniNet, PoniNetConfig, Predictor
 from stubborn.navmap import NavMap
+from stubborn.network_files import read_weights
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.ground import ground, route_of
 
@@ -217,10 +219,16 @@ def test_a_wrong_file_is_refused_with_the_reason(tmp_path: Path):
         FILES.load(file)
     model = PoniNet(SMALL)
     with torch.no_grad():
-        model.head.weight[0, 0] = torch.nan
-    FILES.save(file, model)
-    with pytest.raises(ConfigError, match=r"'head\.weight' holds NaN"):
-        FILES.load(file)
+        model.head.weight[0, 0] = 1e6  # infinite in 16 bits
+    with pytest.raises(ConfigError, match=r"'head\.weight' has a number that is not finite"):
+        FILES.save(file, model)
+    FILES.save(file, PoniNet(SMALL))
+    tensors, header = read_weights(file)
+    for bad in (torch.nan, torch.inf):
+        tensors["head.weight"][0, 0] = bad
+        save_file(tensors, file, metadata={key: json.dumps(value) for key, value in header.items()})
+        with pytest.raises(ConfigError, match=r"'head\.weight' holds NaN"):
+            FILES.load(file)
     with pytest.raises(ConfigError, match="multiple of 16"):
         PoniNetConfig(cells=40)
 

@@ -1,0 +1,98 @@
+"""The network of the cloned policy: a small convolutional encoder and a recurrent unit that gives the next action."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Annotated
+
+import msgspec
+import torch
+from jaxtyping import Float, UInt8
+from torch import Tensor, nn
+
+from sim.interface import GOAL_CATEGORIES, MPCAT40, Action
+from stubborn.baselines.cloned_input import GOAL_IDS, HEIGHT_PX, LEVELS, MOTION, NO_ACTION, WIDTH_PX
+from stubborn.network_files import Family
+
+_Size = Annotated[int, msgspec.Meta(ge=1, le=2048)]
+_STRIDES = 4
+"""Convolutions that halve the image: 64 x 48 becomes 4 x 3."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class NetConfig:
+    """Sizes of the network."""
+
+    categories: _Size = 8
+    """Channels into which the category of a pixel is embedded."""
+    width: _Size = 32
+    """Channels of the first convolution; the others have 2, 4 and 4 times as many."""
+    goal: _Size = 32
+    """Numbers into which the goal and the action before are embedded."""
+    hidden: _Size = 256
+    """Numbers of an encoded image, and of the state of the recurrent unit."""
+
+
+class ClonedNet(nn.Module):
+    """Gives the logits of the next action from a sequence of small images.
+
+    The layer of the goal marks the pixels of the goal category, so that a policy need not learn 21 categories apart;
+    the embedding of the categories tells it where such goals are usual.
+    """
+
+    goal_ids: Tensor
+
+    def __init__(self, config: NetConfig = NetConfig()) -> None:
+        super().__init__()
+        self.config = config
+        self.category = nn.Embedding(len(MPCAT40), config.categories)
+        widths = (config.categories + 3, config.width, 2 * config.width, 4 * config.width, 4 * config.width)
+        layers: list[nn.Module] = []
+        for before, after in itertools.pairwise(widths):
+            layers += [nn.Conv2d(before, after, 3, stride=2, padding=1), nn.GroupNorm(1, after), nn.ReLU()]
+        self.encoder = nn.Sequential(*layers)
+        self.encoder.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+        cells = (WIDTH_PX >> _STRIDES) * (HEIGHT_PX >> _STRIDES)
+        self.seen = nn.Sequential(nn.Linear(4 * config.width * cells, config.hidden), nn.ReLU())
+        self.goal = nn.Embedding(len(GOAL_CATEGORIES), config.goal)
+        self.before = nn.Embedding(NO_ACTION + 1, config.goal)
+        self.memory = nn.GRU(config.hidden + 2 * config.goal + len(MOTION), config.hidden)
+        self.action = nn.Linear(config.hidden, len(Action))
+        self.register_buffer("goal_ids", torch.from_numpy(GOAL_IDS.astype("int64")), persistent=False)
+
+    def forward(
+        self,
+        depth: UInt8[Tensor, "steps n h w"],
+        categories: UInt8[Tensor, "steps n h w"],
+        motion: Float[Tensor, "steps n motion"],
+        before: UInt8[Tensor, "steps n"],
+        goal: Tensor,
+        state: Float[Tensor, "1 n hidden"] | None = None,
+    ) -> tuple[Float[Tensor, "steps n actions"], Float[Tensor, "1 n hidden"]]:
+        """Returns the logits of the actions of each step, and the state after the last.
+
+        Args:
+            depth: see `Steps`, like the next three; n sequences side by side.
+            categories: mpcat40 ids.
+            motion: as `MOTION` says.
+            before: the action before each step.
+            goal: (n,) index of the goal category.
+            state: that after the step before; None at the start of an episode.
+        """
+        steps, count = depth.shape[:2]
+        ids = categories.flatten(0, 1).long()
+        marked = ids == self.goal_ids[goal].repeat(steps)[:, None, None]
+        level = depth.flatten(0, 1)
+        layers = (level.float() / LEVELS, (level == 0).float(), marked.float())
+        channels = torch.cat((self.category(ids), *(layer[..., None] for layer in layers)), 3)
+        features = self.encoder(channels.permute(0, 3, 1, 2))  # its channels stay last in memory, which is faster
+        seen = self.seen(features.flatten(1)).view(steps, count, -1)
+        told = self.goal(goal).expand(steps, -1, -1)
+        given = torch.cat((seen, told, self.before(before.long()), motion), 2)
+        hidden, after = self.memory(given, state)
+        return self.action(hidden), after
+
+
+FILES = Family("cloned", NetConfig, ClonedNet, "tools/train_cloned.py")
+"""Reads and writes files of weights."""

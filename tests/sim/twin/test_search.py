@@ -1,0 +1,62 @@
+"""A search in a plan: it explores until the goal is in view, and stops where a STOP succeeds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sim.geometry.pose import Pose
+from sim.interface import MAX_STEPS, Action
+from sim.plans.export import export_plans
+from sim.plans.plan import Plan
+from sim.plans.sight import PlanCamera
+from sim.task.metrics import EXPLORED_SHARE
+from sim.twin.walks import search
+from stubborn.navmap import NavMap
+from tests.helpers.worlds import room, with_box
+
+
+@pytest.fixture(scope="module")
+def plan() -> Plan:
+    """Two rooms behind each other, with a bed in a corner of the second one."""
+    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
+    house = with_box(house, "wall_10", centre_m=(0.5, 0.9, 1.25), half_m=(0.05, 1.6, 1.25))
+    (exported,) = export_plans(house, {})
+    return exported
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, 2.0, -2.0])
+def test_a_search_ends_with_a_stop_in_reach_of_the_goal(plan: Plan, yaw_rad: float):
+    start = Pose(-3.5, 1.0, yaw_rad)
+    poses, actions = search(PlanCamera(plan), "bed", start, np.random.default_rng(0))
+    assert len(poses) == len(actions) < 100
+    assert actions[-1] is Action.STOP
+    assert Action.STOP not in actions[:-1]
+    assert poses[0] == start
+    row, col = plan.frame.cell(poses[-1].x_m, poses[-1].y_m)
+    assert plan.success_cells("bed")[row, col]
+
+
+def test_it_does_not_know_where_the_goal_is(plan: Plan, monkeypatch: pytest.MonkeyPatch):
+    """Until a goal is in view, the search for it and a search in which nothing ever comes into view are the same."""
+    start = Pose(-3.5, 1.0, 2.0)
+    camera = PlanCamera(plan)
+    poses, actions = search(camera, "bed", start, np.random.default_rng(0))
+    camera.reset()
+    layers = NavMap.empty(plan.frame)
+    shares = [camera.look(pose, "bed", layers, pose, step).goal_share for step, pose in enumerate(poses)]
+    in_view = next(step for step, share in enumerate(shares) if share >= EXPLORED_SHARE)
+    assert in_view > 10
+    monkeypatch.setattr("sim.twin.walks.EXPLORED_SHARE", 2.0)
+    blind = search(PlanCamera(plan), "bed", start, np.random.default_rng(0))[1]
+    assert blind[:in_view] == actions[:in_view]
+    assert blind[: len(actions)] != actions
+    monkeypatch.setattr("sim.twin.walks.EXPLORED_SHARE", -1.0)  # it would know at once
+    assert search(PlanCamera(plan), "bed", start, np.random.default_rng(0))[1][:in_view] != actions[:in_view]
+
+
+def test_a_search_that_does_not_find_the_goal_has_no_stop(plan: Plan, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("sim.twin.walks.EXPLORED_SHARE", 2.0)  # nothing ever counts as in view
+    _, actions = search(PlanCamera(plan), "bed", Pose(-3.5, 1.0, 0.0), np.random.default_rng(0))
+    assert len(actions) == MAX_STEPS
+    assert Action.STOP not in actions
