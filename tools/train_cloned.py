@@ -10,47 +10,32 @@ averaged network of the best evaluation so far, `curve.png` the picture of the c
 
 from __future__ import annotations
 
-import math
 import sys
 import time
 import zlib
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 import torch
 from torch import Tensor
 from torch.nn import functional
-from torch.optim.swa_utils import AveragedModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
 
 from sim import cli
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
-from sim.reading import Count as ReadCount
-from sim.reading import Number
 from stubborn.baselines.cloned_data import Piece, Shown, Streams
 from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
 from stubborn.baselines.cloned_net import FILES, ClonedNet
-from stubborn.segmentation.training import exponential_average
-from tools.training_files import append_row, cut_rows, load_state, read_columns, save_state
+from tools.timed_training import PRINT_EVERY_S, TimedTraining
+from tools.training_files import read_columns
 
-LOG_EVERY_STEPS = 20
-PRINT_EVERY_S = 10.0
-"""Shortest time between two lines of progress."""
-SAVE_EVERY_S = 60.0
-"""Shortest time between two writes of the state."""
-EVALUATE_EVERY = 0.05
-"""Share of the time between two evaluations."""
 HELD_BACK = 10
 """One house in so many is held back."""
-AVERAGE = 0.998
-"""Decay per step of the average of the weights."""
-MAX_GRADIENT_NORM = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,21 +64,13 @@ class Args:
     """Seed of the initial weights and of the order."""
 
 
-class _Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
-
-    step: ReadCount
-    spent_s: Number
-    best: float
-    evaluated_s: Number
-
-
 def main(args: Args) -> int:
     """Trains; returns the exit status."""
     torch.set_num_threads(args.threads)
     files = list_demonstrations(args.demonstrations)
     train, val = read_all(files)
     Trainer(args, train, val).run()
+    draw_curve(args.out)
     return 0
 
 
@@ -137,70 +114,25 @@ def shown_of(given: Demonstration, file: Path) -> Shown:
     return Shown(steps, given.actions)
 
 
-class Trainer:
+class Trainer(TimedTraining):
     """The network, the optimiser, the demonstrations and the progress of one run."""
 
     def __init__(self, args: Args, train: Sequence[Shown], val: Sequence[Shown]) -> None:
-        self.args = args
         every = max(1, len(val) // args.val_count) if args.val_count else 1
         self.val = val[::every]
         self.counts = {"demonstrations": len(train), "frames": sum(len(each.actions) for each in train)}
         torch.manual_seed(args.seed)
-        self.model = ClonedNet()
-        self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(AVERAGE))
-        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
-        self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
-        self.progress = _Progress(0, 0.0, math.inf, 0.0)
-        args.out.mkdir(parents=True, exist_ok=True)
-        done = load_state(args.out / "state.pt", self._parts(), _Progress)
-        if done is not None:
-            self.progress = done
-            for name in ("train.csv", "val.csv"):
-                cut_rows(args.out / name, "step", done.step)
-            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
+        samples = args.streams * args.length
+        super().__init__(args, FILES, ClonedNet(), max_gradient_norm=1.0, samples_per_step=samples)
         self.streams = Streams(train, width=args.streams, length=args.length, seed=args.seed + self.progress.step)
         self.state: Tensor | None = None
         """The memory of the policy in each stream."""
         words = ", ".join(f"{value} {name}" for name, value in self.counts.items())
         print(f"{words}, {len(self.val)} of {len(val)} held-back demonstrations to evaluate on", flush=True)
 
-    def run(self) -> None:
-        """Trains until the time is up."""
-        progress, limit_s = self.progress, 60.0 * self.args.minutes
-        if progress.spent_s >= limit_s:
-            print("the time was up before: nothing to do", flush=True)
-            return
-        start_s, saved_s = time.perf_counter() - progress.spent_s, time.perf_counter()
-        printed_s, losses = saved_s, []
-        while progress.spent_s < limit_s:
-            losses.append(self._train_on(self.streams.next(), progress.spent_s / limit_s))
-            progress.step += 1
-            progress.spent_s = time.perf_counter() - start_s
-            if len(losses) == LOG_EVERY_STEPS:
-                loss = float(np.mean(losses))
-                self._log(loss)
-                losses = []
-                if time.perf_counter() - printed_s >= PRINT_EVERY_S:
-                    printed_s = time.perf_counter()
-                    minutes = f"{progress.spent_s / 60:.1f} of {self.args.minutes:g} min"
-                    print(f"step {progress.step}, {minutes}: cross entropy {loss:.4f}", flush=True)
-            if progress.spent_s - progress.evaluated_s > EVALUATE_EVERY * limit_s:
-                self._evaluate()
-                start_s = time.perf_counter() - progress.spent_s  # an evaluation is not training
-            if time.perf_counter() - saved_s > SAVE_EVERY_S:
-                self._save_state()
-                saved_s = time.perf_counter()
-        self._evaluate()
-        self._save_state()
-        draw_curve(self.args.out)
-
-    def _train_on(self, piece: Piece, done: float) -> float:
-        """Makes one step of the optimiser; returns the weighted cross entropy."""
-        rate = self.args.rate * min(1.0, (self.progress.step + 1) / 100) * 0.5 * (1.0 + math.cos(math.pi * done))
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate
-        self.model.train()
-        self.optimiser.zero_grad(set_to_none=True)
+    def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
+        """See `TimedTraining.losses`: the weighted cross entropy of the next piece."""
+        piece = self.streams.next()
         if self.state is not None:
             self.state = self.state.detach() * torch.from_numpy(~piece.begins).float()[None, :, None]
         logits, self.state = self._logits(self.model, piece, self.state)
@@ -209,11 +141,26 @@ class Trainer:
         )
         weight = torch.from_numpy(piece.weight).flatten()
         loss = (losses * weight).sum() / weight.sum()
-        loss.backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
-        self.optimiser.step()
-        self.average.update_parameters(self.model)
-        return float(loss.detach())
+        return loss, {"cross_entropy": loss}
+
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
+        """See `TimedTraining.evaluate`."""
+        found, true, changes, losses = [], [], [], []
+        for one in self.val:
+            logits = self._logits(model, one.steps, None)[0][:, 0]
+            actions = torch.from_numpy(one.actions).long()
+            losses.append(functional.cross_entropy(logits, actions, reduction="none").numpy())
+            found.append(logits.argmax(1).numpy())
+            true.append(one.actions)
+            changes.append(one.changes)
+        row = agreement(*(np.concatenate(each) for each in (found, true, changes, losses)))
+        loss = row["cross_entropy"]
+        assert loss is not None
+        return loss, row, ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in row.items())
+
+    def about(self) -> dict[str, Any]:
+        """See `TimedTraining.about`."""
+        return self.counts
 
     def _logits(self, model: torch.nn.Module, piece: Piece | Steps, state: Tensor | None) -> tuple[Tensor, Tensor]:
         """Returns the logits of the actions and the state after the last step; `Steps` are one stream."""
@@ -224,45 +171,6 @@ class Trainer:
         with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bf16):
             logits, after = model(*tensors, torch.as_tensor(piece.goal).reshape(-1), state)
         return logits.float(), after.float()
-
-    @torch.no_grad()
-    def _evaluate(self) -> None:
-        """Evaluates the averaged network, writes a row, and saves it if it is the best so far."""
-        progress = self.progress
-        progress.evaluated_s = progress.spent_s
-        model: ClonedNet = self.average.module.eval()  # pyright: ignore[reportAssignmentType] - the same class
-        found, true, changes, losses = [], [], [], []
-        for one in self.val:
-            logits = self._logits(model, one.steps, None)[0][:, 0]
-            actions = torch.from_numpy(one.actions).long()
-            losses.append(functional.cross_entropy(logits, actions, reduction="none").numpy())
-            found.append(logits.argmax(1).numpy())
-            true.append(one.actions)
-            changes.append(one.changes)
-        row: dict[str, Any] = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)}
-        row |= agreement(*(np.concatenate(each) for each in (found, true, changes, losses)))
-        append_row(self.args.out / "val.csv", row)
-        print("held back: " + ", ".join(f"{key} {value}" for key, value in row.items()), flush=True)
-        if row["cross_entropy"] < progress.best:
-            progress.best = row["cross_entropy"]
-            options = {key: str(value) for key, value in asdict(self.args).items()}
-            card = {"val": row, "options": options, "torch": torch.__version__, **self.counts}
-            FILES.save(self.args.out / "cloned.safetensors", model, card)
-            self._save_state()  # so that a continued run knows the best
-
-    def _log(self, loss: float) -> None:
-        """Writes a row of the training curve."""
-        progress, args = self.progress, self.args
-        per_s = args.streams * args.length * progress.step / max(progress.spent_s, 1e-9)
-        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 3), "cross_entropy": round(loss, 4)}
-        append_row(args.out / "train.csv", row | {"frames_per_s": round(per_s)})
-
-    def _parts(self) -> dict[str, Any]:
-        """Returns what `state.pt` holds besides the progress."""
-        return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
-
-    def _save_state(self) -> None:
-        save_state(self.args.out / "state.pt", self._parts(), msgspec.to_builtins(self.progress))
 
 
 def agreement(

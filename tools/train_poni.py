@@ -11,49 +11,34 @@ the best evaluation so far, `curve.png` the picture of the two curves.
 
 from __future__ import annotations
 
-import math
 import sys
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import numpy as np
 import torch
 from torch import Tensor
 from torch.nn import functional
-from torch.optim.swa_utils import AveragedModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
 
 from sim import cli
 from sim.interface import ConfigError
 from sim.plans.plan import read_plan
-from sim.reading import Count as ReadCount
-from sim.reading import Number
 from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
-from stubborn.segmentation.training import exponential_average
-from tools.training_files import append_row, load_state, read_columns, save_state
+from tools.timed_training import PRINT_EVERY_S, TimedTraining
+from tools.training_files import read_columns
 
-LOG_EVERY_STEPS = 20
-PRINT_EVERY_S = 10.0
-"""Shortest time between two lines of progress."""
-SAVE_EVERY_S = 60.0
-"""Shortest time between two writes of the state."""
-EVALUATE_EVERY = 0.05
-"""Share of the time between two evaluations."""
 OBJECT_WEIGHT = 5.0
 """Weight of the mean loss over the goal categories; that of the area has 1."""
-AVERAGE = 0.998
-"""Decay per step of the average of the weights."""
 SMOOTHED_ROWS = 8
 """Rows of `train.csv` of a running mean in the picture."""
-MAX_GRADIENT_NORM = 5.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,21 +73,13 @@ class Args:
     """Seed of the initial weights, the order and the turns of the samples; the samples have their own."""
 
 
-class _Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
-
-    step: ReadCount
-    spent_s: Number
-    best: float
-    evaluated_s: Number
-
-
 def main(args: Args) -> int:
     """Makes the samples and trains; returns the exit status."""
     torch.set_num_threads(args.threads)
     config = SampleConfig(walks=args.walks, maps=args.maps, most_steps=args.most_steps)
     files = make_samples(args, config)
     Trainer(args, config, files).run()
+    draw_curve(args.out)
     return 0
 
 
@@ -137,89 +114,29 @@ def loss_of(logits: Tensor, potentials: Tensor, counts: Tensor) -> tuple[Tensor,
     return losses[:, 0].mean(), losses[:, 1:].sum() / counts[:, 1:].sum().clamp(min=1)
 
 
-class Trainer:
+class Trainer(TimedTraining):
     """The network, the optimiser, the samples and the progress of one run."""
 
     def __init__(self, args: Args, config: SampleConfig, files: Sequence[Path]) -> None:
-        self.args = args
         self.train = SampleSet.read([file for file in files if not held_back(file)], config)
         self.val = SampleSet.read([file for file in files if held_back(file)], config)
-        torch.manual_seed(args.seed)
-        self.model = PoniNet(PoniNetConfig(cells=config.cells, pool=config.pool))
-        self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
-        self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(AVERAGE), use_buffers=True)
-        self.optimiser = torch.optim.AdamW(self.model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
-        self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
-        self.progress = _Progress(0, 0.0, math.inf, 0.0)
         self.plans = len(files)
-        args.out.mkdir(parents=True, exist_ok=True)
-        self._resume()
+        torch.manual_seed(args.seed)
+        model = PoniNet(PoniNetConfig(cells=config.cells, pool=config.pool))
+        model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
+        super().__init__(args, FILES, model, max_gradient_norm=5.0, samples_per_step=args.batch)
         print(f"{len(self.train)} samples, {len(self.val)} held back", flush=True)
 
-    def run(self) -> None:
-        """Trains until the time is up."""
-        limit_s = 60.0 * self.args.minutes
-        start_s, saved_s = time.perf_counter() - self.progress.spent_s, time.perf_counter()
-        printed_s, losses = saved_s, []
-        for batch in self._batches():
-            if self.progress.spent_s >= limit_s:
-                break
-            losses.append(self._train_on(batch, self.progress.spent_s / limit_s))
-            self.progress.step += 1
-            self.progress.spent_s = time.perf_counter() - start_s
-            if len(losses) == LOG_EVERY_STEPS:
-                self._log(losses)
-                if time.perf_counter() - printed_s >= PRINT_EVERY_S:
-                    printed_s = time.perf_counter()
-                    area, objects = np.mean(losses, axis=0)
-                    minutes = f"{self.progress.spent_s / 60:.1f} of {self.args.minutes:g} min"
-                    print(f"step {self.progress.step}, {minutes}: area {area:.4f}, objects {objects:.4f}", flush=True)
-                losses = []
-            if self.progress.spent_s - self.progress.evaluated_s > EVALUATE_EVERY * limit_s:
-                self._evaluate()
-                start_s = time.perf_counter() - self.progress.spent_s  # an evaluation is not training
-            if time.perf_counter() - saved_s > SAVE_EVERY_S:
-                self._save_state()
-                saved_s = time.perf_counter()
-        self._evaluate()
-        self._save_state()
-        draw_curve(self.args.out)
-
-    def _batches(self) -> Iterator[Batch]:
-        """Yields batches without end; those of a step depend on seed and step only."""
-        while True:
-            rng = np.random.default_rng([self.args.seed, self.progress.step])
-            numbers = rng.integers(len(self.train), size=self.args.batch)
-            yield self.train.batch(numbers.tolist(), rng.integers(SYMMETRIES, size=self.args.batch).tolist())
-
-    def _train_on(self, batch: Batch, done: float) -> tuple[float, float]:
-        """Makes one step of the optimiser; returns the two losses."""
-        rate = self.args.rate * min(1.0, (self.progress.step + 1) / 100) * 0.5 * (1.0 + math.cos(math.pi * done))
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate
-        self.model.train()
-        self.optimiser.zero_grad(set_to_none=True)
+    def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
+        """See `TimedTraining.losses`; the samples of a step depend on seed and step only."""
+        rng = np.random.default_rng([self.args.seed, self.progress.step])
+        numbers = rng.integers(len(self.train), size=self.args.batch)
+        batch = self.train.batch(numbers.tolist(), rng.integers(SYMMETRIES, size=self.args.batch).tolist())
         area, objects = loss_of(self._logits(self.model, batch), *_targets(batch))
-        (area + OBJECT_WEIGHT * objects).backward()
-        torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
-        self.optimiser.step()
-        self.average.update_parameters(self.model)
-        return float(area.detach()), float(objects.detach())
+        return area + OBJECT_WEIGHT * objects, {"area": area, "objects": objects}
 
-    def _logits(self, model: torch.nn.Module, batch: Batch) -> Tensor:
-        """Returns the logits (m, maps) at the frontier cells of a batch."""
-        images = torch.from_numpy(batch.channels).to(torch.float32, memory_format=torch.channels_last)
-        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bf16):
-            maps: Tensor = model(images)
-        at = torch.from_numpy(batch.sample), slice(None), torch.from_numpy(batch.cell)
-        return maps.float().flatten(2)[at].reshape(-1, MAPS)
-
-    @torch.no_grad()
-    def _evaluate(self) -> None:
-        """Evaluates the averaged network, writes a row, and saves it if it is the best so far."""
-        progress = self.progress
-        progress.evaluated_s = progress.spent_s
-        model: PoniNet = self.average.module.eval()  # pyright: ignore[reportAssignmentType] - the same class
+    def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
+        """See `TimedTraining.evaluate`."""
         count = self.args.val_count
         every = max(1, len(self.val) // count) if count else 1
         numbers = np.arange(0, len(self.val), every).tolist()
@@ -230,46 +147,28 @@ class Trainer:
             losses.append([float(loss) for loss in loss_of(logits, *_targets(batch))])
             add_choices(batch, torch.sigmoid(logits).numpy(), area, objects)
         mean = np.mean(losses, axis=0)
-        row: dict[str, Any] = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)}
-        row |= {"samples": len(numbers), "area": float(mean[0]), "objects": float(mean[1])}
+        row: dict[str, Any] = {"samples": len(numbers), "area": float(mean[0]), "objects": float(mean[1])}
         for name, choices in (("area", area), ("objects", objects)):
             row |= {f"{name}_choices": choices.count}
             row |= {f"{name}_{key}": value for key, value in choices.shares().items()}
-        row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
-        append_row(self.args.out / "val.csv", row)
-        print(
-            f"held back: area {mean[0]:.4f}, objects {mean[1]:.4f}; best frontier chosen: area "
-            f"{row['area_predicted_best']}, objects {row['objects_predicted_best']} (random "
-            f"{row['objects_random_best']}, nearest {row['objects_nearest_best']})",
-            flush=True,
+        told = (
+            f"area {mean[0]:.4f}, objects {mean[1]:.4f}; best frontier chosen: area {row['area_predicted_best']:.3f}, "
+            f"objects {row['objects_predicted_best']:.3f} (random {row['objects_random_best']:.3f}, "
+            f"nearest {row['objects_nearest_best']:.3f})"
         )
-        total = float(mean[0] + OBJECT_WEIGHT * mean[1])
-        if total < progress.best:
-            progress.best = total
-            options = {key: str(value) for key, value in asdict(self.args).items()}
-            FILES.save(self.args.out / "poni.safetensors", model, {"val": row, "options": options, "plans": self.plans})
+        return float(mean[0] + OBJECT_WEIGHT * mean[1]), row, told
 
-    def _log(self, losses: Sequence[tuple[float, float]]) -> None:
-        """Writes a row of the training curve."""
-        area, objects = (round(float(value), 4) for value in np.mean(losses, axis=0))
-        progress = self.progress
-        per_s = round(self.args.batch * progress.step / max(progress.spent_s, 1e-9), 1)
-        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 3), "area": area, "objects": objects}
-        append_row(self.args.out / "train.csv", row | {"samples_per_s": per_s})
+    def about(self) -> dict[str, Any]:
+        """See `TimedTraining.about`."""
+        return {"plans": self.plans}
 
-    def _parts(self) -> dict[str, Any]:
-        """Returns what `state.pt` holds besides the progress."""
-        return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
-
-    def _save_state(self) -> None:
-        save_state(self.args.out / "state.pt", self._parts(), msgspec.to_builtins(self.progress))
-
-    def _resume(self) -> None:
-        """Continues from the state of an earlier process, if there is one."""
-        done = load_state(self.args.out / "state.pt", self._parts(), _Progress)
-        if done is not None:
-            self.progress = done
-            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
+    def _logits(self, model: torch.nn.Module, batch: Batch) -> Tensor:
+        """Returns the logits (m, maps) at the frontier cells of a batch."""
+        images = torch.from_numpy(batch.channels).to(torch.float32, memory_format=torch.channels_last)
+        with torch.autocast("cpu", dtype=torch.bfloat16, enabled=self.bf16):
+            maps: Tensor = model(images)
+        at = torch.from_numpy(batch.sample), slice(None), torch.from_numpy(batch.cell)
+        return maps.float().flatten(2)[at].reshape(-1, MAPS)
 
 
 def draw_curve(out: Path) -> None:

@@ -213,12 +213,8 @@ def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
 def _check(args: Args) -> None:
     """Raises ConfigError for arguments that are not allowed."""
     check(args)
-    if args.workers < 1:
-        raise ConfigError(f"--workers must be at least 1, got {args.workers}.")
-    if args.minutes is not None and not args.minutes >= 0.0:
-        raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
-    if args.episodes < 1 or args.max_steps < 1 or args.least_of_either < 2:
-        raise ConfigError("--episodes and --max-steps must be at least 1, --least-of-either at least 2.")
+    if args.least_of_either < 2:
+        raise ConfigError(f"--least-of-either must be at least 2, got {args.least_of_either}.")
 
 
 if __name__ == "__main__":

@@ -59,7 +59,7 @@ def explore(
         steps += 1
         if times is None or _done(camera, times, target, robot.pose, rng):
             target, times = _leg(camera, everywhere, robot.pose, rng, config)
-        turns = best_turns(plan, times, robot.pose)
+        turns = _best_turns(plan, times, robot.pose)
         action = Action.MOVE_FORWARD if turns == 0 else Action.TURN_LEFT if turns > 0 else Action.TURN_RIGHT
         moved = robot.move(action).moved_m > 0.0
         if action is Action.MOVE_FORWARD and not moved:
@@ -102,7 +102,7 @@ def search(camera: PlanCamera, goal: str, start: Pose, rng: np.random.Generator)
         if times is None or (not found and _is_over(seen, plan, times, target, robot.pose)):
             target = _nearest_unseen(everywhere, everywhere & ~seen, plan, robot.pose)
             times = _times_to(plan, _only(everywhere, target), everywhere, robot.pose)
-        turns = best_turns(plan, times, robot.pose)
+        turns = _best_turns(plan, times, robot.pose)
         actions.append(Action.MOVE_FORWARD if turns == 0 else Action.TURN_LEFT if turns > 0 else Action.TURN_RIGHT)
         moved_m = robot.move(actions[-1]).moved_m
         if actions[-1] is Action.MOVE_FORWARD and moved_m == 0.0:
@@ -183,7 +183,7 @@ def reachable(plan: Plan, start: Pose) -> Bool[np.ndarray, "rows cols"]:
     return connected(plan.free, *_at(plan, start), connectivity=4)
 
 
-def best_turns(plan: Plan, times: NDArray[np.float32], pose: Pose) -> int:
+def _best_turns(plan: Plan, times: NDArray[np.float32], pose: Pose) -> int:
     """Returns the number of turns to the left after which a forward leads nearest to the end of a leg."""
     best, best_cost = 0, math.inf
     for turns in range(-5, 7):
