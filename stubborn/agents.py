@@ -40,8 +40,8 @@ ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
 _ROW_WORDS: Mapping[str, str] = MappingProxyType(
     {
         "stubborn-i": "no measure against collisions",
-        "stubborn-ii": "only the way out of traps",
-        "stubborn-iii": "the way out of traps, and collisions in the map",
+        "stubborn-ii": "untrap moves only",
+        "stubborn-iii": "untrap moves, and collisions in the map",
         "stubborn-iv": "all measures, but visited ground does not count as free",
         "stubborn-v": "all measures; the same as stubborn",
     }

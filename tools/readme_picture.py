@@ -1,6 +1,6 @@
 """Makes the animated picture of the README from the video of an episode.
 
-python -m sim.run --agent stubborn-plus --semantics gt --episodes 1 --video --out runs/filmed
+python -m sim.run --agent stubborn-plus --video --episodes 2 --out runs/filmed
 python tools/readme_picture.py runs/filmed/videos/<episode_id>.mp4 --out docs/images/episode.webp
 """
 

@@ -90,18 +90,19 @@ class Processes:
         if self.workers == 1 or len(items) <= 1:
             yield from run_here(spec, items, on_start=on_start)
         else:
-            pool = ProcessPool(spec)
+            pool = ProcessPool(spec, threads=max(1, _processors() // self.workers))
             yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
 
 
 class _Process:
     """A spawned process at the other end of a pipe; see `sim.evaluation.workers.Worker`."""
 
-    def __init__(self, spec: RunnerSpec) -> None:
+    def __init__(self, spec: RunnerSpec, *, threads: int) -> None:
         context = mp.get_context("spawn")
         self.connection, child_connection = context.Pipe()
         self.process = context.Process(target=_worker_main, args=(spec, child_connection), daemon=True)
-        self.process.start()
+        with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read it when they are imported
+            self.process.start()
         self.busy = True
         child_connection.close()
 
@@ -122,14 +123,21 @@ class _Process:
 
 
 class ProcessPool:
-    """Starts and stops processes of this machine; see `sim.evaluation.workers.WorkerPool`."""
+    """Starts and stops processes of this machine; see `sim.evaluation.workers.WorkerPool`.
 
-    def __init__(self, spec: RunnerSpec) -> None:
+    Args:
+        spec: how each process builds its runner.
+        threads: number of threads of NumPy and PyTorch in each process, unless `OMP_NUM_THREADS` is set. Without a
+            limit each process would use all processors, and the processes would wait for each other.
+    """
+
+    def __init__(self, spec: RunnerSpec, *, threads: int = 1) -> None:
         self._spec = spec
+        self._threads = threads
 
     def start(self) -> _Process:
         """Spawns one process."""
-        return _Process(self._spec)
+        return _Process(self._spec, threads=self._threads)
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
         """Returns the workers with a message in their pipe, or whose pipe is closed."""
@@ -143,6 +151,23 @@ class ProcessPool:
         for worker in workers:
             worker.process.join()
             worker.connection.close()
+
+
+def _processors() -> int:
+    """Returns the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextlib.contextmanager
+def _environment(**defaults: str) -> Iterator[None]:
+    """Adds variables that are not set to the environment of the processes started inside the block."""
+    added = [name for name in defaults if name not in os.environ]
+    os.environ.update({name: defaults[name] for name in added})
+    try:
+        yield
+    finally:
+        for name in added:
+            del os.environ[name]
 
 
 def _end_with_parent() -> None:

@@ -176,10 +176,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --explorer thorough --episodes 5": (
         f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --episodes 100 --workers 2 --out runs/before": (
-        f"{_RUN} {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/before",
+    f"{_RUN} --semantics gt --episodes 100 --workers 2 --out runs/before": (
+        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/before",
     ),
-    f"{_RUN} --explorer thorough --episodes 100 --workers 2 --out runs/after": (
+    f"{_RUN} --semantics gt --explorer thorough --episodes 100 --workers 2 --out runs/after": (
         f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
     ),
     f"{PYTHON} tools/compare_runs.py runs/before runs/after": (
@@ -260,7 +260,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         for control in ("semantics=shuffled", "goal=wrong", "semantics=none")
     },
     (
-        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --episodes 200 "
+        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --episodes 120 "
         "--explorers corners random-goals semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
         "semexp:semantics=none"
     ): (
@@ -588,7 +588,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
     f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
-    f"{PYTHON} tools/label_house.py --house flat.xml --out runs/flat.json --picture runs/flat.png": (
+    f"{PYTHON} tools/label_house.py --house flat.xml --out labels.json --picture runs/flat.png": (
         _SCENE,
         f"{PYTHON} tools/label_house.py --house {{tmp}}/s/flat.xml --out {{tmp}}/flat.json --picture {{tmp}}/flat.png",
     ),
