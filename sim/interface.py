@@ -284,6 +284,7 @@ AgentFactory = Callable[..., Agent]
 | verifier | `stubborn.target.verification.Verifier` | judges candidates of the goal |
 | config | type of `AgentSpec.config` | the agent's configuration |
 | truth | `sim.env.objectnav.ObjectNavEnv` | only with `uses_ground_truth`: the running environment |
+| max_steps | int | only where the factory has a parameter of this name: actions of an episode |
 """
 
 

@@ -143,8 +143,7 @@ def make(
         segmenter: source of the scores.
         verifier: judges candidates (`stubborn.target.verification`); None accepts all.
         success: when a STOP counts.
-        options: fields of the agent's configuration (`stubborn.agent.AgentConfig`, `RandomConfig`). `explorer` also
-            takes a name of `EXPLORERS`.
+        options: fields of `SPECS[name].config`. `explorer` also takes a name of `EXPLORERS`.
 
     Raises:
         ConfigError: an unknown name, option or explorer.

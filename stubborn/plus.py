@@ -1,11 +1,11 @@
-"""`stubborn-plus`: our agent. It is the paper's with other target detection, and explores more thoroughly."""
+"""`stubborn-plus`, our agent: the paper's agent with tracks of objects and a more thorough exploration."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from sim.interface import CameraModel, RobotModel, Segmenter, SuccessRule
+from sim.interface import MAX_STEPS, CameraModel, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.thorough import ThoroughConfig
@@ -22,9 +22,9 @@ class PlusConfig(AgentConfig):
     """All parameters of `stubborn-plus`."""
 
     explorer: ExplorerConfig = field(default_factory=ThoroughConfig)
-    """See `AgentConfig`; by default it also looks around and visits what it has not seen."""
+    """See `AgentConfig`; the default also looks around and visits places that it has not seen."""
     seeker: TrackSeekerConfig = field(default_factory=TrackSeekerConfig)
-    """Tracks of objects, and what is decided on them."""
+    """Tracks of objects, and the decisions on them."""
 
 
 def plus_agent(
@@ -34,10 +34,11 @@ def plus_agent(
     segmenter: Segmenter,
     config: PlusConfig,
     success: SuccessRule = SuccessRule(),  # noqa: B008 - frozen
+    max_steps: int = MAX_STEPS,
     verifier: Verifier | None = None,
     **parts: Any,
 ) -> StubbornAgent:
-    """Returns the agent; the verifier of the paper's features is not used."""
+    """Returns the agent; see `sim.interface.AgentFactory`. The verifier of the paper's features is not used."""
     policies = collision_policies(config.avoidance, config.untrap)
     distances = StopDistances.of(config.target, success, segmenter.spec)
     planner = Planner(config.planning, policies.proven_ground)
@@ -49,6 +50,7 @@ def plus_agent(
         segmenter=segmenter,
         finder=ViewpointFinder(planner, policies.approach, distances, config.target.target_edge_m),
         distances=distances,
+        max_steps=max_steps,
     )
     return StubbornAgent(
         camera=camera, robot=robot, segmenter=segmenter, success=success, config=config, seeker=seeker, **parts

@@ -138,7 +138,7 @@ def claim(region, voxel, owner, track_of, takes_over, size, low, high, shape):
         track_of: (regions,) track of each region, 0: none.
         takes_over: (regions,) True: voxels of other tracks change their owner.
         size: (tracks,) number of voxels of each track; is changed.
-        low: (tracks, 3) least row, column and layer of each track; is changed.
+        low: (tracks, 3) least row, column and layer that each track ever owned; is changed.
         high: (tracks, 3) highest ones; is changed.
         shape: of the volume.
     """

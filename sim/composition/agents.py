@@ -110,6 +110,8 @@ def build_agent(
     }
     if spec.uses_ground_truth:
         parts["truth"] = env
+    if "max_steps" in inspect.signature(spec.make).parameters:
+        parts["max_steps"] = env.task_config.max_steps
     try:
         inspect.signature(spec.make).bind(**parts)
     except TypeError as error:

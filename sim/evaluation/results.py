@@ -73,7 +73,7 @@ class ResultLine(msgspec.Struct):
     first_seen_step: Measured = None
     steps_to_first_sight: Measured = None
     area_seen_m2: Measured = None
-    area_per_metre: float | None = None  # code of before November 2026 divided by paths of nothing
+    area_per_metre: float | None = None  # not bounded: older runs divided by path lengths near 0
     trapped: Measured = None
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None

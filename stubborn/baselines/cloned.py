@@ -31,7 +31,8 @@ class ClonedConfig:
     weights: str | None = None
     """File of weights; None: those that ship."""
     sampled: bool = True
-    """True: actions are drawn from the policy; False: its most probable one, which often turns to and fro for ever."""
+    """True: actions are drawn from the policy. False: its most probable action, which often alternates between left and
+    right turns without end."""
     stop_above: float = 0.0
     """With more than 0, the agent stops exactly where the policy's probability of STOP is higher than this."""
 

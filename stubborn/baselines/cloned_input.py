@@ -1,4 +1,4 @@
-"""What the cloned policy sees of one step: a small depth and category image, its own motion, and the goal."""
+"""Input of the cloned policy for one step: a small depth and category image, its own motion, and the goal."""
 
 from __future__ import annotations
 

@@ -28,7 +28,8 @@ _START = {
 """Logits at the start of the training for a goal cell that is all frontier, all seen, 6 m ahead, 6 m away: a policy
 that goes on into unseen ground. PPO with few steps does not get away from random goals by itself."""
 TRUTH = ("path to the target", "floor never seen", "steps left")
-"""What the value is told besides the input of the policy: in 10 m, as log(1 + m2 / 20), and as a share of all."""
+"""Inputs of the critic that the policy does not get: path length in 10 m, area as log(1 + m2 / 20), share of the steps
+left."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32, Int, Int32, UInt32
+from jaxtyping import Bool, Float32, Int, UInt32
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
@@ -170,7 +170,7 @@ class Mapper:
             return NOTHING_SIGHTED
         self._drop_candidates(navmap.view(window), d, found, rays, camera_pose)
         flat = cells.rows[shown] * np.int32(window.frame.shape[1]) + cells.cols[shown]
-        return _note_sighting(navmap, window, np.unique(flat), pose)
+        return note_sighting(navmap, window, *np.divmod(np.unique(flat), window.frame.shape[1]), pose)
 
     def add_goals(
         self,
@@ -261,9 +261,18 @@ class Mapper:
         return self._score_rays[block_px], (pick, pick)
 
 
-def _note_sighting(navmap: NavMap, window: Window, flat: Int32[np.ndarray, " n"], pose: Pose) -> Sighting:
-    """Returns the target points in some row-major cells of a window, and notes the side from which they were seen."""
-    rows, cols = np.divmod(flat, window.frame.shape[1])
+def note_sighting(
+    navmap: NavMap, window: Window, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"], pose: Pose
+) -> Sighting:
+    """Returns the target points in some cells of a window, and enters into the map the side from which they were seen.
+
+    Args:
+        navmap: the map; its layers `shown_x` and `shown_y` are changed.
+        window: a part of the map.
+        rows: rows of the cells in the window, each cell once.
+        cols: their columns.
+        pose: of the robot, in the frame of the map.
+    """
     x_m, y_m = window.frame.centres(rows, cols)
     to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
     distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)

@@ -19,7 +19,7 @@ from stubborn.target.fusion import IS_SURFACE, Fusion
 
 @dataclass(frozen=True, kw_only=True)
 class EvidenceConfig:
-    """What is one view of an object."""
+    """Divides the poses around an object into views."""
 
     sectors: int = 12
     """Number of directions from which an object can be seen, 30 deg each."""
@@ -34,6 +34,12 @@ class EvidenceConfig:
     """File of `tools/train_tracks.py`; None: the shipped parameters of the kind of segmentation."""
 
     def __post_init__(self) -> None:
+        if self.sectors < 1 or self.full_pixels < 1:
+            raise ConfigError(
+                f"EvidenceConfig needs sectors and full_pixels >= 1, got {self.sectors} and {self.full_pixels}."
+            )
+        if not 0.0 < self.rings_m[0] < self.rings_m[1] < self.rings_m[2]:
+            raise ConfigError(f"EvidenceConfig.rings_m must be three growing distances > 0 m, got {self.rings_m}.")
         if not 0 <= self.near_ring <= len(self.rings_m):
             raise ConfigError(f"EvidenceConfig.near_ring must be one of the {len(self.rings_m) + 1} ranges of rings_m.")
 

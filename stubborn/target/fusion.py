@@ -63,7 +63,7 @@ class Fusion:
         """Returns the probability of each category, for each track.
 
         Args:
-            mean: mean posterior of the track's pixels in each view; any values in views without weight.
+            mean: mean posterior of the track's pixels in each view; any finite values in views without weight.
             weight: of each view, the factor of its distance included; 0 for directions without a view.
         """
         objects, surface = mean[:, :, ~IS_SURFACE], mean[:, :, IS_SURFACE]

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32
 
 from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, ConfigError
+from sim.interface import ConfigError
 from stubborn.navmap import NavMap
 from stubborn.raster import NearestCells
 from stubborn.target.approach import Approach, approach_to
@@ -58,20 +58,29 @@ class LookConfig:
             )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
+        for name in ("most_looks", "per_metre", "steps_per_metre", "patience_steps", "patience_m"):
+            if not getattr(self, name) >= 0:
+                raise ConfigError(f"LookConfig.{name} must be >= 0, got {getattr(self, name)}.")
 
-    def bar_at(self, step: int) -> float:
-        """Returns the probability from which a track is accepted at a step of the episode."""
+    def bar_with(self, steps_left: int) -> float:
+        """Returns the probability from which a track is accepted when this many steps are left."""
         left, bar = zip(*self.bar, strict=True)
-        return float(np.interp(MAX_STEPS - step, left, bar))
+        return float(np.interp(steps_left, left, bar))
 
 
 class Verdicts:
-    """The decision on each track, and the number of looks at it."""
+    """The decision on each track, and the number of looks at it.
 
-    def __init__(self, config: LookConfig, *, exact: bool) -> None:
-        """With `exact` posteriors a track is accepted from a probability of 0.5 on."""
+    Args:
+        config: probabilities and costs.
+        exact: True for posteriors without errors: a track is accepted from a probability of 0.5 on.
+        max_steps: actions of an episode.
+    """
+
+    def __init__(self, config: LookConfig, *, exact: bool, max_steps: int) -> None:
         self.config = config
         self.exact = exact
+        self.max_steps = max_steps
         self.accepted: set[int] = set()
         self.rejected: set[int] = set()
         """Those below the bar that had their looks. They are accepted after all when it falls below them,
@@ -100,8 +109,9 @@ class Verdicts:
             pursued: the track of the present look.
         """
         c = self.config
-        self.bar = 0.5 if self.exact else c.bar_at(step)
-        in_time = step + c.steps_per_metre * distance_m <= MAX_STEPS
+        steps_left = self.max_steps - step
+        self.bar = 0.5 if self.exact else c.bar_with(steps_left)
+        in_time = c.steps_per_metre * distance_m <= steps_left
         passes = (probability >= self.bar) & (in_time | self.exact)
         remains = probability >= (1.0 - c.slack) * self.bar
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())

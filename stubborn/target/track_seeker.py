@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, CameraModel, ConfigError, Observation, RobotModel, Segmenter
+from sim.interface import FORWARD_M, MAX_STEPS, CameraModel, ConfigError, Observation, RobotModel, Segmenter
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import nearest
@@ -24,14 +24,15 @@ from stubborn.target.viewpoints import LastResort, ViewpointFinder
 
 @dataclass(frozen=True, kw_only=True)
 class TrackSeekerConfig:
-    """Tracks, and what is decided on them."""
+    """How tracks are made and judged, and which cells of them are approached."""
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)
     core_share: float = 0.7
     """Cells of a track whose mean score is below this share of its highest one are not driven to."""
     as_good: float = 0.15
-    """Of the accepted tracks the nearest one is approached whose probability is at most this much below the best."""
+    """Accepted tracks whose probability is at most this much below the best one's are equally good: the nearest of
+    them is approached."""
     part_share: float = 0.6
     """A track beside an accepted one, with at least this share of its probability, is driven to as a part of it."""
     part_gap_voxels: int = 1
@@ -46,28 +47,40 @@ class TrackSeekerConfig:
 
 
 class TrackSeeker:
-    """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.target.tracks` and `look`."""
+    """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.target.tracks` and `look`.
+
+    Args:
+        config: tracks and decisions.
+        target: steps and margins of the approach.
+        camera: camera of the observations.
+        robot: its radius and the place of its camera count.
+        segmenter: source of the posteriors.
+        finder: finds places to look from and to stop at.
+        distances: of a STOP.
+        max_steps: actions of an episode; the agent takes more risk as they run out.
+    """
 
     def __init__(
         self,
         config: TrackSeekerConfig,
-        distances_config: TargetConfig,
+        target: TargetConfig,
         *,
         camera: CameraModel,
         robot: RobotModel,
         segmenter: Segmenter,
         finder: ViewpointFinder,
         distances: StopDistances,
+        max_steps: int = MAX_STEPS,
     ) -> None:
-        """Builds it from the parts of the agent."""
         self.config = config
-        self.target = distances_config
+        self.target = target
         self.camera = camera
         self.robot = robot
         self.segmenter = segmenter
         self.fusion = fusion_for(segmenter.spec, config.tracks.evidence.fusion)
         self.finder = finder
         self.distances = distances
+        self.max_steps = max_steps
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -75,9 +88,10 @@ class TrackSeeker:
         self.goal = goal
         self.step = 0
         self.tracks: Tracks | None = None
-        self.verdicts = Verdicts(self.config.look, exact=not self.segmenter.spec.needs_verification)
+        exact = not self.segmenter.spec.needs_verification
+        self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
-        """Of the goal, for each track."""
+        """Probability of the goal for each track, by its number; entry 0 is no track."""
         self.pursued: int | None = None
         """The doubtful track that is looked at."""
         self.confidence: float | None = None
@@ -101,7 +115,8 @@ class TrackSeeker:
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels)
         self.step = step
-        self._decide(navmap, pose)
+        if self._decide(pose):
+            navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
         """See `Seeker`."""
@@ -199,16 +214,15 @@ class TrackSeeker:
         row, col = divmod(int(np.argmax(np.where(mask, navmap.score_sum[index], -1.0))), mask.shape[1])
         return int(index[0].start) + row, int(index[1].start) + col
 
-    def _decide(self, navmap: NavMap, pose: Pose) -> None:
-        """Updates the verdicts on all tracks."""
+    def _decide(self, pose: Pose) -> bool:
+        """Updates the verdicts on all tracks; returns True if other ones are rejected now."""
         tracks = self._of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
         rejected = set(self.verdicts.rejected)
         self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued)
-        if rejected != self.verdicts.rejected:
-            navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
+        return rejected != self.verdicts.rejected
 
     def _is_stuck(self, pose: Pose, step: int) -> bool:
         """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again."""

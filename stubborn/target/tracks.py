@@ -61,6 +61,8 @@ class TrackConfig:
     """How views are fused."""
 
     def __post_init__(self) -> None:
+        if not all(0.0 <= share <= 1.0 for share in (self.hot, self.same_share, self.merge_share, self.part_share)):
+            raise ConfigError("TrackConfig needs hot, same_share, merge_share and part_share in [0, 1].")
         if self.voxel_cells < 1 or not 2 <= self.most_tracks < 2**15:
             raise ConfigError(
                 f"TrackConfig needs voxel_cells >= 1 and most_tracks in [2, 32768), got {self.voxel_cells} and "
@@ -69,11 +71,11 @@ class TrackConfig:
 
 
 class Track(NamedTuple):
-    """What is known of one object."""
+    """One tracked object."""
 
     number: int
     probability: Float32[np.ndarray, " classes"]
-    """Of each category of `MPCAT40` but void."""
+    """Probability of each category of `MPCAT40[1:]`."""
     bottom_m: float
     """Height of its lowest voxel."""
     top_m: float
@@ -159,7 +161,7 @@ class Tracks:
         return self.frame.origin_xy_m[0] + middle[:, 1], self.frame.origin_xy_m[1] + middle[:, 0]
 
     def track(self, number: int) -> Track:
-        """Returns what is known of one track."""
+        """Returns a track by its number, 1 to `count`."""
         (x_m,), (y_m,) = self.middles(np.array([number]))
         low, high = self._low[number], self._high[number] + 1
         rows_m, cols_m, _ = (high - low) * self._edge_m

@@ -45,12 +45,13 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
     """Returns the counts of candidates and, for each method, its parameters and its quality on episodes left out.
 
     Args:
-        lines: lines of the log of `tools/train_verifier.py`.
+        lines: lines of the log of `tools/train_verifier.py`; those of failed episodes (0 steps) are left out.
         least_of_either: a category with fewer true or fewer false candidates uses the pooled classifier.
 
     Raises:
         ConfigError: there are fewer than `least_of_either` true or false candidates in total.
     """
+    lines = _completed(lines)
     table = _candidates(lines)
     goals, truth = table.goals, table.truth
     if min(truth.sum(), (~truth).sum()) < least_of_either:
@@ -165,12 +166,20 @@ def _calibration(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray,
 
 
 def judge_by_category(lines: Sequence[Mapping[str, Any]], verifier: FittedVerifier) -> dict[str, dict[str, Any]]:
-    """Returns the result of `judge` for a verifier on logged candidates: of all, then of each category that occurs."""
-    goals, _, features, truth = _candidates(lines)
+    """Returns the result of `judge` for a verifier on logged candidates: of all, then of each category that occurs.
+
+    Candidates of failed episodes (0 steps) are left out.
+    """
+    goals, _, features, truth = _candidates(_completed(lines))
     rows = zip(goals.tolist(), features.tolist(), strict=True)
     probability = np.array([verifier.probability(goal, Features(*row)) for goal, row in rows], np.float64)
     parts = {"all": np.ones(len(truth), np.bool_)} | {goal: goals == goal for goal in GOAL_CATEGORIES}
     return {name: judge(probability[part], truth[part]) for name, part in parts.items() if part.any()}
+
+
+def _completed(lines: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Returns the lines of the episodes that did not fail."""
+    return [line for line in lines if line["steps"]]
 
 
 def _candidates(lines: Sequence[Mapping[str, Any]]) -> Candidates:

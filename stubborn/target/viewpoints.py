@@ -73,7 +73,7 @@ class ViewpointFinder:
         free = free_spaces[self.layers[-1]]
         reach_m = np.where(free.reachable, gap_m, np.inf)
         if reach_m.min() <= self.distances.last_resort_m:
-            # The robot's own ground is free to it and moves with it: without a margin it would push on for ever.
+            # The robot's own ground is free to it and moves with it: without a margin it would push without end.
             margin_m = self.planner.config.own_ground_m + view.frame.cell_m
             near_enough = last_resort is LastResort.STOP
             yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)

@@ -8,10 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from sim.composition.agents import SPECS, find_agent
+from sim.composition.agents import SPECS, build_agent, find_agent
+from sim.env.objectnav import ObjectNavEnv
 from sim.errors import ConfigError
-from sim.interface import POSE_SENSORS, AgentSpec
+from sim.interface import POSE_SENSORS, AgentSpec, CameraModel
 from sim.run import entry
+from stubborn.agent import StubbornAgent
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target.track_seeker import TrackSeeker
+from stubborn.target.verification import AcceptAll
 from tests.helpers import agents
 from tests.helpers.worlds import room, with_box
 
@@ -59,6 +64,17 @@ def test_an_agent_gets_a_sensor_of_its_own(house: Path, tmp_path: Path) -> None:
     _, keys = played(house, tmp_path, "tests.helpers.agents:FEELER", "gt")
     assert keys == {"depth", "ahead", *POSE_SENSORS}
     assert json.loads((tmp_path / "config.json").read_text())["config"]["sensors"] == ["depth", "ahead"]
+
+
+def test_stubborn_plus_knows_the_tasks_limit_of_steps(house: Path) -> None:
+    spec = SPECS["stubborn-plus"]
+    env = ObjectNavEnv(house=house, max_steps=30, camera=CameraModel(width_px=160, height_px=120))
+    parts = {"segmenter": GroundTruthSegmenter(), "verifier": AcceptAll(), "config": spec.config}
+    agent = build_agent("stubborn-plus", spec, env, **parts)
+    env.close()
+    assert isinstance(agent, StubbornAgent)
+    assert isinstance(agent.seeker, TrackSeeker)
+    assert agent.seeker.verdicts.max_steps == 30
 
 
 def test_a_sensor_of_its_own_is_no_back_door_to_the_truth() -> None:

@@ -35,10 +35,12 @@ def evidence(*bearings_rad: float) -> Evidence:
 class Judged:
     """A track and what is decided on it, step by step."""
 
-    def __init__(self, *, exact: bool = False, looks: int = 0, distance_m: float = 2.0) -> None:
+    def __init__(
+        self, *, exact: bool = False, looks: int = 0, distance_m: float = 2.0, max_steps: int = MAX_STEPS
+    ) -> None:
         self.distance_m = distance_m
         self.pursued: int | None = None
-        self.verdicts = Verdicts(LookConfig(), exact=exact)
+        self.verdicts = Verdicts(LookConfig(), exact=exact, max_steps=max_steps)
         for _ in range(looks):
             self.verdicts.looked(TRACK)
 
@@ -97,6 +99,13 @@ def test_what_cannot_be_reached_any_more_is_not_accepted():
     assert Judged(distance_m=18.0).at(0.95, MAX_STEPS - 100) == "doubtful"
 
 
+@pytest.mark.parametrize("max_steps", [200, MAX_STEPS, 2000])
+def test_the_risk_follows_the_steps_that_the_episode_has_left(max_steps: int):
+    assert Judged(max_steps=max_steps).at(0.45, max_steps - 100) == "accepted"
+    assert Judged(max_steps=max_steps).at(0.45, max_steps - 150) == "doubtful"
+    assert Judged(max_steps=max_steps, distance_m=18.0).at(0.95, max_steps - 100) == "doubtful"
+
+
 def test_a_look_that_began_goes_on_until_the_probability_is_well_below_that_of_its_beginning():
     track = Judged()
     assert [track.at(p) for p in (0.32, 0.28)] == ["doubtful", "none"]
@@ -105,15 +114,16 @@ def test_a_look_that_began_goes_on_until_the_probability_is_well_below_that_of_i
 
 
 def test_the_bar_falls_as_steps_run_out():
-    bar = [LookConfig().bar_at(step) for step in range(MAX_STEPS + 1)]
+    bar = [LookConfig().bar_with(MAX_STEPS - step) for step in range(MAX_STEPS + 1)]
     assert bar == sorted(bar, reverse=True)
     assert [bar[step] for step in (0, 250, 400, MAX_STEPS)] == pytest.approx([0.8, 0.63, 0.4, 0.05])
 
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"bar": ()}, {"bar": ((100, 0.5), (50, 0.1))}, {"bar": ((0, 1.5),)}, {"slack": -0.1}, {"look_m": (2.0, 1.0)}],
-)
+    [{"bar": ()}, {"bar": ((100, 0.5), (50, 0.1))}, {"bar": ((0, 1.5),)}, {"slack": -0.1}, {"look_m": (2.0, 1.0)},
+     {"most_looks": -1}, {"per_metre": -0.1}, {"patience_steps": -1}],
+)  # fmt: skip
 def test_wrong_values_are_refused(wrong: dict):
     with pytest.raises(ConfigError, match="LookConfig"):
         LookConfig(**wrong)

@@ -32,7 +32,7 @@ def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tu
 def log_of(by_goal: dict[str, tuple[np.ndarray, np.ndarray]]) -> list[dict]:
     """Lines of the tool's log, one candidate per episode."""
     return [
-        {"goal": goal, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
+        {"goal": goal, "steps": 30, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
         for goal, (features, truth) in by_goal.items()
         for row, true in zip(features, truth, strict=True)
     ]
@@ -143,10 +143,20 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     strong, weak = [20.0, 18.0, 0.98, 0.3], [12.0, 1.0, 0.6, 0.9]
     here, near, far = (0.0, 0.0), (1.0, 1.0), (4.0, 0.0)
     met = [(strong, 1.0, here), (weak, 1.0, near), (weak, 0.0, near), (weak, 0.0, here), (strong, 1.0, far)]
-    line = {"goal": "bed", "candidates": [[*features, truth, *place] for features, truth, place in met]}
+    line = {"goal": "bed", "steps": 30, "candidates": [[*features, truth, *place] for features, truth, place in met]}
     content = fit([line, line], 2)
     assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
+
+
+def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: Path):
+    lines = log_of({"bed": examples(100, 0.5, seed=10)})
+    content = fit(lines, 20)
+    broken = [line | {"steps": 0} for line in lines[:30]]
+    assert fit([*lines, *broken], 20) == content
+    assert content["episodes"] == 100
+    verifier = written(content, tmp_path)
+    assert judge_by_category([*lines, *broken], verifier) == judge_by_category(lines, verifier)
 
 
 def test_too_few_candidates_are_refused_with_the_numbers():
