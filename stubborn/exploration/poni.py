@@ -20,11 +20,11 @@ from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.frontier import frontier_cells
+from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.patches import MapPatch, patch_around
 from stubborn.exploration.places import MapCells
-from stubborn.planning.planner import FreeSpace, Goal
-from stubborn.raster import connected, distance_to, large_parts
+from stubborn.planning.planner import Goal
+from stubborn.raster import connected, large_parts
 
 if TYPE_CHECKING:
     from stubborn.exploration.poni_net import Predictor
@@ -91,30 +91,6 @@ class PoniConfig:
         return PoniExplorer(self, shared_predictor(self.weights))
 
 
-@dataclass(frozen=True)
-class Frontiers:
-    """The known part of the map at one step, and the frontiers of it."""
-
-    window: Window
-    free: FreeSpace
-    cells: Bool[np.ndarray, "rows cols"]
-    """The frontiers that can be reached."""
-    unknown: Bool[np.ndarray, "rows cols"]
-    """Ground that was not in view; that near the trail counts as known."""
-    trail_m: Float32[np.ndarray, "rows cols"]
-    """Distance from the robot's trail."""
-
-    @classmethod
-    def of(cls, ground: Ground, *, own_known_m: float, margin_cells: int) -> Frontiers:
-        """Returns the frontiers of a map, as `FrontierExplorer` finds them."""
-        window = ground.navmap.known_window(margin_cells)
-        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
-        unknown = ground.unknown(window) & (trail_m > own_known_m)
-        free = ground.free_space(window, costly=unknown)
-        cells = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
-        return cls(window, free, cells, unknown, trail_m)
-
-
 class PoniExplorer:
     """Goes to the frontier with the highest predicted potential, and keeps to it for some steps."""
 
@@ -146,7 +122,7 @@ class PoniExplorer:
         return (
             (yield from self._go_on(known, ground.pose))
             or (yield from self._to_best(known, ground))
-            or (yield from self._to_least_visited(known))
+            or (yield from known.to_least_visited(config.arrived_m))
         )
 
     def potential(self, patch: MapPatch, goal: str) -> Float32[np.ndarray, "cells cells"]:
@@ -230,15 +206,7 @@ class PoniExplorer:
         piece[index] = disc
         return piece & connected(cells, row, col, connectivity=8)
 
-    def _to_least_visited(self, known: Frontiers) -> Search:
-        """Returns the route to the ground farthest from the trail, for when nothing unknown is left."""
-        far_m = np.where(known.free.reachable, known.trail_m, -np.inf)
-        route = yield Goal(known.free, far_m == far_m.max())
-        return None if route is None or route.length_m <= self.config.arrived_m else route
-
     def _spend(self, window: Window, pose: Pose) -> None:
         """Closes the frontiers around the robot, which has seen what they show."""
-        spent = self._spent[window.index]
-        index, disc = cells_near_segment(window.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
-        spent[index] |= disc
+        spend_around(self._spent, window, pose, self.config.spent_m)
         self._goal = None

@@ -18,7 +18,7 @@ from jaxtyping import Float32, Int32, UInt8
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, ConfigError
-from stubborn.exploration.frontier import frontier_cells
+from stubborn.exploration.frontiers import frontier_cells
 from stubborn.exploration.patches import MapPatch, or_of_blocks, patch_around
 from stubborn.navmap import NavMap
 

@@ -19,14 +19,14 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
 from sim.geometry.fast_marching import travel_times
-from sim.geometry.grid import Window, cells_near_segment
+from sim.geometry.grid import cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.explorer import Exploration, Ground, Search
-from stubborn.exploration.frontier import frontier_cells
+from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.places import MapCells
-from stubborn.planning.planner import FreeSpace, Goal
+from stubborn.planning.planner import Goal
 from stubborn.raster import distance_to, numbered_parts
 
 
@@ -75,24 +75,19 @@ class TourConfig:
 
 
 @dataclass(frozen=True)
-class _Known:
-    """The known part of the map at one step."""
+class _Left:
+    """What is left to see in the known part of the map at one step."""
 
-    window: Window
-    free: FreeSpace
-    frontiers: Bool[np.ndarray, "rows cols"]
+    known: Frontiers
     far: Bool[np.ndarray, "rows cols"]
     """Reachable ground that was seen from afar only."""
-    unknown: Bool[np.ndarray, "rows cols"]
     spent: Bool[np.ndarray, "rows cols"]
     """Shares memory with the explorer's own mask."""
-    trail_m: Float32[np.ndarray, "rows cols"]
-    """Distance from the robot's trail."""
 
     @property
-    def left(self) -> Bool[np.ndarray, "rows cols"]:
+    def cells(self) -> Bool[np.ndarray, "rows cols"]:
         """The cells of all stops."""
-        return (self.frontiers | self.far) & ~self.spent
+        return (self.known.cells | self.far) & ~self.spent
 
 
 @dataclass(frozen=True)
@@ -126,11 +121,11 @@ class TourExplorer:
         turn = self.glancer.next_turn(ground.navmap, ground.pose)
         if turn is not None:
             return turn
-        known = self._known(ground)
+        left = self._left(ground)
         return (
-            (yield from self._go_on(known, ground.pose))
-            or (yield from self._to_first_stop(known, ground.pose))
-            or (yield from self._to_least_visited(known))
+            (yield from self._go_on(left, ground.pose))
+            or (yield from self._to_first_stop(left, ground.pose))
+            or (yield from left.known.to_least_visited(self.config.arrived_m))
         )
 
     def _note_view(self, ground: Ground) -> None:
@@ -145,34 +140,32 @@ class TourExplorer:
         self._inspected[index] |= near & (frames != self._frames[index])
         self._frames[index] = frames
 
-    def _known(self, ground: Ground) -> _Known:
+    def _left(self, ground: Ground) -> _Left:
         """Returns what is left to see in the known part of the map."""
-        window = ground.navmap.known_window(self.config.margin_cells)
-        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
-        unknown = ground.unknown(window) & (trail_m > self.config.own_known_m)
-        free = ground.free_space(window, costly=unknown)
-        frontiers = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
-        far = np.zeros_like(frontiers)
-        if self.config.near_m > 0.0:
-            inspected_m = distance_to(self._inspected[window.index]) * np.float32(window.frame.cell_m)
-            far = free.reachable & ~unknown & (inspected_m > 0.2) & (trail_m > self.config.own_known_m)
-        return _Known(window, free, frontiers, far, unknown, self._spent[window.index], trail_m)
+        config = self.config
+        known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells)
+        far = np.zeros_like(known.cells)
+        if config.near_m > 0.0:
+            inspected_m = distance_to(self._inspected[known.window.index]) * np.float32(known.window.frame.cell_m)
+            far = known.free.reachable & ~known.unknown & (inspected_m > 0.2) & (known.trail_m > config.own_known_m)
+        return _Left(known, far, self._spent[known.window.index])
 
-    def _go_on(self, known: _Known, pose: Pose) -> Search:
+    def _go_on(self, left: _Left, pose: Pose) -> Search:
         """Returns the route to the rest of the stop pursued; None when it is done with, or after some steps."""
         self._age_steps += 1
         if self._goal is None or self._age_steps > self.config.replan_steps:
             return None
-        route = yield Goal(known.free, self._goal.within(known.window) & known.left)
+        route = yield Goal(left.known.free, self._goal.within(left.known.window) & left.cells)
         if route is not None and route.length_m <= self.config.arrived_m:
-            self._spend(known, pose)
+            self._spend(left, pose)
             return None
         return route
 
-    def _to_first_stop(self, known: _Known, pose: Pose) -> Search:
+    def _to_first_stop(self, left: _Left, pose: Pose) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
+        known = left.known
         while True:
-            stops = self._stops(known)
+            stops = self._stops(left)
             if not stops:
                 self._goal = None
                 return None
@@ -181,32 +174,30 @@ class TourExplorer:
             if route is not None and route.length_m > self.config.arrived_m:
                 self._goal, self._age_steps = MapCells.of(stop.cells, known.window), 0
                 return route
-            known.spent[stop.cells] |= route is None
+            left.spent[stop.cells] |= route is None
             if route is not None:
-                self._spend(known, pose)
-                known.spent[known.free.frame.cell(pose.x_m, pose.y_m)] = True
+                self._spend(left, pose)
+                left.spent[known.free.frame.cell(pose.x_m, pose.y_m)] = True
 
-    def _stops(self, known: _Known) -> list[_Stop]:
+    def _stops(self, left: _Left) -> list[_Stop]:
         """Returns the stops that can be reached."""
-        config, cell_m = self.config, known.free.frame.cell_m
-        frontiers = [
-            _Stop(cells, self._shown_m2(known, cells)) for cells in _parts(known.frontiers & ~known.spent, 1.0)
-        ]
+        config, known, cell_m = self.config, left.known, left.known.free.frame.cell_m
+        frontiers = [_Stop(cells, self._shown_m2(known, cells)) for cells in _parts(known.cells & ~left.spent, 1.0)]
         long = [stop for stop in frontiers if np.count_nonzero(stop.cells) * cell_m >= config.least_length_m]
         far = [
             _Stop(cells, config.far_weight * float(np.count_nonzero(cells)) * cell_m**2)
-            for cells in _parts(known.far & ~known.spent, config.least_far_m2 / cell_m**2)
+            for cells in _parts(left.far & ~left.spent, config.least_far_m2 / cell_m**2)
         ]
         return long + far or frontiers
 
-    def _shown_m2(self, known: _Known, frontier: Bool[np.ndarray, "rows cols"]) -> float:
+    def _shown_m2(self, known: Frontiers, frontier: Bool[np.ndarray, "rows cols"]) -> float:
         """Returns the area of the unknown ground within some path length behind a frontier."""
         cell_m, open_ground = known.free.frame.cell_m, known.unknown & known.free.reachable
         speed = np.ones(frontier.shape, np.float32)
         path_m = travel_times(frontier, open_ground | frontier, speed, cell_m, self.config.gain_radius_m)
         return float(np.count_nonzero(np.isfinite(path_m) & open_ground)) * cell_m**2
 
-    def _first(self, known: _Known, stops: list[_Stop], pose: Pose) -> int:
+    def _first(self, known: Frontiers, stops: list[_Stop], pose: Pose) -> int:
         """Returns the index of the stop with which the best tour begins."""
         here = np.zeros(known.free.frame.shape, np.bool_)
         here[known.free.frame.cell(pose.x_m, pose.y_m)] = True
@@ -225,26 +216,19 @@ class TourExplorer:
                 between_m[i, j] = between_m[j, i] = _nearest_m(field_m, stops[int(best[j])].cells)
         return int(best[first_of_best_order(weight[best], to_m[best], between_m, self.config.stop_m)])
 
-    def _from(self, known: _Known, cells: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
+    def _from(self, known: Frontiers, cells: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
         """Returns the travel time from some cells to all others."""
         return travel_times(cells, known.free.reachable, known.free.speed, known.free.frame.cell_m)
 
-    def _turns(self, known: _Known, stop: _Stop, pose: Pose) -> float:
+    def _turns(self, known: Frontiers, stop: _Stop, pose: Pose) -> float:
         """Returns the number of turns from the heading to the middle of a stop."""
         rows, cols = np.nonzero(stop.cells)
         x_m, y_m = known.free.frame.centres(rows.mean(), cols.mean())
         return abs(wrap_angle(math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m) - pose.yaw_rad)) / TURN_RAD
 
-    def _to_least_visited(self, known: _Known) -> Search:
-        """Returns the route to the ground farthest from the trail, for when nothing is left to see."""
-        far_m = np.where(known.free.reachable, known.trail_m, -np.inf)
-        route = yield Goal(known.free, far_m == far_m.max())
-        return None if route is None or route.length_m <= self.config.arrived_m else route
-
-    def _spend(self, known: _Known, pose: Pose) -> None:
+    def _spend(self, left: _Left, pose: Pose) -> None:
         """Closes the stops around the robot, which has seen what they show."""
-        index, disc = cells_near_segment(known.window.frame, pose.xy_m, pose.xy_m, self.config.spent_m)
-        known.spent[index] |= disc
+        spend_around(self._spent, left.known.window, pose, self.config.spent_m)
         self._goal = None
 
 

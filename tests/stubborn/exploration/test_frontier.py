@@ -6,7 +6,8 @@ from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import StubbornAgent
-from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer, frontier_cells
+from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer
+from stubborn.exploration.frontiers import frontier_cells
 from stubborn.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.asciimap import grid_of

@@ -1,0 +1,79 @@
+"""Frontiers of the known part of the map; all explorers that drive to frontiers share them.
+
+A level camera cannot see the floor under and beside the robot. Ground near the robot's own trail therefore counts as
+known, and paths may cross unknown ground at the planner's cost for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float32
+
+from sim.geometry.grid import Window, cells_near_segment
+from sim.geometry.pose import Pose
+from stubborn.exploration.explorer import Ground, Search
+from stubborn.planning.planner import FreeSpace, Goal
+from stubborn.raster import distance_to
+
+
+def frontier_cells(
+    known_free: Bool[np.ndarray, "rows cols"], open_unknown: Bool[np.ndarray, "rows cols"]
+) -> Bool[np.ndarray, "rows cols"]:
+    """Returns the known free cells with an unknown cell that is not blocked among their 8 neighbours."""
+    near_unknown = cv2.dilate(np.ascontiguousarray(open_unknown).view(np.uint8), np.ones((3, 3), np.uint8))
+    return known_free & (near_unknown > 0)
+
+
+@dataclass(frozen=True)
+class Frontiers:
+    """The known part of the map at one step, and the frontiers of it."""
+
+    window: Window
+    free: FreeSpace
+    cells: Bool[np.ndarray, "rows cols"]
+    """The frontiers that can be reached."""
+    unknown: Bool[np.ndarray, "rows cols"]
+    """Ground that was not in view; that near the trail counts as known."""
+    trail_m: Float32[np.ndarray, "rows cols"]
+    """Distance from the robot's trail."""
+
+    @classmethod
+    def of(cls, ground: Ground, *, own_known_m: float, margin_cells: int) -> Frontiers:
+        """Returns the frontiers of a map.
+
+        Args:
+            ground: map and pose at this step.
+            own_known_m: ground this near the trail counts as known.
+            margin_cells: margin around the known part of the map within which paths may run.
+        """
+        window = ground.navmap.known_window(margin_cells)
+        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
+        unknown = ground.unknown(window) & (trail_m > own_known_m)
+        free = ground.free_space(window, costly=unknown)
+        cells = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
+        return cls(window, free, cells, unknown, trail_m)
+
+    def to_least_visited(self, arrived_m: float) -> Search:
+        """Returns the route to the ground farthest from the trail, for when nothing unknown is left.
+
+        None: there is none, or it is within `arrived_m` of path.
+        """
+        far_m = np.where(self.free.reachable, self.trail_m, -np.inf)
+        route = yield Goal(self.free, far_m == far_m.max())
+        return None if route is None or route.length_m <= arrived_m else route
+
+
+def spend_around(spent: Bool[np.ndarray, "rows cols"], window: Window, pose: Pose, radius_m: float) -> None:
+    """Marks what is around the robot as spent: it has seen what the frontiers there show.
+
+    Args:
+        spent: mask over the whole map; is changed.
+        window: part of the map that is marked.
+        pose: of the robot.
+        radius_m: of the disc.
+    """
+    index, disc = cells_near_segment(window.frame, pose.xy_m, pose.xy_m, radius_m)
+    spent[window.index][index] |= disc
