@@ -18,7 +18,9 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
 
 import msgspec
+import numpy as np
 from msgspec import Meta
+from numpy.typing import NDArray
 
 from sim.errors import ConfigError, ObjectNavError
 
@@ -181,6 +183,41 @@ def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNav
         raise error(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
 
 
+def read_npz(
+    file: Path,
+    names: Iterable[str] | None = None,
+    *,
+    what: str,
+    most_bytes: int,
+    error: type[ObjectNavError] = ConfigError,
+) -> dict[str, NDArray[Any]]:
+    """Returns the arrays of an `.npz` file by name; pickled objects are refused.
+
+    Args:
+        file: the file.
+        names: the arrays to read, all of which the file must have; None: all that it has.
+        what: kind of the file for the error message, for example "trajectory".
+        most_bytes: largest size of all its arrays together.
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the file cannot be read, is damaged or too large, or lacks an array.
+    """
+    try:
+        with zipfile.ZipFile(file) as archive:
+            size = sum(member.file_size for member in archive.infolist())
+            if size > most_bytes:
+                raise ValueError(f"it expands to {size >> 20} MB; at most {most_bytes >> 20} MB are read")
+            there = [name.removesuffix(".npy") for name in archive.namelist() if name.endswith(".npy")]
+            wanted = there if names is None else list(names)
+            missing = next((name for name in wanted if name not in there), None)
+            if missing is not None:
+                raise ValueError(f"it has no '{missing}'")
+            return {name: _read_member(archive, name) for name in wanted}
+    except Exception as fault:  # damaged bytes raise more kinds of errors in zipfile and NumPy than a list could name
+        raise error(f"'{file}' is no {what}: {reason_of(fault)}.") from None
+
+
 def image_size_px(content: bytes) -> tuple[int, int] | None:
     """Returns width and height of a PNG or JPEG image from its header; None where it is neither."""
     if content[:8] == b"\x89PNG\r\n\x1a\n" and len(content) >= 24:
@@ -223,6 +260,12 @@ def reason_of(fault: Exception) -> str:
     if isinstance(fault, OSError) and fault.strerror:
         return fault.strerror
     return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
+
+
+def _read_member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Returns one array of an open `.npz` file."""
+    with archive.open(f"{name}.npy") as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False)
 
 
 def _escape(letter: str) -> str:

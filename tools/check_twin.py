@@ -6,16 +6,17 @@ The runs must have been recorded with `--record`. Two comparisons, each by Spear
 the explored area and of the step of first sight:
 
 - the recorded poses are replayed in the twin, which isolates its camera;
-- with `--explore`, the run's agent explores the twin from the same starts. A robot that is 1 mm elsewhere may take
-  another door, so the same is done once more from starts moved by `--shift-m`: the correlation between these two runs
-  of the twin is what any imitation can reach.
+- with `--explore`, the run's agent, with the explorer and the settings of the run, explores the twin from the same
+  starts. A robot that is 1 mm elsewhere may take another door, so the same is done once more from starts moved by
+  `--shift-m`: the correlation between these two runs of the twin is what any imitation can reach. Runs with another
+  robot, camera or task are refused, and so are agents that are more than a `StubbornAgent` with a configuration.
 """
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -24,20 +25,30 @@ import numpy as np
 from scipy.stats import spearmanr
 
 from sim import cli
+from sim.analysis.comparison import Run, read_run
+from sim.composition.agents import find_explorer
+from sim.configuration import with_fields
 from sim.errors import ConfigError
 from sim.evaluation.rollout import episode_seed
+from sim.files import inside, write_atomically
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
+from sim.interface import MAX_STEPS, CameraModel
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
+from sim.robot.config import RobotConfig
+from sim.task.config import TaskConfig
 from sim.task.metrics import EXPLORED_SHARE, steps_to_first_sight
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.twin.agent import TwinAgent, play, twin_config
-from stubborn.agent import AgentConfig
+from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.agents import SPECS
+from stubborn.baselines.single_frame import single_frame_agent
 from stubborn.navmap import NavMap
 
 MEASURES = ("area_seen_m2", "steps_to_first_sight")
+PLAYABLE = (StubbornAgent, single_frame_agent)
+"""Factories of agents that are a `StubbornAgent` with a configuration; ground truth needs no verification."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,7 +60,7 @@ class Args:
     runs: tuple[Path, ...]
     """Folders of recorded runs on that split."""
     explore: bool = False
-    """Also run the agent of each run in the twin."""
+    """Also run the agent of each run in the twin, with the run's explorer and settings."""
     episodes: cli.Count | None = None
     """Only the first so many episodes of each run."""
     shift_m: cli.NotNegative = 0.01
@@ -63,7 +74,7 @@ class Recorded:
     """An episode of a run."""
 
     run: Path
-    line: dict[str, Any]
+    line: Mapping[str, Any]
     trajectory: Trajectory
 
     @property
@@ -83,46 +94,69 @@ class Cameras:
     def of(self, house: str) -> PlanCamera:
         """Returns the camera of a house's lowest storey."""
         if house not in self._cameras:
-            self._cameras[house] = PlanCamera(read_plan(self._folder / f"{house}.npz"))
+            self._cameras[house] = PlanCamera(read_plan(inside(self._folder, f"{house}.npz", what="house")))
         return self._cameras[house]
 
 
 def main(args: Args) -> int:
     """Prints the correlations."""
-    cameras, lines = Cameras(args.plans), []
-    everything = []
-    for run in args.runs:
-        recorded = list(_recorded(run, args.episodes))
+    runs = [read_run(path) for path in args.runs]
+    agents = [TwinAgent(twin_config(agent_config(run))) if args.explore else None for run in runs]
+    cameras = Cameras(args.plans)
+    lines: list[dict[str, Any]] = []
+    everything: list[tuple[Recorded, dict[str, Any]]] = []
+    for run, agent in zip(runs, agents, strict=True):
+        recorded = recorded_episodes(run, args.episodes)
         replayed = [replay(cameras.of(each.line["house"]), each) for each in recorded]
-        everything += list(zip(recorded, replayed, strict=True))
+        everything += zip(recorded, replayed, strict=True)
         lines += [_line(each, "replay", found) for each, found in zip(recorded, replayed, strict=True)]
-        _report(f"{run.name}: poses replayed", [each.line for each in recorded], replayed)
-        if args.explore and (name := json.loads((run / "config.json").read_text())["agent"]) in SPECS:
-            agent = TwinAgent(twin_config(_config(name)))
-            twin = [explore(agent, cameras, each, 0.0) for each in recorded]
-            shifted = [explore(agent, cameras, each, args.shift_m) for each in recorded]
-            lines += [_line(each, "explore", found) for each, found in zip(recorded, twin, strict=True)]
-            lines += [_line(each, "shifted", found) for each, found in zip(recorded, shifted, strict=True)]
-            _report(f"{run.name}: {name} in the twin", [each.line for each in recorded], twin)
-            _report(f"{run.name}: twin against starts moved by {args.shift_m} m", twin, shifted)
+        _report(f"{run.path.name}: poses replayed", [each.line for each in recorded], replayed)
+        if agent is not None:
+            lines += _explored(agent, cameras, recorded, args.shift_m)
     _report("all runs: poses replayed", [each.line for each, _ in everything], [found for _, found in everything])
     if args.out is not None:
-        args.out.parent.mkdir(parents=True, exist_ok=True)
-        args.out.write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+        write_atomically(args.out, "".join(json.dumps(line) + "\n" for line in lines))
     return 0
+
+
+def agent_config(run: Run) -> AgentConfig:
+    """Returns the configuration of a run's agent, as the run's `config.json` records it.
+
+    Raises:
+        ConfigError: the twin cannot play this agent, or the run had another robot, camera or task.
+    """
+    name = str(run.recorded("agent"))
+    config = SPECS[name].config if name in SPECS and SPECS[name].make in PLAYABLE else None
+    if not isinstance(config, AgentConfig):
+        there = ", ".join(name for name, spec in SPECS.items() if spec.make in PLAYABLE)
+        raise ConfigError(f"'{run.path}' has the agent '{name}', which the twin cannot play. It plays: {there}.")
+    for part, default in (("camera", CameraModel()), ("robot", RobotConfig()), ("task", TaskConfig())):
+        if run.config.get("robot") or with_fields(default, _recorded_tree(run, part)) != default:
+            raise ConfigError(f"'{run.path}' has another {part} than the twin: only settings of its agent may differ.")
+    if run.config.get("explorer") is not None:
+        config = replace(config, explorer=find_explorer(str(run.config["explorer"])))
+    return with_fields(config, _recorded_tree(run, "agent"))
+
+
+def _recorded_tree(run: Run, name: str) -> dict[str, Any]:
+    """Returns a part of the configuration tree of a run; raises ConfigError where it was not recorded."""
+    tree = run.recorded("config").get(name)
+    if not isinstance(tree, dict):
+        raise ConfigError(f"'{run.path / 'config.json'}' has no field 'config.{name}', which --explore needs.")
+    return tree
 
 
 def replay(camera: PlanCamera, recorded: Recorded) -> dict[str, Any]:
     """Returns area and step of first sight that the recorded poses give in the twin."""
     camera.reset()
-    navmap = NavMap.empty(GridFrame.around_start(1440, 0.05))
+    navmap = NavMap.empty(GridFrame.around_start(AgentConfig.map_cells, AgentConfig.cell_m))
     start, goal, first = recorded.start, recorded.line["goal"], None
     for step, pose in enumerate(recorded.trajectory.poses):
         here = Pose(*(float(value) for value in pose))
         look = camera.look(here, goal, navmap, here.relative_to(start), step)
         if first is None and look.goal_share >= EXPLORED_SHARE:
             first = step
-    return {"area_seen_m2": camera.area_seen_m2, "steps_to_first_sight": steps_to_first_sight(first, 500)}
+    return {"area_seen_m2": camera.area_seen_m2, "steps_to_first_sight": steps_to_first_sight(first, MAX_STEPS)}
 
 
 def explore(agent: TwinAgent, cameras: Cameras, recorded: Recorded, shift_m: float) -> dict[str, Any]:
@@ -133,24 +167,39 @@ def explore(agent: TwinAgent, cameras: Cameras, recorded: Recorded, shift_m: flo
     return dict(play(agent, cameras.of(line["house"]), line["goal"], replace(start, x_m=x_m, y_m=y_m), seed=seed))
 
 
-def _recorded(run: Path, most: int | None) -> Iterator[Recorded]:
-    """Yields the episodes of a run that began and have a trajectory."""
-    file = run / "results.jsonl"
-    if not file.is_file():
-        raise ConfigError(f"'{run}' has no results.jsonl: give folders of runs made with --record.")
-    for text in file.read_text(encoding="utf-8").splitlines()[:most]:
-        line = json.loads(text)
-        trajectory = trajectory_file(run, line["episode_id"])
-        if line["end_reason"] != "error" and trajectory.is_file():
-            yield Recorded(run, line, read_trajectory(trajectory))
+def _explored(agent: TwinAgent, cameras: Cameras, recorded: Sequence[Recorded], shift_m: float) -> list[dict[str, Any]]:
+    """Lets a run's agent explore the twin twice, prints both correlations, and returns the lines of the episodes."""
+    name, run = recorded[0].line["agent"], recorded[0].run.name
+    twin = [explore(agent, cameras, each, 0.0) for each in recorded]
+    shifted = [explore(agent, cameras, each, shift_m) for each in recorded]
+    _report(f"{run}: {name} in the twin", [each.line for each in recorded], twin)
+    _report(f"{run}: twin against starts moved by {shift_m} m", twin, shifted)
+    kinds = (("explore", twin), ("shifted", shifted))
+    return [_line(each, kind, one) for kind, found in kinds for each, one in zip(recorded, found, strict=True)]
 
 
-def _config(name: str) -> AgentConfig:
-    """Returns the configuration of a named agent that builds a map."""
-    config = SPECS[name].config
-    if not isinstance(config, AgentConfig):
-        raise ConfigError(f"Agent '{name}' builds no map: the twin runs the agents of `AgentConfig` only.")
-    return config
+def recorded_episodes(run: Run, most: int | None) -> list[Recorded]:
+    """Returns the episodes of a run that began and have a trajectory.
+
+    Args:
+        run: the run.
+        most: only those among its first so many episodes; None: all.
+
+    Raises:
+        ConfigError: there is none, a trajectory is broken, or a line lacks what is compared.
+    """
+    found = []
+    for line in list(run.lines.values())[:most]:
+        file = trajectory_file(run.path, line["episode_id"])
+        if line["end_reason"] == "error" or not file.is_file():
+            continue
+        lacking = next((name for name in MEASURES if line[name] is None), None)
+        if lacking is not None:
+            raise ConfigError(f"'{run.path}' is of an older version: its results have no '{lacking}'.")
+        found.append(Recorded(run.path, line, read_trajectory(file)))
+    if not found:
+        raise ConfigError(f"'{run.path}' has no trajectory: give folders of runs made with --record.")
+    return found
 
 
 def _line(recorded: Recorded, kind: str, found: dict[str, Any]) -> dict[str, Any]:
@@ -160,7 +209,7 @@ def _line(recorded: Recorded, kind: str, found: dict[str, Any]) -> dict[str, Any
     return {"run": recorded.run.name, "kind": kind, **names, "real": real, "twin": found}
 
 
-def _report(title: str, first: Sequence[dict[str, Any]], second: Sequence[dict[str, Any]]) -> None:
+def _report(title: str, first: Sequence[Mapping[str, Any]], second: Sequence[Mapping[str, Any]]) -> None:
     """Prints the rank correlations of two lists of measures."""
     parts = []
     for key in MEASURES:

@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 
 from sim import cli
 from sim.files import write_atomically
-from sim.interface import CameraModel, ConfigError
+from sim.interface import MAX_STEPS, CameraModel, ConfigError
 from sim.plans.episode import draw_goal_and_start
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
@@ -80,7 +80,9 @@ def main(args: Args) -> int:
     plans = _plans(args)
     configs = {name: explorer_config(name, args.weights) for name in args.explorers}
     lines, first = [], None
-    print(f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count 500 where it is never seen")
+    print(
+        f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count {MAX_STEPS} where it is never seen"
+    )
     for name, config in configs.items():
         agent = TwinAgent(twin_config(AgentConfig(explorer=config)))
         played = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sim.interface import ConfigError
+from sim.plans.plan import house_of
 
 HELD_BACK = 10
 """One of so many houses is held back from training, by a hash of its name."""
@@ -25,6 +26,5 @@ def split_plans(folders: Iterable[Path]) -> tuple[list[Path], list[Path]]:
         if not files:
             raise ConfigError(f"No plan in '{folder}': tools/export_plans.py writes them.")
         for file in files:
-            house = file.stem.split("_storey_")[0]
-            (held_back if zlib.crc32(house.encode()) % HELD_BACK == 0 else trained).append(file)
+            (held_back if zlib.crc32(house_of(file.stem).encode()) % HELD_BACK == 0 else trained).append(file)
     return trained, held_back

@@ -4,8 +4,8 @@
     python tools/render_demonstrations.py runs/shown/oracle runs/shown/poni --out runs/demonstrations
 
 Each episode of the runs that were recorded with --record becomes a file `<out>/<run>/<episode>.npz`
-(`sim.datasets.demonstrations`); nothing is played again. The same command goes on where a killed one stopped.
-Train with tools/train_cloned.py.
+(`sim.datasets.demonstrations`); nothing is played again. The same command continues a killed run. Train with
+tools/train_cloned.py.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Args:
     height_px: cli.Count = 48
     """Height of the images."""
     failed: bool = False
-    """Also those that did not succeed."""
+    """Also those that did not succeed, but none without an action."""
     workers: cli.Count = 1
     """Number of processes."""
 
@@ -83,7 +83,8 @@ def main(args: Args) -> int:
         if time.monotonic() - printed_s > PRINT_EVERY_S:
             printed_s = time.monotonic()
             print(f"{episodes} of {todo} episodes, {frames / (printed_s - started_s):.0f} frames/s", flush=True)
-    print(f"wrote {episodes} episodes with {frames} frames to {args.out}")
+    empty = f"; {todo - episodes} without an action were left out" if episodes < todo else ""
+    print(f"wrote {episodes} episodes with {frames} frames to {args.out}{empty}")
     return 0
 
 
@@ -92,10 +93,12 @@ def render_house(work: HouseWork) -> tuple[int, int]:
     run = read_run(work.run)
     world = World(split_of(run).load_house(work.house))
     camera = Camera(world.model, world.labels, camera=work.camera)
-    frames = 0
+    episodes = frames = 0
     try:
         for episode_id, goal in work.episodes:
             trajectory = read_trajectory(trajectory_file(work.run, episode_id))
+            if trajectory.num_steps == 0:  # the agent failed at its first action
+                continue
             poses = [Pose(*(float(value) for value in row)) for row in trajectory.poses[: trajectory.num_steps]]
             shown = demonstrate(
                 poses,
@@ -107,10 +110,10 @@ def render_house(work: HouseWork) -> tuple[int, int]:
                 success=trajectory.success,
             )
             write_demonstration(_file_of(work.run, episode_id, work.out), shown)
-            frames += trajectory.num_steps
+            episodes, frames = episodes + 1, frames + trajectory.num_steps
     finally:
         camera.close()
-    return len(work.episodes), frames
+    return episodes, frames
 
 
 def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:

@@ -5,8 +5,8 @@
 A house is generated from its seed and exported as a plan (docs/plans.md). A demonstrator that knows the free space, but
 not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`); the small
 images are rendered at its poses. Searches that do not find the goal are left out. A file
-`<out>/<house>_<number>.npz` is one episode (`sim.datasets.demonstrations`); the same command goes on where a killed one
-stopped. Train with tools/train_cloned.py.
+`<out>/<house>_<number>.npz` is one episode (`sim.datasets.demonstrations`); the same command continues a killed run.
+Train with tools/train_cloned.py.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ PRINT_EVERY_S = 10.0
 
 
 class Note(msgspec.Struct):
-    """What was done of a house, in the JSON file beside its demonstrations."""
+    """Record of the finished work in one house: the JSON file beside its demonstrations."""
 
     options: dict[str, Any]
     episodes: Count

@@ -7,10 +7,7 @@ from __future__ import annotations
 
 import io
 import json
-import struct
-import zipfile
-import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -18,17 +15,20 @@ from typing import Annotated, Any
 import msgspec
 import numpy as np
 from jaxtyping import Float32, UInt8, UInt16
+from numpy.typing import NDArray
 
 from sim.files import write_atomically
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
-from sim.reading import Name, parse_json, reason_of, require_small_zip
+from sim.reading import Name, parse_json, read_npz, reason_of
 from sim.sensors.camera import Camera
 from sim.world.world import World
 
 FORMAT = 1
 """Version of the file format; it is increased when the arrays change their meaning."""
 MAX_FILE_BYTES = 256 << 20
+_ARRAYS = {"depth_mm": (np.uint16, 3), "semantic": (np.uint8, 3), "poses": (np.float32, 2), "actions": (np.uint8, 1)}
+"""Dtype and number of axes of each array."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,8 +73,11 @@ def demonstrate(
         success: whether the episode succeeded.
 
     Raises:
+        ConfigError: there is no pose, because the episode has no action.
         EpisodeError: the robot does not fit where the episode starts.
     """
+    if not poses:
+        raise ConfigError("A demonstration needs at least one action, and this episode has none.")
     world.reset(poses[0])
     images = []
     for pose in poses:
@@ -102,7 +105,6 @@ def write_demonstration(file: Path, shown: Demonstration) -> None:
     content = io.BytesIO()
     np.savez_compressed(
         content,
-        allow_pickle=False,
         depth_mm=shown.depth_mm,
         semantic=shown.semantic,
         poses=shown.poses,
@@ -121,21 +123,11 @@ def read_demonstration(file: Path) -> Demonstration:
     Raises:
         ConfigError: there is no such file, or it is no demonstration.
     """
+    arrays = read_npz(file, (*_ARRAYS, "about"), what="demonstration", most_bytes=MAX_FILE_BYTES)
     try:
-        require_small_zip(file, what="the file", most=MAX_FILE_BYTES)
-        with np.load(file, allow_pickle=False) as content:
-            arrays: dict[str, Any] = {
-                name: np.asarray(content[name]) for name in ("depth_mm", "semantic", "poses", "actions")
-            }
-            text = np.asarray(content["about"]).tobytes()
-        about = parse_json(text, _About, where="its header 'about'")
+        about = parse_json(arrays.pop("about").tobytes(), _About, where="its header 'about'")
         _check(arrays, about.goal)
-    except KeyError as error:
-        raise ConfigError(f"'{file}' is no demonstration: it has no {str(error.args[0])!r}.") from None
-    except (
-        OSError, ValueError, TypeError, EOFError, zipfile.BadZipFile, zlib.error, MemoryError, NotImplementedError,
-        SyntaxError, struct.error, RuntimeError,
-    ) as error:  # fmt: skip
+    except ValueError as error:
         raise ConfigError(f"'{file}' is no demonstration: {reason_of(error)}.") from None
     return Demonstration(**arrays, goal=about.goal, house=about.house, success=about.success)
 
@@ -155,11 +147,10 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def _check(arrays: dict[str, Any], goal: str) -> None:
+def _check(arrays: Mapping[str, NDArray[Any]], goal: str) -> None:
     """Raises ValueError where the arrays do not fit each other, or hold numbers without meaning."""
-    wanted = {"depth_mm": (np.uint16, 3), "semantic": (np.uint8, 3), "poses": (np.float32, 2), "actions": (np.uint8, 1)}
     count = len(arrays["actions"]) if arrays["actions"].ndim else 0
-    for name, (kind, axes) in wanted.items():
+    for name, (kind, axes) in _ARRAYS.items():
         array = arrays[name]
         if array.dtype != kind or array.ndim != axes or len(array) != count:
             raise ValueError(f"{name} is {array.dtype} {array.shape} for {count} actions")

@@ -31,10 +31,8 @@ class PlanEpisode:
             EpisodeError: no STOP for the goal succeeds anywhere in the plan.
         """
         self.plan: Plan = camera.plan
-        if goal is not None and goal not in self.plan.goals():
-            raise EpisodeError(
-                f"Plan '{self.plan.name}' has no goal '{goal}'. It has: {', '.join(self.plan.goals()) or 'no goal'}."
-            )
+        if goal is not None:
+            require_goal(self.plan, goal)
         self.camera, self.goal, self.start, self.max_steps = camera, goal, start, max_steps
         camera.reset()
         self.robot = PlanRobot(self.plan)
@@ -117,14 +115,20 @@ class PlanEpisode:
         }
 
 
-def draw_goal_and_start(plan: Plan, rng: np.random.Generator) -> tuple[str, Pose]:
+def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None = None) -> tuple[str, Pose]:
     """Returns a random goal of a plan, and a start from which it can be reached, as `sim.episodes.drawing` does.
 
+    Args:
+        plan: the plan.
+        rng: draws the goal and the start.
+        goal: this goal is not drawn, only a start for it.
+
     Raises:
-        EpisodeError: no goal of the plan can be reached.
+        EpisodeError: no goal of the plan can be reached, or not the given one.
     """
-    for goal in rng.permutation(np.array(plan.goals(), np.str_)).tolist():
-        distance_m = np.where(plan.slack_m > 0.02, plan.distance_m(goal), np.inf)
+    goals = rng.permutation(np.array(plan.goals(), np.str_)).tolist() if goal is None else [require_goal(plan, goal)]
+    for each in goals:
+        distance_m = np.where(plan.slack_m > 0.02, plan.distance_m(each), np.inf)
         reachable = np.isfinite(distance_m)
         far = reachable & (distance_m >= MIN_DISTANCE_M)
         if not far.any() and reachable.any():
@@ -132,5 +136,26 @@ def draw_goal_and_start(plan: Plan, rng: np.random.Generator) -> tuple[str, Pose
         cells = np.argwhere(far)
         if len(cells):
             x_m, y_m = plan.frame.to_metres(cells[rng.integers(len(cells))])
-            return goal, Pose(float(x_m), float(y_m), float(rng.uniform(-math.pi, math.pi)), plan.floor_z_m)
-    raise EpisodeError(f"Plan '{plan.name}': no goal can be reached.")
+            return each, Pose(float(x_m), float(y_m), float(rng.uniform(-math.pi, math.pi)), plan.floor_z_m)
+    raise EpisodeError(f"Plan '{plan.name}': {'no goal' if goal is None else f'no {goal}'} can be reached.")
+
+
+def draw_goal(plan: Plan, rng: np.random.Generator, start: Pose) -> str:
+    """Returns a random goal of a plan to which a path leads from a start; none whose path has ended there already.
+
+    Raises:
+        EpisodeError: there is none.
+    """
+    row, col = plan.frame.cell(start.x_m, start.y_m)
+    around = slice(max(row - 1, 0), max(row + 2, 0)), slice(max(col - 1, 0), max(col + 2, 0))
+    goals = [goal for goal in plan.goals() if 0.0 < plan.distance_m(goal)[around].min(initial=math.inf) < math.inf]
+    if not goals:
+        raise EpisodeError(f"Plan '{plan.name}': no path to a goal begins at ({start.x_m:g}, {start.y_m:g}).")
+    return goals[rng.integers(len(goals))]
+
+
+def require_goal(plan: Plan, goal: str) -> str:
+    """Returns a goal; raises EpisodeError where no STOP for it succeeds anywhere in the plan."""
+    if goal not in plan.goals():
+        raise EpisodeError(f"Plan '{plan.name}' has no goal '{goal}'. It has: {', '.join(plan.goals()) or 'no goal'}.")
+    return goal

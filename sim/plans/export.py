@@ -17,7 +17,7 @@ from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, geoms_of
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
 from sim.plans.gap_kernels import lower_to_gap
-from sim.plans.plan import CELL_M, Plan
+from sim.plans.plan import CELL_M, Plan, storey_name
 from sim.plans.surfaces import TOP_M, occupied_spans
 from sim.robot.body import PREFIX
 from sim.task.ground_truth import GroundTruth
@@ -52,8 +52,7 @@ def export_plans(house: House, source: dict[str, Any]) -> Iterator[Plan]:
     storeys = [level for i, level in enumerate(levels_m) if i == 0 or level - levels_m[i - 1] >= 1.0]
     for number, floor_z_m in enumerate(storeys):
         if truth.space(floor_z_m).free.any():
-            name = house.name if number == 0 else f"{house.name}_storey_{number}"
-            yield _storey(name, world, truth, at_rest, floor_z_m, source)
+            yield _storey(storey_name(house.name, number), world, truth, at_rest, floor_z_m, source)
 
 
 def _storey(

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import io
 import json
-import zipfile
-import zlib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,7 +24,7 @@ from sim.files import write_atomically
 from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
-from sim.reading import Metres, Name, parse_json, reason_of, require_small_zip
+from sim.reading import Metres, Name, parse_json, read_npz, reason_of
 
 CELL_M = 0.05
 """Edge of a cell of a plan."""
@@ -43,7 +42,7 @@ class Plan:
     """One storey of a house. Arrays over the ground are (rows, cols) on `frame`, which is in the world's plane."""
 
     name: str
-    """Name of the house; other storeys than the lowest have `_storey_<number>` behind it."""
+    """Name of the house and the storey: `storey_name`."""
     frame: GridFrame
     floor_z_m: float
     """Height of the storey's floor in the world; all heights of the plan are above it."""
@@ -120,6 +119,16 @@ class Plan:
         return goal_of[self.categories][self.span_instance]
 
 
+def storey_name(house: str, number: int) -> str:
+    """Returns the name of the plan of a storey; the lowest one, number 0, has the name of the house."""
+    return house if number == 0 else f"{house}_storey_{number}"
+
+
+def house_of(name: str) -> str:
+    """Returns the name of the house in the name of a plan: `storey_name` without the storey."""
+    return re.sub(r"_storey_\d+$", "", name)
+
+
 def write_plan(path: Path, plan: Plan) -> None:
     """Writes a plan as a compressed npz file; heights are rounded to `HEIGHT_UNIT_M`."""
     arrays: dict[str, Any] = {name: getattr(plan, name) for name in _ARRAYS} | {"categories": plan.categories}
@@ -149,20 +158,15 @@ def read_plan(path: Path) -> Plan:
     Raises:
         HouseError: there is no such file, or it is no plan of this format.
     """
+    what = "house plan (tools/export_plans.py writes them)"
+    arrays = read_npz(path, (*_ARRAYS, "categories", "about"), what=what, most_bytes=MAX_FILE_BYTES, error=HouseError)
     try:
-        require_small_zip(path, what="the file", most=MAX_FILE_BYTES, error=HouseError)
-        with np.load(path, allow_pickle=False) as file:
-            about = parse_json(str(file["about"]), _About, where="its header 'about'", error=HouseError)
-            arrays = {name: np.asarray(file[name]) for name in (*_ARRAYS, "categories")}
+        about = parse_json(str(arrays.pop("about")), _About, where="its header 'about'", error=HouseError)
         if about.format != FORMAT:
             raise ValueError(f"its format is {about.format}, this version reads {FORMAT}")
         _check(about, arrays)
-    except (
-        OSError, LookupError, ValueError, TypeError, EOFError, SyntaxError, MemoryError, RuntimeError, zlib.error,
-        zipfile.BadZipFile,
-    ) as error:  # fmt: skip
-        told = reason_of(error)
-        raise HouseError(f"'{path}' is no house plan (tools/export_plans.py writes them): {told}.") from None
+    except ValueError as error:
+        raise HouseError(f"'{path}' is no {what}: {reason_of(error)}.") from None
     for name in ("span_low_m", "span_high_m"):
         arrays[name] = arrays[name].astype(np.float32) * np.float32(HEIGHT_UNIT_M)
     arrays["slack_m"] = arrays["slack_m"].astype(np.float32)
@@ -196,7 +200,7 @@ class _About(msgspec.Struct):
 
 def _check(about: _About, arrays: Mapping[str, NDArray]) -> None:
     """Raises ValueError where arrays do not fit each other: compiled functions index them without a check."""
-    floor, start, spans = arrays["floor"], arrays["span_start"], len(arrays["span_low_m"])
+    floor, start, spans = arrays["floor"], arrays["span_start"], arrays["span_low_m"].size
     kinds = {"slack_m": "f", "floor": "b", "room": "i", "succeeds": "u", "span_start": "i", "span_low_m": "u",
              "span_high_m": "u", "span_instance": "u", "categories": "u"}  # fmt: skip
     for name, kind in kinds.items():

@@ -134,7 +134,7 @@ class PlanCamera:
         """Looks from a pose and enters the frame into the layers of a map.
 
         Args:
-            pose: of the camera, in the world.
+            pose: of the robot, in the world; the camera is above its centre.
             goal: the goal category; None: there is none.
             layers: of the map; they are changed.
             map_pose: the same pose in the frame of the map.

@@ -11,9 +11,9 @@ import numpy as np
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, CameraModel, Observation, RobotModel
 from sim.plans.episode import PlanEpisode
-from sim.plans.sight import Look, PlanCamera
+from sim.plans.sight import PlanCamera
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.mapping.mapper import Sighting
+from stubborn.mapping.mapper import Sighting, note_sighting
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 
@@ -39,27 +39,23 @@ class TwinAgent(StubbornAgent):
             self._episode.robot.pose, self._episode.goal, self.navmap, pose, self.step, self.navmap.goals_seen
         )
         self._episode.see(look)
-        return note_sighting(self, look, pose)
-
-
-def note_sighting(agent: StubbornAgent, look: Look, pose: Pose) -> Sighting:
-    """Returns the target points of a look, and notes the side from which they were seen."""
-    navmap = agent.navmap
-    if look.touched is not None:
-        navmap.grow_known(*look.touched)
-    rows, cols = look.target_rows, look.target_cols
-    x_m, y_m = navmap.frame.centres(rows, cols)
-    to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m
-    distance_m = np.hypot(to_x_m, to_y_m).astype(np.float32)
-    navmap.shown_x[rows, cols] += to_x_m / np.maximum(distance_m, 1e-6)
-    navmap.shown_y[rows, cols] += to_y_m / np.maximum(distance_m, 1e-6)
-    return Sighting(rows, cols, distance_m)
+        if look.touched is not None:
+            self.navmap.grow_known(*look.touched)
+        whole = self.navmap.frame.part(slice(None), slice(None))
+        return note_sighting(self.navmap, whole, look.target_rows, look.target_cols, pose)
 
 
 def play(
-    agent: TwinAgent, camera: PlanCamera, goal: str, start: Pose, *, seed: int, until_sight: bool = False
+    agent: TwinAgent,
+    camera: PlanCamera,
+    goal: str,
+    start: Pose,
+    *,
+    seed: int,
+    until_sight: bool = False,
+    max_steps: int = MAX_STEPS,
 ) -> Mapping[str, Any]:
-    """Runs one episode and returns its metrics.
+    """Runs one episode and returns its metrics, with `end_reason`: `stop`, `sight` or `max_steps`.
 
     Args:
         agent: the agent; the episode's map remains in it.
@@ -67,21 +63,29 @@ def play(
         goal: the goal category.
         start: in the world.
         seed: of the agent.
-        until_sight: the episode ends with the first frame that shows the goal.
+        until_sight: the episode ends with the first frame that shows the goal, also with that after the last action.
+        max_steps: largest number of actions.
 
     Raises:
         EpisodeError: no STOP for the goal succeeds anywhere in the plan.
     """
-    episode = PlanEpisode(camera, goal, start)
+    episode = PlanEpisode(camera, goal, start, max_steps=max_steps)
     agent.begin(episode, seed)
     while not episode.done:
         action = agent.act(observation_of(episode))
         if until_sight and episode.first_seen_step is not None:
             break
         episode.act(action)
-    if episode.stopped or not until_sight:
+    if episode.done:
         _look_once_more(agent, episode)
-    return {**episode.metrics(), "end_reason": "stop" if episode.stopped else "max_steps"}
+    return {**episode.metrics(), "end_reason": _end_reason(episode, until_sight)}
+
+
+def _end_reason(episode: PlanEpisode, until_sight: bool) -> str:
+    """Returns why an episode of `play` ended."""
+    if episode.stopped:
+        return "stop"
+    return "sight" if until_sight and episode.first_seen_step is not None else "max_steps"
 
 
 def first_sights(

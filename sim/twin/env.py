@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import gymnasium
 import numpy as np
@@ -18,10 +18,11 @@ from sim.errors import ConfigError
 from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
-from sim.plans.episode import PlanEpisode, draw_goal_and_start
+from sim.plans.episode import PlanEpisode, draw_goal, draw_goal_and_start
 from sim.plans.motion_kernels import mark_square, mark_swept
 from sim.plans.plan import Plan, read_plan
 from sim.plans.sight import PlanCamera, SightConfig
+from stubborn.agent import AgentConfig
 from stubborn.exploration.patches import or_of_blocks
 from stubborn.mapping.collision_marks import CollisionConfig, is_collision
 from stubborn.navmap import CollisionLayer, NavMap
@@ -30,6 +31,7 @@ from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
+T = TypeVar("T")
 LAYERS = ("seen_obstacle", "in_view", "visited", "trail", "pessimistic_marks", "optimistic_marks", "target")
 """The layers of an observation, in their order: those of `stubborn.navmap.NavMap`; `in_view` is True where
 `frames_in_view` is not 0, `target` where `score_max` is above 0.5."""
@@ -58,9 +60,11 @@ class TwinConfig:
     """True: the episode ends with the first frame that shows the target by the rule of GT exploration."""
     max_steps: int = MAX_STEPS
     """Primitive actions of an episode."""
-    map_cells: int = 1440
+    cell_m: float = AgentConfig.cell_m
+    """Edge of a cell of the map."""
+    map_cells: int = AgentConfig.map_cells
     """Edge of the map."""
-    window_cells: int = 240
+    window_cells: int = AgentConfig.window_cells
     """Edge of the window around the robot that is observed and planned on."""
     goal_radius_m: float = 0.5
     """Any cell this near the goal will do."""
@@ -105,7 +109,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
     ## Starting state
     `reset(seed=...)` draws a plan, a goal in it and a start; `reset(options={"plan": 3, "goal": "bed", "start": pose})`
-    fixes them.
+    fixes all or some of them. The goal can be reached from the start, unless both are fixed.
 
     ## Info
     The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
@@ -134,7 +138,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         if not self.files:
             raise ConfigError(f"No plan in '{plans}': tools/export_plans.py writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
-        self._frame = GridFrame.around_start(self.config.map_cells, 0.05)
+        self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)
         self._planner = Planner(self.config.planning, visited_ground)
         size, pool = self.config.window_cells, self.config.plan_pool
         self._pooled = NavMap.empty(GridFrame.around_start(size // pool, pool * self._frame.cell_m))
@@ -149,13 +153,23 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         primitive = self.config.actions == "primitive"
         self.action_space = spaces.Discrete(len(Action)) if primitive else spaces.Box(0.0, 1.0, (2,), np.float32)
         self._episode: PlanEpisode | None = None
+        self._navmap: NavMap | None = None
+        self._untrap = Untrap(self.config.untrap.failed_forwards)
+        self._pose = Pose(0.0, 0.0, 0.0)
+        """The robot's pose in the start frame."""
+        self._last: Action | None = None
+        self._failed = False
+        """True: the last action was a forward that ended in a collision."""
 
     @property
     def episode(self) -> PlanEpisode:
-        """The running episode."""
-        if self._episode is None:
-            raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
-        return self._episode
+        """The running episode; raises ResetNeeded where there is none."""
+        return require_reset(self._episode)
+
+    @property
+    def navmap(self) -> NavMap:
+        """The agent's map; raises ResetNeeded before the first episode."""
+        return require_reset(self._navmap)
 
     def camera(self, number: int) -> PlanCamera:
         """Returns the camera of a plan."""
@@ -168,18 +182,11 @@ class TwinEnv(gymnasium.Env[Any, Any]):
     ) -> tuple[dict[str, NDArray], dict[str, Any]]:
         """Starts an episode; see the class."""
         super().reset(seed=seed)
-        fixed = options or {}
-        number = int(fixed.get("plan", self.np_random.integers(len(self.files))))
-        camera = self.camera(number)
-        plan: Plan = camera.plan
-        goal, start = draw_goal_and_start(plan, self.np_random)
-        self._episode = PlanEpisode(
-            camera, fixed.get("goal", goal), fixed.get("start", start), max_steps=self.config.max_steps
-        )
-        self.navmap = NavMap.empty(self._frame)
-        """The agent's map."""
+        number, goal, start = self._choose(options or {})
+        self._episode = PlanEpisode(self.camera(number), goal, start, max_steps=self.config.max_steps)
+        self._navmap = NavMap.empty(self._frame)
         self._untrap = Untrap(self.config.untrap.failed_forwards)
-        self._last: Action | None = None
+        self._last, self._failed = None, False
         self._pose = self.episode.pose
         self._mark_driven(self._pose)
         self._look()
@@ -195,8 +202,27 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
     @property
     def window(self) -> Window:
-        """The part of the map around the robot."""
-        return self._frame.window_at(self._pose.x_m, self._pose.y_m, self.config.window_cells)
+        """The part of the map around the robot; raises ResetNeeded before the first episode."""
+        return self.navmap.frame.window_at(self._pose.x_m, self._pose.y_m, self.config.window_cells)
+
+    def _choose(self, options: Mapping[str, Any]) -> tuple[int, str, Pose]:
+        """Returns the number of the plan, the goal and the start of an episode: those of the options, else random ones.
+
+        Raises:
+            ConfigError: there is no such option or plan.
+            EpisodeError: the plan has no such goal, or none that can be reached.
+        """
+        unknown = sorted(map(str, set(options) - {"plan", "goal", "start"}))
+        if unknown:
+            raise ConfigError(f"reset takes the options plan, goal and start, got {', '.join(unknown)}.")
+        number = int(options.get("plan", self.np_random.integers(len(self.files))))
+        if not 0 <= number < len(self.files):
+            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {number}.")
+        plan: Plan = self.camera(number).plan
+        goal, start = options.get("goal"), options.get("start")
+        if start is None:
+            return number, *draw_goal_and_start(plan, self.np_random, goal)
+        return number, goal or draw_goal(plan, self.np_random, start), start
 
     @property
     def _terminated(self) -> bool:
@@ -342,3 +368,10 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         if measured["first_seen_step"] is None:
             del measured["first_seen_step"]  # Gymnasium's vector environments take numbers only
         return {"house": self.episode.plan.name, "goal": self.episode.goal, **measured}
+
+
+def require_reset(value: T | None) -> T:
+    """Returns a value that `reset` sets; raises ResetNeeded before."""
+    if value is None:
+        raise gymnasium.error.ResetNeeded("Call reset() before the first step.")
+    return value

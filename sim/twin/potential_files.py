@@ -8,11 +8,12 @@ from __future__ import annotations
 import io
 import json
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from jaxtyping import Bool, Float32, Int, UInt8
 from numpy.typing import NDArray
@@ -20,7 +21,8 @@ from numpy.typing import NDArray
 from sim.errors import ConfigError
 from sim.files import write_atomically
 from sim.interface import GOAL_CATEGORIES
-from sim.reading import convert, reason_of, require_small_zip
+from sim.plans.plan import house_of
+from sim.reading import parse_json, read_npz, reason_of
 from sim.twin.potentials import Sample, SampleConfig
 from stubborn.exploration.patches import LAYERS
 
@@ -28,11 +30,15 @@ GOALS = len(GOAL_CATEGORIES)
 SYMMETRIES = 8
 """Turns by 90 degrees and mirror images of a square."""
 HELD_BACK = 8
-"""One plan in so many is held back from training, by its name."""
+"""One house in so many is held back from training, by its name."""
 MAX_FILE_BYTES = 256 << 20
 _OF_SAMPLES = ("masks", "robot", "seen_goals")
 _OF_GOAL_CELLS = ("goal_cell", "goal_bits")
 _OF_FRONTIERS = ("cell", "area", "objects", "part", "path_m")
+_KINDS = {"robot": "i", "path_m": "f", "goal_start": "i", "start": "i"}
+"""Kind of the numbers (`np.dtype.kind`) of the arrays that are not unsigned."""
+_WITHOUT_SAMPLES = {"goal_start", "start"}
+"""The arrays of a file without samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +62,11 @@ class Batch:
 
 
 def held_back(file: Path) -> bool:
-    """Returns whether a plan is held back from training, given its file or that of its samples; by its name only."""
-    return zlib.crc32(file.stem.rsplit("-", 1)[-1].encode()) % HELD_BACK == 0
+    """Returns whether a plan is held back from training, given its file or that of its samples.
+
+    It depends on the name of the house only, so that the storeys of a house stay together.
+    """
+    return zlib.crc32(house_of(file.stem.rsplit("-", 1)[-1]).encode()) % HELD_BACK == 0
 
 
 def write_samples(file: Path, samples: Iterable[Sample], config: SampleConfig, about: dict[str, object]) -> int:
@@ -185,16 +194,66 @@ class SampleSet:
         )
 
 
+class _Header(msgspec.Struct):
+    """The JSON in `header`."""
+
+    config: SampleConfig
+    about: dict[str, Any] = {}
+
+
 def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
     """Returns the configuration and the arrays of a file; without samples it has no `masks`."""
+    what = "file of samples (tools/train_poni.py writes them)"
+    arrays = read_npz(file, what=what, most_bytes=MAX_FILE_BYTES)
     try:
-        require_small_zip(file, what="the file", most=MAX_FILE_BYTES, error=ConfigError)
-        with np.load(file, allow_pickle=False) as content:
-            header = json.loads(str(content["header"]))
-            arrays = {name: np.asarray(content[name]) for name in content.files if name != "header"}
-        return convert(header["config"], SampleConfig, where=f"The samples '{file}'"), arrays
-    except (OSError, LookupError, ValueError, TypeError, EOFError, SyntaxError) as error:
-        raise ConfigError(f"'{file}' holds no samples of tools/train_poni.py: {reason_of(error)}.") from None
+        if "header" not in arrays:
+            raise ValueError("it has no 'header'")
+        config = parse_json(str(arrays.pop("header")), _Header, where="its header").config
+        if set(arrays) - _WITHOUT_SAMPLES:
+            _check(arrays, config.cells)
+    except ValueError as error:
+        raise ConfigError(f"'{file}' is no {what}: {reason_of(error)}.") from None
+    return config, arrays
+
+
+def _check(arrays: Mapping[str, NDArray], cells: int) -> None:
+    """Raises ValueError where an array is missing, has another shape than the others need, or holds a wrong index.
+
+    Args:
+        arrays: of a file with samples.
+        cells: edge of the patch.
+    """
+    samples, goal_cells, frontiers = (_size(arrays, name) for name in ("seen_goals", "goal_cell", "cell"))
+    if cells < 1 or samples < 1:
+        raise ValueError(f"it has {samples} samples of {cells} x {cells} cells")
+    shapes = {
+        "masks": (samples, 3, -(-cells * cells // 8)),
+        "robot": (samples, 2),
+        "seen_goals": (samples,),
+        "goal_start": (samples + 1,),
+        "start": (samples + 1,),
+        **dict.fromkeys(_OF_GOAL_CELLS, (goal_cells,)),
+        **dict.fromkeys(_OF_FRONTIERS, (frontiers,)),
+        "objects": (frontiers, GOALS),
+    }
+    for name, shape in shapes.items():
+        _size(arrays, name)
+        kind, found = _KINDS.get(name, "u"), arrays[name]
+        if found.dtype.kind != kind or found.shape != shape:
+            raise ValueError(f"'{name}' is {found.dtype} {found.shape} for {samples} samples")
+    for name, end in (("goal_start", goal_cells), ("start", frontiers)):
+        if arrays[name][0] != 0 or arrays[name][-1] != end or bool((np.diff(arrays[name]) < 0).any()):
+            raise ValueError(f"'{name}' does not count the cells of the samples")
+    for name, end in (("robot", cells), ("goal_cell", cells**2), ("cell", cells**2)):
+        if bool((arrays[name] < 0).any() or (arrays[name] >= end).any()):
+            raise ValueError(f"'{name}' holds an index out of range")
+
+
+def _size(arrays: Mapping[str, NDArray], name: str) -> int:
+    """Returns the number of entries of an array; raises ValueError where there is no such array."""
+    if name not in arrays:
+        raise ValueError(f"it has no '{name}'")
+    return arrays[name].size
 
 
 def _as_bytes(share: Float32[np.ndarray, ...]) -> NDArray[np.uint8]:

@@ -27,9 +27,10 @@ from sim.plans.episode import draw_goal_and_start
 from sim.plans.plan import Plan
 from sim.plans.sight import PlanCamera
 from sim.twin.walks import explore, reachable
+from stubborn.agent import AgentConfig
 from stubborn.exploration.explorer import Ground
+from stubborn.exploration.frontiers import Frontiers
 from stubborn.exploration.patches import MapPatch, patch_around
-from stubborn.exploration.poni import Frontiers
 from stubborn.mapping.collision_marks import CollisionConfig, mark_visited
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
@@ -63,7 +64,7 @@ class SampleConfig:
     """Edge of the patch in blocks."""
     pool: int = 5
     """Edge of a block in map cells: 0.25 m, so that 128 blocks are 32 m."""
-    map_cells: int = 1440
+    map_cells: int = AgentConfig.map_cells
     """Edge of the map."""
     own_known_m: float = 1.0
     """See `PoniConfig.own_known_m`."""
@@ -116,7 +117,8 @@ def samples_of(plan: Plan, config: SampleConfig, seed: int) -> Iterator[Sample]:
         except EpisodeError:
             return
         chosen = set(rng.choice(config.most_steps, size=min(config.maps, config.most_steps), replace=False).tolist())
-        navmap, everywhere = NavMap.empty(GridFrame.around_start(config.map_cells, 0.05)), reachable(plan, start)
+        navmap = NavMap.empty(GridFrame.around_start(config.map_cells, AgentConfig.cell_m))
+        everywhere = reachable(plan, start)
         before = Pose(0.0, 0.0, 0.0)
         for step, (world, moved) in enumerate(explore(camera, start, rng, config)):
             pose = world.relative_to(start)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sim.interface import GOAL_CATEGORIES
 from sim.plans.plan import Plan
 from sim.plans.sight import SightConfig
-from sim.twin.env import TwinConfig, TwinEnv
+from sim.twin.env import TwinConfig, TwinEnv, require_reset
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.semexp_input import GEOMETRY, PolicyInput, ViewConfig, observe
 
@@ -99,6 +99,8 @@ class SemExpEnv(TwinEnv):
         )
         self.action_space = spaces.Discrete(view.goal_cells**2)
         self._given: PolicyInput | None = None
+        self._floor_m2 = 0.0
+        """Area of the plan's floor; 0 until it is known."""
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -125,9 +127,8 @@ class SemExpEnv(TwinEnv):
 
     @property
     def given(self) -> PolicyInput:
-        """The last observation, as the policy gets it in play."""
-        assert self._given is not None, "reset() comes first"
-        return self._given
+        """The last observation, as the policy gets it in play; raises ResetNeeded before the first episode."""
+        return require_reset(self._given)
 
     def _act(self, action: Any) -> None:
         self._head_for(self.given.place_xy_m(int(action)))

@@ -26,6 +26,7 @@ from sim.env.scene import Scene
 from sim.errors import ConfigError
 from sim.files import part_file
 from sim.interface import NamesCategories, Segmenter
+from sim.reading import reason_of
 from sim.viewers import overlay
 from sim.viewers.chase import ChaseView
 from sim.viewers.topview import TopView
@@ -92,7 +93,8 @@ class VideoWriter:
         if self._failure is not None:
             self._part.unlink(missing_ok=True)
             raise ConfigError(
-                f"Cannot write the video '{self.file}': {self._failure}. The same command films this episode again."
+                f"Cannot write the video '{self.file}': {reason_of(self._failure)}. "
+                "The same command films this episode again."
             ) from self._failure
         self._part.replace(self.file)
 
@@ -110,7 +112,7 @@ class VideoWriter:
         frames = self._until_the_end()
         try:
             self._encode_all(frames)
-        except (OSError, ValueError) as error:  # each error of FFmpeg is one of the two
+        except Exception as error:  # errors of FFmpeg have many classes, and `finish` has to learn of each
             self._failure = error
             for _ in frames:  # the caller must not wait for room in the queue
                 pass

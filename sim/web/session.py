@@ -27,7 +27,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Frame:
-    """What there is to show of one moment."""
+    """Facts and pictures of one moment."""
 
     facts: Mapping[str, Any]
     """Step, action, metrics so far, categories in sight; JSON types."""
@@ -97,12 +97,12 @@ class Session:
         episode = choose_episode(parts.env, wish, self._turn)
         self._turn += 1
         shared = SharedAgent(parts, pictures, self.controls, self._audience)
+        about: dict[str, Any] = {}
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
-        about: dict[str, Any] = {}
         watcher = _Watcher(begun, shared)
         line = play_episode(parts.env, shared, episode, seed=episode_seed(0, episode.episode_id), viewers=[watcher])
         shared.show_end()
@@ -139,13 +139,14 @@ class SharedAgent:
     def __init__(self, parts: Parts, pictures: Pictures, controls: Controls, audience: Audience) -> None:
         self._parts, self._pictures, self._controls, self._audience = parts, pictures, controls, audience
         self._inner: Agent = parts.agent
+        self._last: Action | None = None
         self.info: Mapping[str, Any] = {}
         self.stopped_by_person = False
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode."""
         self._inner.reset(goal, seed)
-        self._last: Action | None = None
+        self._last = None
 
     def act(self, observation: Observation) -> Action:
         """Shows the observation, waits until an action is due and returns it.

@@ -33,9 +33,13 @@ from sim.housegen.imported.library import Model, read_index, read_shape
 from sim.housegen.split_recipes import train_recipe
 from sim.houses.load import load_house, read_rules
 from sim.houses.sidecar import Sidecar, read_sidecar, write_sidecar
+from sim.interface import GOAL_CATEGORIES
 from sim.plans.plan import Plan, read_plan, write_plan
 from sim.robot.foreign import _read_sidecar
 from sim.task.trajectory import read_trajectory, write_trajectory
+from sim.twin.potential_files import SampleSet, write_samples
+from sim.twin.potentials import Potentials, Sample, SampleConfig
+from stubborn.exploration.patches import MapPatch
 from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
 from stubborn.segmentation.dataset import read_shard, stored_block_px
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
@@ -85,6 +89,26 @@ SHOWN = Demonstration(
     goal="bed",
     house="h",
     success=True,
+)
+SAMPLES = SampleConfig(cells=4, map_cells=40)
+SAMPLE = Sample(
+    MapPatch(
+        frame=GridFrame.around_start(4, 0.25),
+        obstacle=np.zeros((4, 4), np.bool_),
+        seen=np.zeros((4, 4), np.bool_),
+        trail=np.zeros((4, 4), np.bool_),
+        goals=np.eye(4, dtype=np.uint32),
+        robot=(2, 2),
+    ),
+    seen_goals=1,
+    potentials=Potentials(
+        rows=np.arange(2),
+        cols=np.arange(2),
+        area=np.ones(2, np.float32),
+        objects=np.ones((2, len(GOAL_CATEGORIES)), np.float32),
+        part=np.arange(2),
+        path_m=np.ones(2, np.float32),
+    ),
 )
 SHAPE = {
     "rgba": np.ones((1, 4)),
@@ -180,6 +204,11 @@ READERS = (
     Reader("a.tar", shard, lambda file: list(read_shard(file))),
     Reader("plan.npz", written(lambda f: write_plan(f, PLAN), "p.npz"), read_plan),
     Reader("shown.npz", written(lambda f: write_demonstration(f, SHOWN), "s.npz"), read_demonstration),
+    Reader(
+        "samples.npz",
+        written(lambda f: write_samples(f, [SAMPLE, SAMPLE], SAMPLES, {}), "t.npz"),
+        lambda file: SampleSet.read([file]).batch([0]),
+    ),
     Reader("a.xml", lambda _: room(3, 3).spec.to_xml().encode(), load_house),
 )
 JUNK: tuple[Any, ...] = (
@@ -246,6 +275,41 @@ def test_any_content_gives_a_result_or_a_message(reader: Reader, tmp_path: Path)
             reader.read(file)
 
     check()
+
+
+BAD_ARRAYS = (
+    np.array(7),
+    np.array("a"),
+    np.full((2, 2), "a"),
+    np.zeros(0),
+    np.full((3, 4, 4), -1),
+    np.full(3, np.nan),
+    np.full((2, 5), 1 << 60),
+    np.array(["2020-01-01"], "datetime64[D]"),
+    np.zeros(2, [("a", "u1")]),
+    np.ones(2, np.complex64),
+)
+
+
+@pytest.mark.parametrize(
+    "reader", [reader for reader in READERS if reader.name.endswith(".npz")], ids=lambda reader: reader.name
+)
+def test_an_array_of_another_type_or_shape_gives_a_result_or_a_message(reader: Reader, tmp_path: Path) -> None:
+    content, file = reader.valid(tmp_path), tmp_path / "in" / reader.name
+    file.parent.mkdir(parents=True)
+    with np.load(io.BytesIO(content)) as loaded:
+        arrays = dict(loaded)
+    messages = []
+    for name in arrays:
+        without = {key: value for key, value in arrays.items() if key != name}
+        for changed in (without, *({**arrays, name: bad} for bad in BAD_ARRAYS)):
+            np.savez(file, **changed)
+            try:
+                reader.read(file)
+            except ObjectNavError as error:
+                messages.append(str(error))
+    assert len(messages) > len(arrays) * len(BAD_ARRAYS) // 2
+    assert all(str(file) in message for message in messages)
 
 
 def test_weights_in_a_zip_of_several_parts_are_refused(tmp_path: Path) -> None:

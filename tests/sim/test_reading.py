@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gzip
+import io
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -91,6 +93,78 @@ def test_what_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: p
         archive.writestr("a.npy", b"\0" * (8 << 20))
     with pytest.raises(ConfigError, match="expands to 8 MB; at most 1 MB"):
         reading.require_small_zip(tmp_path / "bomb.npz", what="Rows", most=1 << 20)
+
+
+def damaged_zip(change: Callable[[bytearray], None]) -> bytes:
+    """Returns an `.npz` file of one compressed array `a`, damaged."""
+    content = io.BytesIO()
+    np.savez_compressed(content, a=np.arange(1000))
+    damaged = bytearray(content.getvalue())
+    change(damaged)
+    return bytes(damaged)
+
+
+def put(place: bytes, offset: int, value: int) -> Callable[[bytearray], None]:
+    """Returns a function that sets a byte behind the last occurrence of `place`."""
+
+    def change(content: bytearray) -> None:
+        content[content.rindex(place) + offset] = value
+
+    return change
+
+
+def member(header: str) -> bytes:
+    """Returns an `.npz` file whose array `a` has this text as its header."""
+    content = io.BytesIO()
+    text = header.encode()
+    with zipfile.ZipFile(content, "w") as archive:
+        archive.writestr("a.npy", b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text)
+    return content.getvalue()
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"no archive",
+        damaged_zip(put(b"PK\x01\x02", 16, 0xAA)),  # the checksum
+        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a method of compression that there is not
+        damaged_zip(put(b"PK\x01\x02", 10, 14)),  # LZMA
+        damaged_zip(put(b"PK\x01\x02", 8, 1)),  # encrypted
+        damaged_zip(lambda content: content.__setitem__(slice(40, 60), b"\xff" * 20)),
+        damaged_zip(lambda content: content.__delitem__(slice(50, 70))),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (3,)}\n"),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (1 << 60,)}\n"),
+        member("{'descr': '<i8', 'fortran_order': False, 'shape': (1000000000000000,)}\n"),
+        member("{'descr': 'q9', 'fortran_order': False, 'shape': (3,)}\n"),
+        member("{'descr': '|O', 'fortran_order': False, 'shape': (1,)}\n"),
+        member("((((((("),
+        member("{'descr': " + "[" * 5000),
+    ],
+)
+def test_a_damaged_npz_is_named_in_a_message(content: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "rows.npz"
+    file.write_bytes(content)
+    for names in (None, ("a",)):
+        with pytest.raises(ConfigError, match=r"rows\.npz' is no table: \S"):
+            reading.read_npz(file, names, what="table", most_bytes=1 << 20)
+
+
+def test_the_arrays_of_an_npz_are_read_by_name(tmp_path: Path) -> None:
+    file = tmp_path / "rows.npz"
+    with pytest.raises(HouseError, match=r"rows\.npz' is no table: No such file or directory\."):
+        reading.read_npz(file, what="table", most_bytes=1 << 20, error=HouseError)
+    np.savez(file, a=np.arange(3), b=np.array("text"), c=np.asfortranarray(np.eye(3)))
+    whole = reading.read_npz(file, what="table", most_bytes=1 << 20)
+    assert list(whole) == ["a", "b", "c"]
+    assert str(whole["b"]) == "text"
+    np.testing.assert_array_equal(whole["c"], np.eye(3))
+    assert list(reading.read_npz(file, ("b", "a"), what="table", most_bytes=1 << 20)) == ["b", "a"]
+    with pytest.raises(ConfigError, match=r"is no table: it has no 'd'\."):
+        reading.read_npz(file, ("a", "d"), what="table", most_bytes=1 << 20)
+    np.savez_compressed(file, a=np.zeros(1 << 20))
+    with pytest.raises(ConfigError, match=r"is no table: it expands to 8 MB; at most 1 MB are read\."):
+        reading.read_npz(file, what="table", most_bytes=1 << 20)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg"])

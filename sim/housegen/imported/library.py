@@ -5,13 +5,11 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import zipfile
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -26,7 +24,7 @@ from sim.housegen.imported.reduction import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, 
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
 from sim.paths import assets_dir
-from sim.reading import MAX_BYTES, read_json, require_small_zip
+from sim.reading import MAX_BYTES, read_json, read_npz
 
 ModelSplit = Literal["train", "transfer"]
 INDEX, MESHES = "models.json", "meshes"
@@ -155,16 +153,39 @@ def read_shape(folder: Path, model: Model) -> Shape:
         ConfigError: its file is missing or broken.
     """
     file = inside(folder / MESHES, f"{model.key}.npz", what="key of a model")
+    what = "imported model (tools/import_furniture.py makes it again)"
+    arrays = read_npz(file, what=what, most_bytes=MAX_BYTES)
     try:
-        require_small_zip(file, what="the file", most=MAX_BYTES)
-        with np.load(file, allow_pickle=False) as arrays:
-            parts = tuple(
-                Part(arrays[f"v{n}"] * UNIT_M, arrays[f"f{n}"].astype(np.int32), tuple(map(float, rgba)))  # type: ignore[arg-type]
-                for n, rgba in enumerate(arrays["rgba"])
-            )
-            return Shape(parts, arrays["boxes"], tuple(map(float, arrays["top"])))
-    except (OSError, ValueError, LookupError, EOFError, TypeError, zipfile.BadZipFile, zlib.error) as error:
-        raise ConfigError(f"The imported model '{file}' cannot be read ({error}): import it again.") from None
+        return _shape_of(arrays)
+    except ValueError as error:
+        raise ConfigError(f"'{file}' is no {what}: {error}.") from None
+
+
+def _shape_of(arrays: Mapping[str, NDArray[Any]]) -> Shape:
+    """Returns the geometry in the arrays of a file; raises ValueError where one is missing or has another shape."""
+    rgba, boxes_m = _numbers(arrays, "rgba", 4), _numbers(arrays, "boxes", 6)
+    parts = tuple(
+        Part(
+            _numbers(arrays, f"v{n}", 3) * UNIT_M,
+            _numbers(arrays, f"f{n}", 3).astype(np.int32),
+            (float(red), float(green), float(blue), float(alpha)),
+        )
+        for n, (red, green, blue, alpha) in enumerate(rgba)
+    )
+    top = arrays.get("top")
+    if top is None or top.shape not in ((0,), (5,)) or top.dtype.kind != "f":
+        raise ValueError("it has no 'top' of five numbers or none")
+    return Shape(parts, boxes_m, tuple(map(float, top)))
+
+
+def _numbers(arrays: Mapping[str, NDArray[Any]], name: str, columns: int) -> NDArray[Any]:
+    """Returns an array of numbers, (n, columns); raises ValueError where there is none."""
+    array = arrays.get(name)
+    if array is None:
+        raise ValueError(f"it has no '{name}'")
+    if array.dtype.kind not in "iuf" or array.ndim != 2 or array.shape[1] != columns:
+        raise ValueError(f"'{name}' is {array.dtype} {array.shape}, not numbers in {columns} columns")
+    return array
 
 
 def write_index(folder: Path, models: Sequence[Model], left_out: Sequence[tuple[str, str]]) -> None:

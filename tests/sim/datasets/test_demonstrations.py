@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -52,6 +53,19 @@ def test_each_action_has_the_view_before_it(shown: Demonstration):
     np.testing.assert_allclose(shown.poses[:, 0], [0.0, 0.25, 0.25], atol=1e-6)
     np.testing.assert_allclose(shown.poses[:, 2], [0.0, 0.0, math.radians(30.0)], atol=1e-6)
     assert shown.actions.tolist() == [int(action) for action in ACTIONS]
+
+
+def test_an_episode_without_an_action_is_refused():
+    unused: Any = None
+    with pytest.raises(ConfigError, match="at least one action"):
+        demonstrate([], [], unused, unused, goal="bed", house="room", success=False)
+
+
+def test_a_file_has_its_arrays_and_nothing_else(shown: Demonstration, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    written: dict[str, Any] = {}
+    monkeypatch.setattr(np, "savez_compressed", lambda _, **arrays: written.update(arrays))  # as before NumPy 2.1
+    write_demonstration(tmp_path / "one.npz", shown)
+    assert set(written) == {"depth_mm", "semantic", "poses", "actions", "about"}
 
 
 def test_a_file_holds_the_demonstration(shown: Demonstration, tmp_path: Path):

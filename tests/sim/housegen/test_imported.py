@@ -304,7 +304,7 @@ def test_a_folder_that_was_not_imported_or_lost_a_file_is_one_sentence(tmp_path:
         read_index(tmp_path)
     models = import_all(write_folder(tmp_path / "source"), tmp_path / "out")
     (tmp_path / "out" / "meshes" / f"{models[0].key}.npz").write_bytes(b"no zip")
-    with pytest.raises(ConfigError, match="import it again"):
+    with pytest.raises(ConfigError, match="makes it again"):
         read_shape(tmp_path / "out", models[0])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,10 @@ from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
 from sim.plans.export import export_plans
-from sim.plans.plan import Plan
+from sim.plans.plan import Plan, house_of, storey_name
 from sim.plans.sight import PlanCamera
 from sim.twin.potential_choices import Choices, add_choices
-from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, write_samples
+from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import Sample, SampleConfig, Truth, area_potential, sample_of, samples_of
 from sim.twin.walks import explore, reachable
 from stubborn.exploration.patches import LAYERS
@@ -145,8 +146,33 @@ def test_samples_are_read_back_as_they_were_written(tmp_path: Path, samples: lis
     with pytest.raises(ConfigError, match=r"made with other options \(walks\)"):
         SampleSet.read(files, SampleConfig(walks=9, maps=3, most_steps=60, cells=64, map_cells=700))
     (tmp_path / "broken.npz").write_bytes(b"no zip")
-    with pytest.raises(ConfigError, match="holds no samples"):
+    with pytest.raises(ConfigError, match="is no file of samples"):
         SampleSet.read([tmp_path / "broken.npz"], CONFIG)
+
+
+def test_the_storeys_of_a_house_are_held_back_together():
+    names = [f"large_{number:03d}" for number in range(40)]
+    for name in names:
+        plan, upper = Path("plans") / f"{name}.npz", Path("plans") / f"{storey_name(name, 1)}.npz"
+        assert upper.name == f"{name}_storey_1.npz"
+        assert held_back(plan) == held_back(upper) == held_back(Path("samples") / f"large-{upper.name}")
+    assert {held_back(Path(f"{name}.npz")) for name in names} == {False, True}
+
+
+@pytest.mark.parametrize(
+    ("name", "house"),
+    [("flat", "flat"), ("flat_storey_12", "flat"), ("a_storey_b", "a_storey_b"), ("a_storey_1_storey_2", "a_storey_1")],
+)
+def test_the_name_of_a_plan_names_its_house(name: str, house: str):
+    assert house_of(name) == house
+
+
+def test_the_plans_of_the_page_on_learned_exploration_are_held_back_as_before():
+    names = [f"train_any_{number:06d}" for number in range(240)]
+    names += [f"train_large_{number:06d}" for number in range(5000, 5042)]
+    held = [name for name in names if held_back(Path(f"{name}.npz"))]
+    assert len(held) == 36
+    assert held == [name for name in names if zlib.crc32(name.encode()) % 8 == 0]
 
 
 def test_a_turned_sample_is_the_turned_map_with_its_frontiers(tmp_path: Path, samples: list[Sample]):

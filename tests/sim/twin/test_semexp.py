@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -43,6 +44,11 @@ CELLS = (7 * 15 + 14, 4 * 15 + 6, 8 * 15 + 9)
 
 def test_the_environment_keeps_gymnasiums_contract(plans: Path):
     check_env(SemExpEnv(plans), skip_render_check=True)
+
+
+def test_there_is_no_observation_before_the_first_episode(plans: Path):
+    with pytest.raises(gymnasium.error.ResetNeeded, match="Call reset"):
+        _ = SemExpEnv(plans).given
 
 
 def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(plans: Path):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -101,6 +102,49 @@ def test_the_agent_finds_the_bed_in_the_plan(plans):
     assert found["num_steps"] < 120
     sight = play(agent, camera, "bed", START["start"], seed=0, until_sight=True)
     assert sight["num_steps"] == sight["first_seen_step"] == found["first_seen_step"]
+
+
+def test_a_goal_that_the_last_frame_shows_first_ends_the_episode_at_sight(plans):
+    agent = TwinAgent(twin_config(SPECS["stubborn"].config))
+    camera = PlanCamera(read_plan(plans / "flat.npz"))
+    first = play(agent, camera, "bed", START["start"], seed=0, until_sight=True)
+    assert (first["end_reason"], first["gt_explored"]) == ("sight", True)
+    seen_step = first["first_seen_step"]
+    for most, end, seen in ((seen_step, "sight", True), (seen_step - 1, "max_steps", False)):
+        found = play(agent, camera, "bed", START["start"], seed=0, until_sight=True, max_steps=most)
+        assert (found["end_reason"], found["gt_explored"], found["num_steps"]) == (end, seen, most)
+    whole = play(agent, camera, "bed", START["start"], seed=0, max_steps=seen_step)
+    assert (whole["end_reason"], whole["first_seen_step"]) == ("max_steps", seen_step)
+
+
+def test_a_start_is_drawn_for_the_goal_and_a_goal_for_the_start(tmp_path):
+    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
+    house = with_box(house, "sofa_00", centre_m=(-3.4, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
+    (plan,) = export_plans(house, {})
+    write_plan(tmp_path / "flat.npz", plan)
+    env = TwinEnv(tmp_path)
+    for seed in range(12):
+        for goal in ("bed", "sofa"):
+            info = env.reset(seed=seed, options={"goal": goal})[1]
+            assert (info["goal"], info["shortest_path"] >= 1.95) == (goal, True)
+        assert env.reset(seed=seed, options={"start": Pose(1.9, 0.8, 0.0)})[1]["goal"] == "sofa"  # the bed is in reach
+    with pytest.raises(EpisodeError, match=r"has no goal 'chair'\. It has: sofa, bed"):
+        env.reset(options={"goal": "chair"})
+    with pytest.raises(EpisodeError, match=r"no path to a goal begins at \(90, 0\)"):
+        env.reset(options={"start": Pose(90.0, 0.0, 0.0)})
+
+
+def test_what_reset_makes_is_refused_before_it(plans):
+    env = TwinEnv(plans)
+    for name in ("episode", "navmap", "window"):
+        with pytest.raises(gymnasium.error.ResetNeeded, match="Call reset"):
+            getattr(env, name)
+    with pytest.raises(gymnasium.error.ResetNeeded, match="Call reset"):
+        env.step(Action.MOVE_FORWARD)
+    with pytest.raises(ConfigError, match="the options plan, goal and start, got gaol, seed"):
+        env.reset(options={"gaol": "bed", "seed": 1, "plan": 0})
+    with pytest.raises(ConfigError, match="must be 0 to 0, got 1"):
+        env.reset(options={"plan": 1})
 
 
 def test_errors_say_what_there_is(plans):

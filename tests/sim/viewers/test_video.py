@@ -7,7 +7,9 @@ import resource
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
+import av.error
 import cv2
 import numpy as np
 import pytest
@@ -370,6 +372,22 @@ def test_a_video_that_the_disk_cannot_hold_is_an_error_and_no_file(tmp_path: Pat
             writer.finish()
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("failure", [av.error.ExternalError(1, "It broke"), MemoryError(), av.error.BugError(2, "A")])
+def test_each_error_of_the_encoder_is_told_and_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: Exception
+) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise failure
+
+    monkeypatch.setattr(video.av, "VideoFrame", SimpleNamespace(from_ndarray=fail))
+    writer = VideoWriter(tmp_path / "a.mp4", size_px=(128, 96))
+    for _ in range(3 * video._WAITING_FRAMES):  # more than can wait
+        writer.write(np.zeros((96, 128, 3), np.uint8))
+    with pytest.raises(ConfigError, match=r"Cannot write the video .*a\.mp4': \S.*films this episode again"):
+        writer.finish()
     assert list(tmp_path.iterdir()) == []
 
 

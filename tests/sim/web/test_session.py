@@ -5,11 +5,12 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from sim.interface import Action, StatesTarget
 from sim.web.controls import Choice
-from sim.web.session import SharedAgent
+from sim.web.session import Frame, SharedAgent
 
 
 class Stops:
@@ -44,3 +45,18 @@ def test_the_place_is_that_of_the_agents_own_stop(
     assert shared.act({}) is Action.STOP  # pyright: ignore[reportArgumentType] - nothing reads the observation
     assert isinstance(shared, StatesTarget)
     assert shared.stop_target_xy_m() == place
+
+
+def test_the_world_can_be_shown_before_the_first_action() -> None:
+    shown: list[Frame] = []
+    metrics = {"num_steps": 0, "collisions": 0, "path_length": 0.0, "distance_to_goal": None, "shortest_path": None}
+    env = SimpleNamespace(
+        truth_images={"semantic": np.zeros((4, 4), np.uint8)},
+        scene=SimpleNamespace(task=SimpleNamespace(metrics=lambda: metrics)),
+        episode=SimpleNamespace(goal="bed"),
+    )
+    parts: Any = SimpleNamespace(agent=Stops(), env=env, painter=None)
+    audience: Any = SimpleNamespace(wanted=frozenset, show=shown.append)
+    unused: Any = None
+    SharedAgent(parts, unused, unused, audience).show_end()
+    assert (shown[0].facts["last"], shown[0].facts["ended"]) == (None, True)

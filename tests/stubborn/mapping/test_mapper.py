@@ -6,7 +6,7 @@ import pytest
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError, RobotModel, Scores
-from stubborn.mapping.mapper import Mapper, MappingConfig
+from stubborn.mapping.mapper import Mapper, MappingConfig, note_sighting
 from stubborn.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
 
@@ -219,3 +219,20 @@ def test_a_depth_image_is_exact_as_long_as_it_shows_no_noise(noise_m: float):
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
     exact = mapper.add_depth(NavMap.empty(FRAME), np.where(depth > 0, depth + noise, 0), Pose(0.0, 0.0, 0.0))
     assert exact == (noise_m == 0.0)
+
+
+def test_a_sighting_is_noted_on_the_whole_map_from_any_window():
+    maps, sightings = [], []
+    for window in (FRAME.part(slice(None), slice(None)), FRAME.part(slice(150, 300), slice(180, 320))):
+        navmap = NavMap.empty(FRAME)
+        row, col = FRAME.cell(2.0, 1.0)
+        rows, cols = np.array([row, row + 1]) - window.rows.start, np.array([col, col + 3]) - window.cols.start
+        sightings.append(note_sighting(navmap, window, rows, cols, Pose(-1.0, -3.0, 0.3)))
+        maps.append(navmap)
+        assert navmap.shown_x[row, col] == pytest.approx(-0.6, abs=0.01)
+        assert navmap.shown_y[row, col] == pytest.approx(-0.8, abs=0.01)
+    for name in ("rows", "cols", "distance_m"):
+        np.testing.assert_allclose(getattr(sightings[0], name), getattr(sightings[1], name), rtol=1e-6)
+    np.testing.assert_allclose(maps[0].shown_x, maps[1].shown_x, rtol=1e-5)
+    assert sightings[0].distance_m[0] == pytest.approx(5.0, abs=0.05)
+    assert np.count_nonzero(maps[1].shown_y) == 2
