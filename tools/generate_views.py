@@ -22,7 +22,6 @@ import hashlib
 import shlex
 import sys
 import time
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -119,14 +118,15 @@ class ShardTask:
 
 def main(args: Args) -> int:
     """Generates the missing shards, then writes the index; returns the exit status."""
-    is_ours = _shard_filter(args)
+    _check_options(args)
+    shard = Shard.parse(args.shard)
     executor = make_executor(args.executor, workers=args.workers, address=args.address)
     split = _split(args)
     tasks, config = plan(args, split), _config(args, split)
     args.out.mkdir(parents=True, exist_ok=True)
     notes = {task.number: _kept(args, task, config) for task in tasks}
     missing = [task for task in tasks if notes[task.number] is None]
-    todo = [task for task in missing if is_ours(task.number)]
+    todo = [task for task in missing if shard.contains(task.number)]
     print(f"{len(tasks)} shards, {len(tasks) - len(missing)} complete, {len(todo)} to generate here.", flush=True)
     began, made = time.perf_counter(), 0
     for note in ordered_map(functools.partial(make_shard, args, config), todo, executor=executor):
@@ -271,11 +271,8 @@ def _styles_sha256() -> str:
     return hashlib.sha256("\n".join(names).encode()).hexdigest()
 
 
-def _shard_filter(args: Args) -> Callable[[int], bool]:
-    """Returns the test for shards that are generated here; raises ConfigError for invalid options."""
-    for name in ("views", "workers", "views_per_shard", "shrink", "sequence"):
-        if (value := getattr(args, name)) is not None and value < 1:
-            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
+def _check_options(args: Args) -> None:
+    """Raises ConfigError for options that are not allowed, or not together."""
     camera = CameraModel()
     if camera.width_px % args.shrink or camera.height_px % args.shrink:
         raise ConfigError(f"--shrink must divide {camera.width_px} and {camera.height_px}, got {args.shrink}.")
@@ -294,9 +291,6 @@ def _shard_filter(args: Args) -> Callable[[int], bool]:
         raise ConfigError("--labels and --root need --house.")
     if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
         raise ConfigError("--house excludes --split, --pool and --furniture.")
-    if args.seed < 0:
-        raise ConfigError(f"--seed must be at least 0, got {args.seed}.")
-    return Shard.parse(args.shard).contains
 
 
 def _command(args: Args) -> str:

@@ -358,13 +358,6 @@ def _check(args: Args) -> None:
     """Raises ConfigError where an option is not allowed."""
     if args.table != "all":
         table_named(args.table)
-    for name, value, least in (("episodes", args.episodes, 1), ("workers", args.workers, 1)):
-        if value < least:
-            raise ConfigError(f"--{name} must be at least {least}, got {value}.")
-    if args.chunk is not None and args.chunk < 1:
-        raise ConfigError(f"--chunk must be at least 1, got {args.chunk}.")
-    if args.minutes is not None and not args.minutes >= 0.0:
-        raise ConfigError(f"--minutes must be at least 0, got {args.minutes}.")
     if args.minutes == 0.0:
         return
     setups = {s for name in _table_names(args) for s in table_named(name).setups(args.agents, args.semantics)}

@@ -1,7 +1,7 @@
 """Hooks of MkDocs (`mkdocs.yml`): what the built site must keep, told as warnings, which `--strict` makes errors.
 
-The site asks no other host for anything: whoever reads it may be offline, and nobody is told who reads it. Links that a
-reader follows are another matter.
+The site asks no other host for anything: the reader may be offline, and no other host learns who reads it. Links that
+a reader follows are another matter.
 """
 
 from __future__ import annotations

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import msgspec
 import numpy as np
@@ -19,7 +19,7 @@ from torch.optim.swa_utils import AveragedModel
 from sim.reading import Count, Number
 from stubborn.network_files import Family
 from stubborn.segmentation.training import exponential_average
-from tools.training_files import append_row, cut_rows, load_state, save_state
+from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
@@ -33,6 +33,11 @@ AVERAGE = 0.998
 WARM_UP_STEPS = 100
 
 
+def stride(count: int, most: int) -> int:
+    """Returns the least step through `count` items, at least one, that takes at most `most` of them; 0: all."""
+    return max(1, -(-count // most)) if most else 1
+
+
 class Progress(msgspec.Struct):
     """How far a run is, as `state.pt` holds it."""
 
@@ -41,6 +46,8 @@ class Progress(msgspec.Struct):
     best: float
     """Least loss of an evaluation; inf before the first."""
     evaluated_s: Number
+    options: dict[str, str]
+    """See `options_of`."""
 
 
 class TimedTraining(ABC):
@@ -50,30 +57,41 @@ class TimedTraining(ABC):
     the run hold the curves, `<family>.safetensors` the averaged network of the best evaluation.
 
     Args:
-        args: options with `out`, `minutes`, `rate` and `weight_decay`; they are written into the file of weights.
+        args: options with `out`, `minutes`, `rate` and `weight_decay`; they are written into the file of weights, and a
+            run is continued with the same ones only (`may_change`).
         family: kind of the network.
         model: the network with its initial weights.
         max_gradient_norm: gradients are scaled down to this norm.
         samples_per_step: samples of one step, for the rate in `train.csv`.
+        files: of the training and of the evaluation, by the option that names their folders.
+
+    Raises:
+        ConfigError: the folder holds a run with other options or files, or of another network, or a broken state.
     """
 
+    may_change: ClassVar[frozenset[str]] = frozenset({"out", "minutes", "threads"})
+    """Options in which a continued run may differ from its start."""
+
     def __init__(
-        self, args: Any, family: Family[Any, Any], model: nn.Module, *, max_gradient_norm: float, samples_per_step: int
+        self,
+        args: Any,
+        family: Family[Any, Any],
+        model: nn.Module,
+        *,
+        max_gradient_norm: float,
+        samples_per_step: int,
+        files: Mapping[str, Sequence[Path]],
     ) -> None:
         self.args, self.family, self.model = args, family, model
         self.average = AveragedModel(model, multi_avg_fn=exponential_average(AVERAGE), use_buffers=True)
         self.optimiser = torch.optim.AdamW(model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
         self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
-        self.progress = Progress(0, 0.0, math.inf, 0.0)
+        options = options_of(args, may_change=self.may_change, files=files)
+        self.progress = Progress(0, 0.0, math.inf, 0.0, options)
         self._max_gradient_norm, self._samples_per_step = max_gradient_norm, samples_per_step
         self.out: Path = args.out
         self.out.mkdir(parents=True, exist_ok=True)
-        done = load_state(self.out / "state.pt", self._parts(), Progress)
-        if done is not None:
-            self.progress = done
-            for name in ("train.csv", "val.csv"):
-                cut_rows(self.out / name, "step", done.step)
-            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
+        self._resume()
 
     @abstractmethod
     def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
@@ -158,6 +176,21 @@ class TimedTraining(ABC):
         per_s = round(self._samples_per_step * progress.step / max(progress.spent_s, 1e-9), 1)
         append_row(self.out / "train.csv", row | {"samples_per_s": per_s})
         return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in means.items())
+
+    def _resume(self) -> None:
+        """Loads the state of the run, if there is one, and removes the rows of the curves that are later."""
+        now = self.progress.options
+        done = load_state(
+            self.out / "state.pt",
+            self._parts(),
+            Progress,
+            check=lambda found: require_options(self.out, found.options, now),
+        )
+        if done is not None:
+            self.progress = done
+            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
+        for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
+            cut_rows(self.out / name, "step", self.progress.step)
 
     def _parts(self) -> dict[str, Any]:
         """Returns what `state.pt` holds besides the progress."""

@@ -28,10 +28,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 from sim import cli
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration
 from sim.interface import GOAL_CATEGORIES, Action, ConfigError
-from stubborn.baselines.cloned_data import Piece, Shown, Streams
+from stubborn.baselines.cloned_data import LabelledSteps, Piece, Streams
 from stubborn.baselines.cloned_input import HEIGHT_PX, NO_ACTION, WIDTH_PX, Steps, depth_levels, motions
 from stubborn.baselines.cloned_net import FILES, ClonedNet
-from tools.timed_training import PRINT_EVERY_S, TimedTraining
+from tools.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from tools.training_files import read_columns
 
 HELD_BACK = 10
@@ -59,7 +59,7 @@ class Args:
     threads: cli.Count = 1
     """Number of threads of PyTorch."""
     val_count: cli.Amount = 150
-    """Number of held-back demonstrations of an evaluation; 0: all."""
+    """Most held-back demonstrations of an evaluation; 0: all."""
     seed: cli.Seed = 0
     """Seed of the initial weights and of the order."""
 
@@ -69,15 +69,15 @@ def main(args: Args) -> int:
     torch.set_num_threads(args.threads)
     files = list_demonstrations(args.demonstrations)
     train, val = read_all(files)
-    Trainer(args, train, val).run()
+    Trainer(args, train, val, files).run()
     draw_curve(args.out)
     return 0
 
 
-def read_all(files: Sequence[Path]) -> tuple[list[Shown], list[Shown]]:
+def read_all(files: Sequence[Path]) -> tuple[list[LabelledSteps], list[LabelledSteps]]:
     """Returns the demonstrations to train on, and those in houses that are held back."""
-    train: list[Shown] = []
-    val: list[Shown] = []
+    train: list[LabelledSteps] = []
+    val: list[LabelledSteps] = []
     printed_s = time.monotonic()
     for number, file in enumerate(files):
         if time.monotonic() - printed_s >= PRINT_EVERY_S:
@@ -85,7 +85,7 @@ def read_all(files: Sequence[Path]) -> tuple[list[Shown], list[Shown]]:
             print(f"{number} of {len(files)} demonstrations read", flush=True)
         given = read_demonstration(file)
         held_back = zlib.crc32(given.house.encode()) % HELD_BACK == 0
-        (val if held_back else train).append(shown_of(given, file))
+        (val if held_back else train).append(labelled_steps_of(given, file))
     if not train or not val:
         raise ConfigError(
             f"{len(train)} demonstrations to train on and {len(val)} held back: both are needed. One house in "
@@ -94,7 +94,7 @@ def read_all(files: Sequence[Path]) -> tuple[list[Shown], list[Shown]]:
     return train, val
 
 
-def shown_of(given: Demonstration, file: Path) -> Shown:
+def labelled_steps_of(given: Demonstration, file: Path) -> LabelledSteps:
     """Returns a demonstration as the policy sees it.
 
     Raises:
@@ -111,19 +111,27 @@ def shown_of(given: Demonstration, file: Path) -> Shown:
         before,
         GOAL_CATEGORIES.index(given.goal),
     )
-    return Shown(steps, given.actions)
+    return LabelledSteps(steps, given.actions)
 
 
 class Trainer(TimedTraining):
     """The network, the optimiser, the demonstrations and the progress of one run."""
 
-    def __init__(self, args: Args, train: Sequence[Shown], val: Sequence[Shown]) -> None:
-        every = max(1, len(val) // args.val_count) if args.val_count else 1
-        self.val = val[::every]
+    def __init__(
+        self, args: Args, train: Sequence[LabelledSteps], val: Sequence[LabelledSteps], files: Sequence[Path]
+    ) -> None:
+        self.val = val[:: stride(len(val), args.val_count)]
         self.counts = {"demonstrations": len(train), "frames": sum(len(each.actions) for each in train)}
         torch.manual_seed(args.seed)
         samples = args.streams * args.length
-        super().__init__(args, FILES, ClonedNet(), max_gradient_norm=1.0, samples_per_step=samples)
+        super().__init__(
+            args,
+            FILES,
+            ClonedNet(),
+            max_gradient_norm=1.0,
+            samples_per_step=samples,
+            files={"demonstrations": files},
+        )
         self.streams = Streams(train, width=args.streams, length=args.length, seed=args.seed + self.progress.step)
         self.state: Tensor | None = None
         """The memory of the policy in each stream."""
@@ -132,7 +140,7 @@ class Trainer(TimedTraining):
 
     def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
         """See `TimedTraining.losses`: the weighted cross entropy of the next piece."""
-        piece = self.streams.next()
+        piece = self.streams.next_piece()
         if self.state is not None:
             self.state = self.state.detach() * torch.from_numpy(~piece.begins).float()[None, :, None]
         logits, self.state = self._logits(self.model, piece, self.state)

@@ -32,7 +32,7 @@ from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
-from tools.timed_training import PRINT_EVERY_S, TimedTraining
+from tools.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from tools.training_files import read_columns
 
 OBJECT_WEIGHT = 5.0
@@ -67,8 +67,8 @@ class Args:
     """Weight decay of AdamW."""
     threads: cli.Count = 1
     """Number of threads of PyTorch."""
-    val_count: cli.Amount = 600
-    """Number of held-back samples of an evaluation; 0: all."""
+    val_count: cli.Amount = 900
+    """Most held-back samples of an evaluation; 0: all."""
     seed: cli.Seed = 0
     """Seed of the initial weights, the order and the turns of the samples; the samples have their own."""
 
@@ -117,6 +117,8 @@ def loss_of(logits: Tensor, potentials: Tensor, counts: Tensor) -> tuple[Tensor,
 class Trainer(TimedTraining):
     """The network, the optimiser, the samples and the progress of one run."""
 
+    may_change = TimedTraining.may_change | {"samples"}  # the files of the samples are compared in place of the plans
+
     def __init__(self, args: Args, config: SampleConfig, files: Sequence[Path]) -> None:
         self.train = SampleSet.read([file for file in files if not held_back(file)], config)
         self.val = SampleSet.read([file for file in files if held_back(file)], config)
@@ -124,7 +126,7 @@ class Trainer(TimedTraining):
         torch.manual_seed(args.seed)
         model = PoniNet(PoniNetConfig(cells=config.cells, pool=config.pool))
         model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
-        super().__init__(args, FILES, model, max_gradient_norm=5.0, samples_per_step=args.batch)
+        super().__init__(args, FILES, model, max_gradient_norm=5.0, samples_per_step=args.batch, files={"plans": files})
         print(f"{len(self.train)} samples, {len(self.val)} held back", flush=True)
 
     def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
@@ -137,9 +139,7 @@ class Trainer(TimedTraining):
 
     def evaluate(self, model: torch.nn.Module) -> tuple[float, dict[str, Any], str]:
         """See `TimedTraining.evaluate`."""
-        count = self.args.val_count
-        every = max(1, len(self.val) // count) if count else 1
-        numbers = np.arange(0, len(self.val), every).tolist()
+        numbers = range(len(self.val))[:: stride(len(self.val), self.args.val_count)]
         area, objects, losses = Choices(), Choices(), []
         for first in range(0, len(numbers), self.args.batch):
             batch = self.val.batch(numbers[first : first + self.args.batch])

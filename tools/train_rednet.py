@@ -50,7 +50,7 @@ from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from stubborn.segmentation.unet import MobileEncoder, UNet
-from tools.training_files import append_row, load_state, save_state
+from tools.training_files import append_row, cut_rows, load_state, save_state
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
@@ -141,6 +141,8 @@ class _Progress(msgspec.Struct):
     best: float
     """-inf before the first evaluation."""
     total: ReadCount
+    evaluated_step: ReadCount = 0
+    """Step of the last evaluation."""
 
 
 class Trainer:
@@ -187,6 +189,7 @@ class Trainer:
             whole = Sampler(camera, self.val_block_px, Augmentation(), second=second)
             self.whole = Samples(spread_views(shards, NORMALISATION_VIEWS), whole)
         self.step, self.spent_s, self.best = 0, 0.0, -math.inf
+        self.evaluated_step = 0
         self.loading_s = 0.0
         """Time since the start of this process in which the step waited for views."""
         self.first_step = 0
@@ -222,7 +225,7 @@ class Trainer:
         if losses:  # of the last steps, or of a training shorter than one row
             self._log(float(np.mean(losses)))
             self._print_loss(float(np.mean(losses)))
-        if self.step % self.args.evaluate_every:
+        if self.step > self.evaluated_step:
             self._evaluate()
         self._save_state()
 
@@ -269,7 +272,8 @@ class Trainer:
         return float(loss.detach())
 
     def _evaluate(self) -> None:
-        """Evaluates, writes a row, and saves the network if it is the best so far."""
+        """Evaluates, writes a row, and saves the network, then the state, if it is the best so far."""
+        self.evaluated_step = self.step
         print(f"step {self.step} of {self.total}: evaluating on {len(self.val)} views", flush=True)
         averaged = self._usable()
         iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
@@ -280,6 +284,7 @@ class Trainer:
         if iou.goals > self.best:
             self.best = iou.goals
             save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou))
+            self._save_state()  # so that a continued run knows the best
 
     def _usable(self) -> Network:
         """Returns the averaged network; after training on windows, normalised for whole views."""
@@ -326,10 +331,11 @@ class Trainer:
 
     def _save_state(self) -> None:
         progress = {"size": self.size, "step": self.step, "spent_s": self.spent_s, "best": self.best}
-        save_state(self.args.out / "state.pt", self._parts(), progress | {"total": self.total})
+        progress |= {"total": self.total, "evaluated_step": self.evaluated_step}
+        save_state(self.args.out / "state.pt", self._parts(), progress)
 
     def _resume(self) -> None:
-        """Loads the state of the run, if there is one.
+        """Loads the state of the run, if there is one, and removes the rows of the curves that are later.
 
         Raises:
             ConfigError: the run is of another size, or its state is broken.
@@ -337,12 +343,14 @@ class Trainer:
         done = load_state(
             self.args.out / "state.pt", self._parts(), _Progress, device=self.device, check=self._require_size
         )
-        if done is None:
-            return
-        self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
-        if self.args.hours is not None:
-            self.total = max(done.total, self.step)
-        print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+        if done is not None:
+            self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
+            self.evaluated_step = done.evaluated_step
+            if self.args.hours is not None:
+                self.total = max(done.total, self.step)
+            print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
+        for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
+            cut_rows(self.args.out / name, "step", self.step)
 
     def _require_size(self, done: _Progress) -> None:
         if done.size != self.size:
@@ -405,29 +413,22 @@ def _check(args: Args) -> None:
         raise ConfigError(f"--size must be one of {', '.join(NETWORKS)}, got '{args.size}'.")
     if args.precision not in ("auto", "bf16", "fp32"):
         raise ConfigError(f"--precision must be auto, bf16 or fp32, got '{args.precision}'.")
-    if not 0.0 <= args.average < 1.0:
-        raise ConfigError(f"--average must lie in [0, 1), got {args.average}.")
-    if not 0.0 <= args.rare_share < 1.0:
-        raise ConfigError(f"--rare-share must lie in [0, 1), got {args.rare_share}.")
+    if args.average >= 1.0:
+        raise ConfigError(f"--average must be less than 1, got {args.average}.")
+    if args.rare_share >= 1.0:
+        raise ConfigError(f"--rare-share must be less than 1, got {args.rare_share}.")
     if args.imagenet and (args.size != "lite0" or args.init is not None):
         raise ConfigError("--imagenet needs --size lite0 and no --init.")
     if args.device not in ("auto", "cpu", "cuda"):
         raise ConfigError(f"--device must be auto, cpu or cuda, got '{args.device}'.")
-    for name in ("steps", "batch", "block_px", "evaluate_every"):
-        if getattr(args, name) < 1:
-            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {getattr(args, name)}.")
     if args.window_px is not None and args.window_px < 32:
         raise ConfigError(f"--window-px must be at least 32 (the network halves it five times), got {args.window_px}.")
-    if not 0.0 <= args.whole_share <= 1.0 or (args.whole_share and args.window_px is None):
-        raise ConfigError(f"--whole-share must be in [0, 1] and needs --window-px, got {args.whole_share}.")
+    if args.whole_share and args.window_px is None:
+        raise ConfigError(f"--whole-share needs --window-px, got {args.whole_share} without it.")
     if args.focus_share and args.window_px is None:
         raise ConfigError(f"--focus-share needs --window-px, got {args.focus_share} without it.")
-    if args.val_block_px is not None and args.val_block_px < 1:
-        raise ConfigError(f"--val-block-px must be at least 1, got {args.val_block_px}.")
     if args.batch < 2:
         raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
-    if args.hours is not None and args.hours <= 0:
-        raise ConfigError(f"--hours must be > 0, got {args.hours}.")
     _all_shards((*args.views, *args.val_views))
 
 

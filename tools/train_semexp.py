@@ -3,7 +3,8 @@
 python tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 35 --seed 0 --out runs/semexp_0
 
 Plans are written by tools/export_plans.py. Every tenth house, by a hash of its name, is held back for
-tools/compare_explorers.py. The same command continues a killed run: `state.pt` holds weights, optimiser and progress.
+tools/compare_explorers.py. The same command continues a killed run, also with another --minutes or --goals: `state.pt`
+holds weights, optimiser and progress.
 `train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far, `start.safetensors` those at the
 start.
 """
@@ -44,11 +45,13 @@ except ImportError as error:
 
 from tools.plan_split import split_plans
 from tools.semexp_policy import SemExpPolicy
-from tools.training_files import append_row, cut_rows, load_state, save_state
+from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
 PLANS_IN_MEMORY = 256
+MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
+"""Options in which a continued run may differ from its start."""
 _KEYS = ("steps_to_first_sight", "gt_explored", "num_steps", "collisions")
 
 
@@ -104,6 +107,8 @@ class _Progress(msgspec.Struct):
     goals: Count
     steps: Count
     spent_s: Number
+    options: dict[str, str]
+    """See `options_of`."""
 
 
 class Run:
@@ -111,6 +116,7 @@ class Run:
 
     def __init__(self, args: Args, plans: Sequence[Path]) -> None:
         self.args = args
+        self.options = options_of(args, may_change=MAY_CHANGE, files={"plans": plans})
         self.net_config = NetConfig()
         read = functools.lru_cache(PLANS_IN_MEMORY)(read_plan)
         self.envs = DummyVecEnv([lambda: SemExpEnv(plans, view=self.net_config.view, read=read)] * args.envs)
@@ -149,7 +155,7 @@ class Run:
     def save(self) -> None:
         """Writes the state and the weights; each file is replaced in one step."""
         progress = {"goals": self.goals, "steps": self.steps, "spent_s": self.spent_s}
-        save_state(self.args.out / "state.pt", self._parts(), progress)
+        save_state(self.args.out / "state.pt", self._parts(), progress | {"options": self.options})
         options = {key: [str(f) for f in v] if isinstance(v, tuple) else v for key, v in asdict(self.args).items()}
         options["out"] = str(self.args.out)
         card = {
@@ -168,13 +174,19 @@ class Run:
         """Loads the state of the run, and returns whether there is one.
 
         Raises:
-            ConfigError: the state is broken, or of another network.
+            ConfigError: the state is broken, or of a run with another network, other options or other plans.
         """
-        done = load_state(self.args.out / "state.pt", self._parts(), _Progress)
+        done = load_state(
+            self.args.out / "state.pt",
+            self._parts(),
+            _Progress,
+            check=lambda found: require_options(self.args.out, found.options, self.options),
+        )
+        if done is not None:
+            self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
+        cut_rows(self.args.out / "train.csv", "goals", self.goals)  # also of a run that never wrote a state
         if done is None:
             return False
-        self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
-        cut_rows(self.args.out / "train.csv", "goals", self.goals)
         print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
         return True
 

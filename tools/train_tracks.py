@@ -21,8 +21,6 @@ import io
 import json
 import shlex
 import sys
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -42,7 +40,7 @@ from sim.evaluation.workers import RunnerSpec
 from sim.files import inside, write_atomically
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
 from sim.reading import Count as ReadCount
-from sim.reading import Name
+from sim.reading import Name, read_npz
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import STRIDE_PX
 from stubborn.target.fusion import FOLDER, Fusion, read_fusion
@@ -56,6 +54,8 @@ LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 """The agent accepts nothing, and looks at everything that may be the goal."""
 LEAST_VOXELS = 6
 """Smaller tracks are no candidates of the agent's and not logged."""
+MAX_FILE_BYTES = 256 << 20
+_ARRAYS = ("counts", "track", "view", "mean", "weight")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,9 +172,9 @@ class TrackRunner:
                 ended = terminated or truncated
         except (EpisodeError, PhysicsError):
             return line_of(episode, 0, tracks=0)
-        content = logged(self._tracks(), counts)
+        content: dict[str, Any] = logged(self._tracks(), counts)
         buffer = io.BytesIO()
-        np.savez_compressed(buffer, allow_pickle=False, **content)
+        np.savez_compressed(buffer, **content)
         file = file_of(self._log, episode.episode_id)
         file.parent.mkdir(exist_ok=True)
         write_atomically(file, buffer.getvalue())
@@ -224,11 +224,7 @@ def read_tracks(file: Path) -> dict[str, np.ndarray]:
     Raises:
         ConfigError: the file is missing or broken.
     """
-    try:
-        with np.load(file) as content:
-            return {name: content[name] for name in ("counts", "track", "view", "mean", "weight")}
-    except (OSError, ValueError, LookupError, EOFError, zipfile.BadZipFile, zlib.error) as fault:
-        raise ConfigError(f"'{file}' is no file of tools/train_tracks.py: {fault}. Delete the log.") from None
+    return read_npz(file, _ARRAYS, what="file of tools/train_tracks.py", most_bytes=MAX_FILE_BYTES)
 
 
 def command(args: Args) -> str:

@@ -20,6 +20,7 @@ Houses of val and test are for --judge only.
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -120,7 +121,8 @@ def main(args: Args) -> int:
         print(judgement(lines, file))
         return 0
     about = {"name": split.name, "version": split.version}
-    content = {"semantics": args.semantics, "command": command(args), "split": about} | fit(lines, args.least_of_either)
+    given = {"semantics": args.semantics, "command": command(args, len(lines)), "split": about}
+    content = given | fit(lines, args.least_of_either)
     write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
     report(content)
     print(f"written: {file}")
@@ -160,12 +162,13 @@ class CandidateRunner:
         try:
             observation, _ = self._env.reset(seed=seed, options={"episode": episode})
             self._agent.reset(episode.goal, seed)
-            truncated = False
-            while not truncated:
+            ended = False
+            while not ended:
                 action = self._agent.act(observation)
                 if action == Action.STOP:  # cannot happen: every candidate is rejected
                     break
-                observation, _, _, truncated, _ = self._env.step(action)
+                observation, _, terminated, truncated, _ = self._env.step(action)
+                ended = terminated or truncated
             steps = self._env.scene.task.num_steps
         except (EpisodeError, PhysicsError):
             steps = 0
@@ -176,10 +179,19 @@ class CandidateRunner:
         self._env.close()
 
 
-def command(args: Args) -> str:
-    """Returns the command that gives the same parameters."""
-    options = f"--semantics {args.semantics} --split {Path(args.split).name} --episodes {args.episodes}"
-    return f"python tools/train_verifier.py {options} --max-steps {args.max_steps} --seed {args.seed}"
+def command(args: Args, episodes: int) -> str:
+    """Returns the command that plays as many episodes and fits to them.
+
+    They are the same episodes where the log holds the first ones of the split; --minutes may have left some out.
+
+    Args:
+        args: the options.
+        episodes: number of lines of the log, failed episodes too, in place of --episodes.
+    """
+    weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
+    options = f"--semantics {args.semantics}{weights} --split {shlex.quote(args.split)} --episodes {episodes}"
+    options += f" --max-steps {args.max_steps} --least-of-either {args.least_of_either} --seed {args.seed}"
+    return f"python tools/train_verifier.py {options}"
 
 
 def report(content: Mapping[str, Any]) -> None:

@@ -1,10 +1,12 @@
-"""What trainings write beside the weights: the rows of their curves, and the state that resumes a run."""
+"""Files beside the weights: the rows of a training's curves, and the state that resumes a run."""
 
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -32,18 +34,75 @@ def append_row(file: Path, row: Mapping[str, Any]) -> None:
 
 
 def cut_rows(file: Path, column: str, most: int) -> None:
-    """Removes the rows of a curve that are later than the state from which a run continues.
+    """Removes the rows of a curve that are later than the state from which a run continues, and incomplete rows.
+
+    A process that is killed may leave an empty file, or a last line without its end.
 
     Args:
-        file: a CSV file; nothing is done where there is none.
+        file: a CSV file of numbers; nothing is done where there is none.
         column: name of a column of whole numbers.
         most: rows with a larger number in it are removed.
+
+    Raises:
+        ConfigError: the file has no such column.
     """
-    if file.is_file():
-        heading, *lines = file.read_text(encoding="utf-8").splitlines()
-        number = heading.split(",").index(column)
-        kept = [line for line in lines if int(line.split(",")[number]) <= most]
-        write_atomically(file, "".join(f"{line}\n" for line in (heading, *kept)))
+    if not file.is_file():
+        return
+    text = file.read_bytes().decode(encoding="utf-8", errors="replace")
+    lines = [line.rstrip("\r") for line in text.split("\n")[:-1]]  # the last part is no whole line
+    names = lines[0].split(",") if lines else [column]
+    if column not in names:
+        raise ConfigError(f"'{file}' is no curve of this command: it has no column '{column}'. Take another folder.")
+    number = names.index(column)
+    rows = [(line, _numbers(line)) for line in lines[1:]]
+    kept = [line for line, values in rows if len(values) == len(names) and values[number] <= most]
+    write_atomically(file, "".join(f"{line}\n" for line in (*lines[:1], *kept)))
+
+
+def _numbers(line: str) -> list[float]:
+    """Returns the numbers of a row, NaN for empty fields; nothing where a field is no number."""
+    try:
+        return [float(field or "nan") for field in line.split(",")]
+    except ValueError:
+        return []
+
+
+def options_of(
+    args: Any, *, may_change: Collection[str] = (), files: Mapping[str, Sequence[Path]] | None = None
+) -> dict[str, str]:
+    """Returns the options that a continued run must have in common with its start, as text by the name of the field.
+
+    Args:
+        args: dataclass of the options.
+        may_change: fields that are left out.
+        files: by field, the files in the folders that the field names; they are compared in place of the folders, in
+            their order, by the name of file and folder and by size.
+
+    Raises:
+        OSError: there is no such file.
+    """
+    kept = {field.name for field in fields(args)} - set(may_change)
+    return {name: str(getattr(args, name)) for name in kept} | {
+        name: _list_of(of_option) for name, of_option in (files or {}).items()
+    }
+
+
+def _list_of(files: Sequence[Path]) -> str:
+    """Returns the number of files and a hash of their names and sizes."""
+    lines = [f"{file.parent.name}/{file.name} {file.stat().st_size}\n" for file in files]
+    digest = hashlib.sha256("".join(lines).encode(errors="surrogateescape")).hexdigest()
+    return f"{len(files)} files (hash {digest[:12]})"
+
+
+def require_options(out: Path, before: Mapping[str, str], now: Mapping[str, str]) -> None:
+    """Raises ConfigError where options of a run differ from those of its start; both are of `options_of`."""
+    for name in sorted({*before, *now}):
+        was, given = (options.get(name, "(absent)") for options in (before, now))
+        if was != given:
+            raise ConfigError(
+                f"--out '{out}' holds a run with --{name.replace('_', '-')} = {was}, this command has {given}; take "
+                "another folder, or continue with the options of that run."
+            )
 
 
 def read_columns(file: Path) -> dict[str, list[float]]:

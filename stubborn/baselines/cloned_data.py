@@ -12,8 +12,8 @@ from stubborn.baselines.cloned_input import MOTION, NO_ACTION, Steps, mirrored_a
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
-    """One demonstration as the policy sees it, and what was done."""
+class LabelledSteps:
+    """One demonstration: the inputs of the policy, and the action of each step."""
 
     steps: Steps
     actions: UInt8[np.ndarray, " n"]
@@ -23,9 +23,9 @@ class Shown:
         """Whether each action differs from the one before."""
         return self.actions != self.steps.before
 
-    def mirrored(self) -> Shown:
+    def mirrored(self) -> LabelledSteps:
         """Returns it in a house whose left and right are exchanged."""
-        return Shown(self.steps.mirrored(), mirrored_actions(self.actions))
+        return LabelledSteps(self.steps.mirrored(), mirrored_actions(self.actions))
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +51,15 @@ class Streams:
     Each stream plays one demonstration to its end, half of them mirrored, then draws another; the state of the policy
     is carried from piece to piece. An action that differs from the one before counts as often as such actions are
     rare (inflection weighting; Wijmans et al. 2019, arXiv:1904.03461), since most actions repeat the one before.
+
+    Args:
+        shown: the demonstrations; at least one.
+        width: number of demonstrations side by side.
+        length: steps of a piece.
+        seed: of the order and of the mirroring.
     """
 
-    def __init__(self, shown: Sequence[Shown], *, width: int, length: int, seed: int) -> None:
+    def __init__(self, shown: Sequence[LabelledSteps], *, width: int, length: int, seed: int) -> None:
         self._shown, self._length = shown, length
         self._rng = np.random.default_rng(seed)
         changes = sum(int(np.count_nonzero(each.changes)) for each in shown)
@@ -63,7 +69,7 @@ class Streams:
         # In the middle of an episode at the beginning, so that the streams do not end together.
         self._at = [int(self._rng.integers(len(each.actions))) // length * length for each in self._now]
 
-    def next(self) -> Piece:
+    def next_piece(self) -> Piece:
         """Returns the next piece."""
         height, width_px = self._now[0].steps.depth.shape[1:]
         images = (self._length, len(self._now), height, width_px)
@@ -85,7 +91,7 @@ class Streams:
                 self._now[number], self._at[number] = self._draw(), 0
         return Piece(depth, categories, motion, before, goal, actions, weight, begins)
 
-    def _draw(self) -> Shown:
+    def _draw(self) -> LabelledSteps:
         """Returns a random demonstration, mirrored or not."""
         one = self._shown[int(self._rng.integers(len(self._shown)))]
         return one.mirrored() if self._rng.random() < 0.5 else one

@@ -126,7 +126,6 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"views": 0}, "--views must be at least 1, got 0"),
         ({"shrink": 7}, "--shrink must divide 640 and 480, got 7"),
         ({"extras": ("boxes",)}, "--extras must be some of instances, normals, poses, got 'boxes'"),
         ({"sequence": 2}, "--sequence must divide --views and --views-per-shard, got 2"),

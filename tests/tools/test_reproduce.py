@@ -221,8 +221,6 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
         ({"table": "everything"}, "There is no table 'everything'"),
         ({"agents": ("stuborn",)}, "stuborn"),
         ({"semantics": "psychic", "agents": ("stubborn",)}, "psychic"),
-        ({"chunk": 0}, "--chunk"),
-        ({"minutes": -1.0}, "--minutes"),
         ({"episodes": 5}, "has 4 episodes"),
     ],
 )

@@ -73,11 +73,34 @@ def test_a_training_learns_a_rule_and_is_continued(tmp_path: Path, capsys: pytes
 def test_a_step_of_the_training_learns_what_was_done(tmp_path: Path):
     shown = [train_cloned.shown_of(rule("house_1", seed=seed), Path("a")) for seed in range(20)]
     args = train_cloned.Args(demonstrations=(), out=tmp_path, streams=6, length=12, rate=5e-3)
-    trainer = train_cloned.Trainer(args, shown, shown[:4])
+    trainer = train_cloned.Trainer(args, shown, shown[:4], [])
     losses = []
     for _ in range(60):
         losses.append(trainer.train_once()["cross_entropy"])
     assert np.mean(losses[-10:]) < 0.3 * np.mean(losses[:5])
+
+
+def test_an_evaluation_takes_at_most_the_given_number(tmp_path: Path):
+    shown = [train_cloned.shown_of(rule("house_0", seed=seed), Path("a")) for seed in range(7)]
+    args = train_cloned.Args(demonstrations=(), out=tmp_path, val_count=4)
+    assert len(train_cloned.Trainer(args, shown, shown, []).val) == 4
+
+
+def test_other_options_and_other_demonstrations_do_not_continue_a_run(tmp_path: Path):
+    for number in range(8):  # house_0 is held back
+        write_demonstration(tmp_path / "shown" / f"{number}.npz", rule(f"house_{number % 4}", seed=number))
+    args = train_cloned.Args(
+        demonstrations=(tmp_path / "shown",), out=tmp_path / "out", minutes=1e-4, streams=2, length=4
+    )
+    assert train_cloned.main(args) == 0
+    assert train_cloned.main(replace(args, minutes=2e-4, threads=2)) == 0
+    with pytest.raises(
+        ConfigError, match=r"out' holds a run with --rate = 0\.0015, this command has 0\.003; take another"
+    ):
+        train_cloned.main(replace(args, rate=3e-3))
+    write_demonstration(tmp_path / "shown" / "9.npz", rule("house_0", seed=9))
+    with pytest.raises(ConfigError, match=r"--demonstrations = 8 files \(hash \w+\), this command has 9 files"):
+        train_cloned.main(args)
 
 
 def test_demonstrations_of_too_few_houses_and_another_size_are_refused(tmp_path: Path):

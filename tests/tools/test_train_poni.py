@@ -18,7 +18,7 @@ from sim.twin.potential_files import held_back
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
 from tools import draw_potentials
-from tools.train_poni import Args, loss_of, main
+from tools.train_poni import Args, Trainer, loss_of, main
 
 
 @pytest.fixture
@@ -71,8 +71,16 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
     assert int(rows(out / "val.csv")[-1]["step"]) > int(first[-1]["step"])
     assert {file.name: file.stat().st_mtime_ns for file in (out / "samples").iterdir()} == samples
 
-    torch.save({"progress": {"step": 1, "spent_s": 0.0, "best": 1.0, "evaluated_s": 0.0}}, out / "state.pt")
+    with pytest.raises(ConfigError, match=r"holds a run with --seed = 0, this command has 1"):
+        main(Args(**options, seed=1))  # type: ignore[arg-type]
+    assert Trainer.may_change == {"out", "minutes", "threads", "samples"}
+    progress = torch.load(out / "state.pt")["progress"]
+    torch.save({"progress": progress}, out / "state.pt")
     with pytest.raises(ConfigError, match="is of another network"):
+        main(Args(**options, minutes=0.01))  # type: ignore[arg-type]
+    del progress["options"]  # as older versions wrote it
+    torch.save({"progress": progress}, out / "state.pt")
+    with pytest.raises(ConfigError, match=r"state\.pt' of the run: object missing required field options"):
         main(Args(**options, minutes=0.01))  # type: ignore[arg-type]
 
 

@@ -18,8 +18,9 @@ from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import NETWORKS, build_network
 from stubborn.segmentation.rednet import COMPACT
+from tools import train_rednet
 from tools.network_card import training_stages
-from tools.train_rednet import Args, main
+from tools.train_rednet import Args, Trainer, main
 
 
 def write_views(folder: Path, count: int, size_px: int = 64, rows_px: int | None = None) -> None:
@@ -77,6 +78,42 @@ def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
 
 
+def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_views(tmp_path / "train", 6)
+    write_views(tmp_path / "val", 2)
+    out = tmp_path / "out"
+    monkeypatch.setattr(train_rednet, "LOG_EVERY_STEPS", 1)
+    train_on = Trainer._train_on
+
+    def killed_at_4(trainer: Trainer, *batch: torch.Tensor) -> float:
+        if trainer.step == 3:
+            raise KeyboardInterrupt
+        return train_on(trainer, *batch)
+
+    monkeypatch.setattr(Trainer, "_train_on", killed_at_4)
+    with pytest.raises(KeyboardInterrupt):
+        main(options(tmp_path))
+    assert [row["step"] for row in rows(out / "train.csv")] == ["1", "2", "3"]
+    monkeypatch.setattr(Trainer, "_train_on", train_on)
+    best = float(rows(out / "val.csv")[0]["miou_goals"])
+    assert Trainer(options(tmp_path)).best == pytest.approx(best)
+    for _ in range(2):  # the second time there is nothing to do
+        assert main(options(tmp_path, evaluate_every=3)) == 0
+        assert [row["step"] for row in rows(out / "train.csv")] == ["1", "2", "3", "4"]
+        assert [row["step"] for row in rows(out / "val.csv")] == ["2", "3", "4"]
+
+
+def test_a_run_that_was_killed_before_its_first_state_begins_its_curves_anew(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    for _ in range(2):
+        assert main(options(tmp_path, steps=2)) == 0
+        assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2"]
+        (tmp_path / "out/state.pt").unlink()
+
+
 def test_finetuning_starts_from_the_given_weights_and_records_their_training(tmp_path: Path) -> None:
     write_views(tmp_path / "train", 3)
     write_views(tmp_path / "val", 2)
@@ -130,11 +167,11 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path, size="huge"))
     with pytest.raises(ConfigError, match=r"--window-px must be at least 32 .*, got 16"):
         main(options(tmp_path, window_px=16))
-    with pytest.raises(ConfigError, match=r"--whole-share must be in \[0, 1\] and needs --window-px, got 0.5"):
+    with pytest.raises(ConfigError, match=r"--whole-share needs --window-px, got 0.5 without it"):
         main(options(tmp_path, whole_share=0.5))
     with pytest.raises(ConfigError, match=r"--focus-share needs --window-px, got 0.5 without it"):
         main(options(tmp_path, focus_share=0.5))
-    with pytest.raises(ConfigError, match="--val-block-px must be at least 1, got 0"):
-        main(options(tmp_path, val_block_px=0))
+    with pytest.raises(ConfigError, match=r"--average must be less than 1, got 1\.0"):
+        main(options(tmp_path, average=1.0))
     with pytest.raises(ConfigError, match="No shards"):
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))

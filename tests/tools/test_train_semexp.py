@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -65,6 +66,21 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
     assert train_semexp.main(options(plans, out, goals=33, beside=(tmp_path / "none",))) == 0
     assert rows(out / "train.csv") == again
     assert (out / "curve.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_other_options_and_other_plans_do_not_continue_a_run(plans: Path, tmp_path: Path):
+    out = tmp_path / "run"
+    assert train_semexp.main(options(plans, out, goals=8)) == 0
+    with pytest.raises(ConfigError, match=r"run' holds a run with --rate = 0\.002, this command has 0\.003; take"):
+        train_semexp.main(options(plans, out, rate=0.003))
+    fewer = tmp_path / plans.name
+    shutil.copytree(plans, fewer)
+    assert train_semexp.main(options(fewer, out, goals=8)) == 0  # the same files
+    split_plans([fewer])[0][0].unlink()
+    with pytest.raises(
+        ConfigError, match=r"holds a run with --plans = \d+ files \(hash \w+\), this command has \d+ files"
+    ):
+        train_semexp.main(options(fewer, out, goals=8))
 
 
 def test_a_broken_state_and_a_folder_without_plans_are_refused(plans: Path, tmp_path: Path):

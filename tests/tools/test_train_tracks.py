@@ -53,6 +53,17 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
 
+def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """NumPy before 2.2 stores each keyword of `savez_compressed` as an array."""
+    given: list[set[str]] = []
+    write = np.savez_compressed
+    monkeypatch.setattr(
+        np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
+    )
+    played(split, tmp_path, 1)
+    assert given == [{"counts", "track", "view", "mean", "weight"}]
+
+
 def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_path: Path):
     args = train_tracks.Args(split=str(split), semantics="noisy", episodes=1, max_steps=3, log=tmp_path)
     with pytest.raises(ConfigError, match="100 are needed"):

@@ -6,11 +6,13 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from sim.composition.segmenters import KINDS
 from sim.detectors.noisy import NoisyConfig
+from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, load_split, write_split
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
@@ -57,6 +59,26 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split
     more = played(split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
+
+
+def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    step = ObjectNavEnv.step
+
+    def fallen_after_5(env: ObjectNavEnv, action: int) -> tuple[Any, ...]:
+        observation, reward, _, truncated, info = step(env, action)
+        return observation, reward, env.scene.task.num_steps >= 5, truncated, info
+
+    monkeypatch.setattr(ObjectNavEnv, "step", fallen_after_5)
+    (line,) = played(split, tmp_path, 1)
+    assert line["steps"] == 5
+
+
+def test_the_recorded_command_names_all_that_changes_the_fit_and_the_episodes_that_were_played():
+    args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
+    assert train_verifier.command(replace(args, least_of_either=7, seed=2), 71) == (
+        "python tools/train_verifier.py --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
+        "--episodes 71 --max-steps 200 --least-of-either 7 --seed 2"
+    )
 
 
 @pytest.mark.parametrize("change", ["split_identity", "detector.flicker_rate", "code", "seed", "max_steps"])

@@ -14,7 +14,7 @@ from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, Action, CameraModel, ConfigError, RobotModel
 from stubborn.agents import make
 from stubborn.baselines.cloned import SHIPPED, ClonedAgent, ClonedConfig
-from stubborn.baselines.cloned_data import Shown, Streams
+from stubborn.baselines.cloned_data import LabelledSteps, Streams
 from stubborn.baselines.cloned_input import (
     MOTION,
     NO_ACTION,
@@ -31,7 +31,7 @@ SMALL = NetConfig(categories=3, width=4, goal=4, hidden=16)
 BED = GOAL_CATEGORIES.index("bed")
 
 
-def shown(n: int, *, seed: int = 0) -> Shown:
+def shown(n: int, *, seed: int = 0) -> LabelledSteps:
     """A demonstration of n random steps."""
     rng = np.random.default_rng(seed)
     actions = rng.integers(1, 4, n).astype(np.uint8)
@@ -39,7 +39,7 @@ def shown(n: int, *, seed: int = 0) -> Shown:
     poses = rng.normal(size=(n, 3)).astype(np.float32)
     before = np.concatenate(([NO_ACTION], actions[:-1])).astype(np.uint8)
     images = rng.integers(0, 256, (n, 48, 64)).astype(np.uint8), rng.integers(0, 41, (n, 48, 64)).astype(np.uint8)
-    return Shown(Steps(*images, motions(poses), before, BED), actions)
+    return LabelledSteps(Steps(*images, motions(poses), before, BED), actions)
 
 
 def logits_of(net: ClonedNet, steps: Steps, parts: int = 1) -> np.ndarray:
@@ -94,7 +94,7 @@ def test_a_mirrored_demonstration_is_that_of_the_mirrored_house():
     swapped = {Action.TURN_LEFT: Action.TURN_RIGHT, Action.TURN_RIGHT: Action.TURN_LEFT}
     assert two.actions.tolist() == [swapped.get(Action(a), a) for a in one.actions.tolist()]
     poses = np.random.default_rng(0).normal(size=(4, 3)).astype(np.float32)
-    there = Shown(replace(one.steps, motion=motions(poses)), one.actions).mirrored().steps.motion
+    there = LabelledSteps(replace(one.steps, motion=motions(poses)), one.actions).mirrored().steps.motion
     np.testing.assert_allclose(there, motions(poses * np.array([1, -1, -1], np.float32)), atol=1e-5)
     np.testing.assert_array_equal(two.mirrored().steps.categories, one.steps.categories)
     np.testing.assert_array_equal(two.mirrored().actions, one.actions)
@@ -127,7 +127,7 @@ def test_streams_show_each_demonstration_whole_and_in_order():
     episodes: list[list] = [[], [], []]
     complete = 0
     for _ in range(40):
-        piece = streams.next()
+        piece = streams.next_piece()
         for number in range(3):
             if piece.begins[number]:
                 episodes[number] = []
