@@ -37,6 +37,7 @@ from sim.interface import MAX_STEPS, CameraModel
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
 from sim.robot.config import RobotConfig
+from sim.sensors.noise import NoiseConfig
 from sim.task.config import TaskConfig
 from sim.task.metrics import EXPLORED_SHARE, steps_to_first_sight
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
@@ -123,15 +124,22 @@ def agent_config(run: Run) -> AgentConfig:
     """Returns the configuration of a run's agent, as the run's `config.json` records it.
 
     Raises:
-        ConfigError: the twin cannot play this agent, or the run had another robot, camera or task.
+        ConfigError: the twin cannot play this agent, or the run had another robot, camera, task, segmentation or noise.
     """
     name = str(run.recorded("agent"))
     config = SPECS[name].config if name in SPECS and SPECS[name].make in PLAYABLE else None
     if not isinstance(config, AgentConfig):
         there = ", ".join(name for name, spec in SPECS.items() if spec.make in PLAYABLE)
         raise ConfigError(f"'{run.path}' has the agent '{name}', which the twin cannot play. It plays: {there}.")
-    for part, default in (("camera", CameraModel()), ("robot", RobotConfig()), ("task", TaskConfig())):
-        if run.config.get("robot") or with_fields(default, _recorded_tree(run, part)) != default:
+    if run.config.get("robot"):
+        raise ConfigError(f"'{run.path}' has a robot of its own ({run.config['robot']}), which the twin does not have.")
+    if run.recorded("semantics") != "gt":
+        raise ConfigError(f"'{run.path}' has --semantics {run.recorded('semantics')}; the twin has ground truth (gt).")
+    same: Sequence[tuple[str, Any]] = (
+        ("camera", CameraModel()), ("robot", RobotConfig()), ("task", TaskConfig()), ("noise", NoiseConfig()),
+    )  # fmt: skip
+    for part, default in same:
+        if with_fields(default, _recorded_tree(run, part)) != default:
             raise ConfigError(f"'{run.path}' has another {part} than the twin: only settings of its agent may differ.")
     if run.config.get("explorer") is not None:
         config = replace(config, explorer=find_explorer(str(run.config["explorer"])))

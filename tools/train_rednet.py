@@ -141,7 +141,7 @@ class _Progress(msgspec.Struct):
     best: float
     """-inf before the first evaluation."""
     total: ReadCount
-    evaluated_step: ReadCount = 0
+    evaluated_step: ReadCount
     """Step of the last evaluation."""
 
 

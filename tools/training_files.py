@@ -76,7 +76,7 @@ def options_of(
         args: dataclass of the options.
         may_change: fields that are left out.
         files: by field, the files in the folders that the field names; they are compared in place of the folders, in
-            their order, by the name of file and folder and by size.
+            their order, by name and size.
 
     Raises:
         OSError: there is no such file.
@@ -88,8 +88,8 @@ def options_of(
 
 
 def _list_of(files: Sequence[Path]) -> str:
-    """Returns the number of files and a hash of their names and sizes."""
-    lines = [f"{file.parent.name}/{file.name} {file.stat().st_size}\n" for file in files]
+    """Returns the number of files and a hash of their names and sizes, whatever folder they are in."""
+    lines = [f"{file.name} {file.stat().st_size}\n" for file in files]
     digest = hashlib.sha256("".join(lines).encode(errors="surrogateescape")).hexdigest()
     return f"{len(files)} files (hash {digest[:12]})"
 
@@ -145,12 +145,18 @@ def load_state(
         check: raises ConfigError for the progress of another run, before anything is loaded.
 
     Raises:
-        ConfigError: the file is broken, or of another network.
+        ConfigError: the file is broken, of another version of the command, or of another network.
     """
     if not file.exists():
         return None
     content = read_checkpoint(file, device=device)
-    done = convert(content.get("progress"), progress, where=f"The state '{file}' of the run")
+    try:
+        done = convert(content.get("progress"), progress, where="its progress")
+    except ConfigError as error:
+        raise ConfigError(
+            f"The state '{file}' of the run is of another version of this command ({str(error).rstrip('.')}); take "
+            "another folder."
+        ) from None
     if check is not None:
         check(done)
     try:

@@ -110,10 +110,11 @@ def build_agent(
     }
     if spec.uses_ground_truth:
         parts["truth"] = env
-    if "max_steps" in inspect.signature(spec.make).parameters:
-        parts["max_steps"] = env.task_config.max_steps
     try:
-        inspect.signature(spec.make).bind(**parts)
+        signature = inspect.signature(spec.make)
+        if "max_steps" in signature.parameters:
+            parts["max_steps"] = env.task_config.max_steps
+        signature.bind(**parts)
     except TypeError as error:
         raise ConfigError(
             f"Agent '{name}': its factory is called with the arguments {', '.join(parts)}, but: {error}. "

@@ -31,7 +31,7 @@ class TargetConfig:
     """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
     may include a part of what is beside the target."""
     last_resort_step: int = 420
-    """From this step on the agent stops at a last resort."""
+    """From this step on, of `MAX_STEPS`, the agent stops at a last resort."""
     rejection_margin_m: float = 0.25
     """Cells this near to rejected ones are rejected too."""
     verify_until_step: int = 200

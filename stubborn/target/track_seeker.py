@@ -81,6 +81,7 @@ class TrackSeeker:
         self.finder = finder
         self.distances = distances
         self.max_steps = max_steps
+        self._last_resort_step = max_steps - (MAX_STEPS - target.last_resort_step)
         self.reset("")
 
     def reset(self, goal: str) -> None:
@@ -136,7 +137,7 @@ class TrackSeeker:
         return found
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        resort = LastResort.STOP if step >= self.target.last_resort_step else LastResort.NONE
+        resort = LastResort.STOP if step >= self._last_resort_step else LastResort.NONE
         while self._accepted:
             self._targets = self._best_accepted(pose)
             found = self._drive_in(navmap, window, pose, self._with_parts(self._targets), resort)

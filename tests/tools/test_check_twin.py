@@ -46,11 +46,12 @@ def run(tmp_path: Path) -> Path:
     return folder
 
 
-def record(folder: Path, **options: Any) -> Any:
-    """Writes the `config.json` of a run with some options, and returns the configuration of its agent."""
-    chosen = RunOptions(semantics="gt", verification="none", **options)
+def record(folder: Path, *, robot: str | None = None, **options: Any) -> Any:
+    """Writes the `config.json` of a run with some options and a robot file; returns the configuration of its agent."""
+    chosen = RunOptions(**{"semantics": "gt", "verification": "none"} | options)
     config = configuration_of(chosen)
-    content = {"agent": chosen.agent, "explorer": chosen.explorer, "config": as_json(config)}
+    names = ("agent", "explorer", "semantics")
+    content = {name: getattr(chosen, name) for name in names} | {"robot": robot, "config": as_json(config)}
     (folder / "config.json").write_text(json.dumps(content))
     return config.agent
 
@@ -78,6 +79,9 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
         ({"agent": "oracle"}, "the twin cannot play"),
         ({"config": ("task.max_steps=300",)}, "has another task than the twin"),
         ({"config": ("camera.height_m=1.0",)}, "has another camera than the twin"),
+        ({"robot": "cart.xml"}, r"has a robot of its own \(cart.xml\)"),
+        ({"noise": "realsense"}, "has another noise than the twin"),
+        ({"semantics": "noisy"}, "has --semantics noisy; the twin has ground truth"),
     ],
 )
 def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[str, Any], told: str):
@@ -95,8 +99,8 @@ def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[s
         ("results.jsonl", json.dumps(LINE | {"house": "../flat"}) + "\n", "leads out of its folder"),
         ("config.json", "[]", "expected object, got array"),
         ("config.json", "{}", "has no field 'agent'"),
-        ("config.json", '{"agent": "stubborn"}', "has no field 'config'"),
-        ("config.json", '{"agent": "stubborn", "config": {}}', "has no field 'config.camera'"),
+        ("config.json", '{"agent": "stubborn", "semantics": "gt"}', "has no field 'config'"),
+        ("config.json", '{"agent": "stubborn", "semantics": "gt", "config": {}}', "has no field 'config.camera'"),
         ("trajectories/e0.npz", "", "is no trajectory"),
     ],
 )

@@ -42,6 +42,14 @@ def test_a_tool_starts_as_a_file_and_as_a_module(tool: str, way: str) -> None:
     assert "usage" in ended.stdout
 
 
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_tool_that_imports_another_one_finds_it_when_it_starts_as_a_file(tool: str) -> None:
+    lines = (ROOT / "tools" / f"{tool}.py").read_text().splitlines()
+    imports = [number for number, line in enumerate(lines) if line.startswith(("from tools", "import tools"))]
+    paths = [number for number, line in enumerate(lines) if line.startswith("sys.path.insert(0, ")]
+    assert not imports or (paths and paths[0] < imports[0])
+
+
 @pytest.mark.parametrize(("split", "name"), sample(SHIPPED, 2))
 def test_a_house_made_again_is_the_shipped_file_to_the_byte(split: str, name: str) -> None:
     recipe = next(recipe for recipe in SPLITS[split] if recipe.name == name)

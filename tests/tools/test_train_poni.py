@@ -18,7 +18,7 @@ from sim.twin.potential_files import held_back
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
 from tools import draw_potentials
-from tools.train_poni import Args, Trainer, loss_of, main
+from tools.train_poni import Args, loss_of, main
 
 
 @pytest.fixture
@@ -73,14 +73,13 @@ def test_training_makes_samples_curves_and_weights_and_continues_a_run(
 
     with pytest.raises(ConfigError, match=r"holds a run with --seed = 0, this command has 1"):
         main(Args(**options, seed=1))  # type: ignore[arg-type]
-    assert Trainer.may_change == {"out", "minutes", "threads", "samples"}
     progress = torch.load(out / "state.pt")["progress"]
     torch.save({"progress": progress}, out / "state.pt")
     with pytest.raises(ConfigError, match="is of another network"):
         main(Args(**options, minutes=0.01))  # type: ignore[arg-type]
     del progress["options"]  # as older versions wrote it
     torch.save({"progress": progress}, out / "state.pt")
-    with pytest.raises(ConfigError, match=r"state\.pt' of the run: object missing required field options"):
+    with pytest.raises(ConfigError, match="is of another version of this command"):
         main(Args(**options, minutes=0.01))  # type: ignore[arg-type]
 
 
