@@ -48,7 +48,8 @@ def run(tmp_path: Path) -> Path:
 
 def record(folder: Path, *, robot: str | None = None, **options: Any) -> Any:
     """Writes the `config.json` of a run with some options and a robot file; returns the configuration of its agent."""
-    chosen = RunOptions(**{"semantics": "gt", "verification": "none"} | options)
+    defaults: dict[str, Any] = {"semantics": "gt", "verification": "none"}
+    chosen = RunOptions(**(defaults | options))
     config = configuration_of(chosen)
     names = ("agent", "explorer", "semantics")
     content = {name: getattr(chosen, name) for name in names} | {"robot": robot, "config": as_json(config)}
