@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,13 +12,14 @@ from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, MPCAT40_ID, Action, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents
 from stubborn.agent import StubbornAgent
-from stubborn.plus import PlusConfig
+from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.approach import Approach
 from stubborn.target.fusion import Fusion
 from stubborn.target.look import LookConfig
 from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.target.tracks import TrackConfig, Tracks
+from stubborn.target.viewpoints import LastResort
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 
 ROOM = boxes_from_plan(
@@ -88,6 +90,26 @@ def test_near_the_end_the_best_rejected_object_is_tried():
     assert trace.stopped
     assert len(trace.actions) > 70
     assert world.distance_to("table") < 1.0
+
+
+@pytest.mark.parametrize("max_steps", [200, MAX_STEPS, 2000])
+def test_a_last_resort_is_taken_so_many_steps_before_the_end_of_the_episode(
+    monkeypatch: pytest.MonkeyPatch, max_steps: int
+):
+    agent, _ = agent_with(0.97)
+    config, camera, robot = PlusConfig(), SMALL_CAMERA, RobotModel()
+    parts: dict[str, Any] = {"camera": camera, "robot": robot, "segmenter": Unsure(0.97), "config": config}
+    seeker = plus_agent(**parts, max_steps=max_steps).seeker
+    assert isinstance(seeker, TrackSeeker)
+    resorts: list[LastResort] = []
+    seeker._accepted = [1]
+    monkeypatch.setattr(seeker, "_best_accepted", lambda pose: [1])
+    monkeypatch.setattr(seeker, "_with_parts", lambda tracks: tracks)
+    monkeypatch.setattr(seeker, "_drive_in", lambda *given: resorts.append(given[-1]) or Approach(None, 0.0, (0, 0)))
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    for step in (max_steps - 81, max_steps - 80):
+        seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step)
+    assert resorts == [LastResort.NONE, LastResort.STOP]
 
 
 def test_a_sure_object_is_driven_to():
