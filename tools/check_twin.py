@@ -9,7 +9,8 @@ the explored area and of the step of first sight:
 - with `--explore`, the run's agent, with the explorer and the settings of the run, explores the twin from the same
   starts. A robot that is 1 mm elsewhere may take another door, so the same is done once more from starts moved by
   `--shift-m`: the correlation between these two runs of the twin is what any imitation can reach. Runs with another
-  robot, camera, task, segmentation or noise are refused, and so are agents that are more than a `StubbornAgent` with a configuration.
+  robot, camera, task, segmentation or noise are refused, and so are agents that are more than a `StubbornAgent` with
+  a configuration.
 """
 
 from __future__ import annotations
