@@ -55,8 +55,12 @@ class Args:
     """Views per step."""
     block_px: cli.Count = 1
     """Factor by which the views are shrunk for the networks."""
+    val_block_px: cli.Count | None = None
+    """Factor for evaluation; None: as --block-px."""
     val_count: cli.Amount = 600
     """Number of views of an evaluation."""
+    evaluate_every: cli.Count = 500
+    """Steps between evaluations, whose time counts; the one at the end does not."""
     threads: cli.Count | None = None
     """Number of threads of PyTorch; None does not change it."""
     rare_share: cli.Share = 0.15
@@ -91,7 +95,9 @@ def training(args: Args, name: str, seed: int, limit_hours: float) -> train_redn
         seed=seed,
         batch=args.batch,
         block_px=args.block_px,
+        val_block_px=args.val_block_px,
         val_count=args.val_count,
+        evaluate_every=args.evaluate_every,
         threads=args.threads,
         rare_share=args.rare_share,
     )
