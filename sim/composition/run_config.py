@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -167,4 +168,13 @@ def _checksums(options: RunOptions, config: RunConfig) -> dict[str, str]:
         found["verifier"] = file_sha256(config.verification.parameters)
     if options.robot is not None:
         found["robot"] = robot_sha256(options.robot)
-    return found
+    return found | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
+
+
+def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
+    """Yields path and file of each field of a configuration that names a file, such as weights of an explorer."""
+    if is_dataclass(tree) and not isinstance(tree, type):
+        for field in fields(tree):
+            yield from _files_in(getattr(tree, field.name), f"{name}.{field.name}")
+    elif isinstance(tree, (str, Path)) and Path(tree).suffix and Path(tree).is_file():
+        yield name, Path(tree)

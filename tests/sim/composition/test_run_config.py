@@ -14,6 +14,7 @@ from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of
 from sim.configuration import as_json, field_paths, with_fields
 from sim.run import entry
+from stubborn import exploration, target
 
 SPLIT = {"name": "val", "version": "1", "sha256": "0"}
 
@@ -78,6 +79,22 @@ def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
     assert record["config"]["agent"]["planning"]["dilation_m"] == 0.1
     assert len(record["files_sha256"]["weights"]) == 64
     assert record["split_identity"] == SPLIT
+
+
+def test_the_record_has_a_checksum_of_each_file_that_the_agent_reads(tmp_path: Path) -> None:
+    weights = Path(str(exploration.__file__)).parent / "weights" / "poni.safetensors"
+    fusion = Path(str(target.__file__)).parent / "fusions" / "rednet.json"
+    changed = tmp_path / "fusion.json"
+    changed.write_bytes(fusion.read_bytes() + b"\n")
+
+    def checksums(fusion: Path) -> dict[str, str]:
+        settings = (f"agent.seeker.tracks.evidence.fusion={fusion}", f"agent.explorer.weights={weights}")
+        options = RunOptions(agent="stubborn-plus", semantics="gt", explorer="poni", config=settings)
+        return record_of(options, configuration_of(options), SPLIT)["files_sha256"]
+
+    before, after = checksums(fusion), checksums(changed)
+    assert set(before) == {"agent.seeker.tracks.evidence.fusion", "agent.explorer.weights"}
+    assert [name for name in before if before[name] != after[name]] == ["agent.seeker.tracks.evidence.fusion"]
 
 
 def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
