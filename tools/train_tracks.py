@@ -96,7 +96,7 @@ def main(args: Args) -> int:
     fusion = fit(samples)
     content = {
         "semantics": args.semantics,
-        "command": command(args),
+        "command": command(replace(args, episodes=len(episodes))),
         "split": {"name": split.name, "version": split.version},
         **about,
         "fusion": msgspec.to_builtins(fusion),
