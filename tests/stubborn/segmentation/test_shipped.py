@@ -11,14 +11,14 @@ from sim.interface import CameraModel
 from sim.robot.config import RobotConfig
 from stubborn.segmentation.checkpoints import load_network
 from stubborn.segmentation.network import NetworkSegmenter
-from stubborn.segmentation.rednet import COMPACT
+from stubborn.segmentation.networks import NETWORKS
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
 
 def test_it_is_small_and_its_card_agrees_with_it() -> None:
     assert SHIPPED_REDNET.stat().st_size <= 20_000_000
     model, metadata = load_network(SHIPPED_REDNET)
-    assert model.config == COMPACT
+    assert model.config == NETWORKS["compact-both"]
     card = SHIPPED_REDNET.with_name("README.md").read_text(encoding="utf-8")
     assert metadata["calibration"]
     assert "calibration error, calibrated" in card
