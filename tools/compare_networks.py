@@ -55,8 +55,6 @@ class Args:
     """Views per step."""
     block_px: cli.Count = 1
     """Factor by which the views are shrunk for the networks."""
-    val_block_px: cli.Count | None = None
-    """Factor for evaluation; None: as --block-px."""
     val_count: cli.Amount = 600
     """Number of views of an evaluation."""
     evaluate_every: cli.Count = 500
@@ -95,7 +93,6 @@ def training(args: Args, name: str, seed: int, limit_hours: float) -> train_redn
         seed=seed,
         batch=args.batch,
         block_px=args.block_px,
-        val_block_px=args.val_block_px,
         val_count=args.val_count,
         evaluate_every=args.evaluate_every,
         threads=args.threads,
