@@ -18,6 +18,7 @@ import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 from torch import Tensor, nn
+from torch.overrides import TorchFunctionMode
 
 from sim.interface import ConfigError
 from sim.reading import convert, reason_of
@@ -66,10 +67,7 @@ class Family(Generic[ConfigT, NetworkT]):
         if self.key not in header:
             raise ConfigError(f"{where}: their header has no '{self.key}'.")
         config = convert(header.pop(self.key), self.config, where=where)
-        require_fit(file, tensors, lambda: self.build(config))
-        model = self.build(config)
-        model.load_state_dict(tensors)
-        return model.eval(), header
+        return with_weights(file, tensors, lambda: self.build(config)), header
 
 
 def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, half: bool = True) -> None:
@@ -122,17 +120,40 @@ def read_weights(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
     return tensors, decoded
 
 
-def require_fit(file: Path, given: Mapping[str, Tensor], build: Callable[[], nn.Module]) -> None:
-    """Raises ConfigError for the first tensor that is missing, unknown, of another shape, or with NaN.
+def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], NetworkT]) -> NetworkT:
+    """Returns a network with these weights, in evaluation mode.
 
     Args:
         file: the file of the tensors, for the message.
-        given: the tensors.
-        build: returns the network. It is called without memory for its numbers, so that a size in a header cannot ask
-            for more than the file has.
+        given: the tensors, of any floating-point type.
+        build: returns the network. It is first called without memory for its numbers, so that a size in a header
+            cannot ask for more than the file has.
+
+    Raises:
+        ConfigError: for the first tensor that is missing, unknown, of another shape, or with NaN.
     """
-    with torch.device("meta"):
+    with torch.device("meta"), _NoInitialNumbers():
         wanted = build().state_dict()
+    _require_fit(file, given, wanted)
+    model = build()
+    model.load_state_dict(given)
+    return model.eval()
+
+
+class _NoInitialNumbers(TorchFunctionMode):
+    """Drops random draws and fills: without memory they do nothing, but load 80 MB of modules of PyTorch."""
+
+    def __torch_function__(
+        self, func: Callable[..., Any], types: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
+    ) -> Any:
+        named = kwargs or {}
+        if func.__name__ in ("normal_", "uniform_", "fill_", "zero_"):
+            return args[0] if args else named["tensor"]
+        return func(*args, **named)
+
+
+def _require_fit(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
+    """Raises ConfigError for the first tensor that is missing, unknown, of another shape, or with NaN."""
     for name, tensor in wanted.items():
         if name not in given:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")

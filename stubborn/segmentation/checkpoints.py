@@ -20,7 +20,7 @@ from torch import Tensor
 
 from sim.interface import ConfigError
 from sim.reading import Number, convert, require_small_zip
-from stubborn.network_files import read_weights, require_fit, write_weights
+from stubborn.network_files import read_weights, with_weights, write_weights
 from stubborn.segmentation.networks import FAMILIES, Architecture, Network, build_network, family
 from stubborn.segmentation.rednet import PUBLISHED
 
@@ -80,10 +80,7 @@ def load_network(file: Path) -> tuple[Network, dict[str, Any]]:
     convert(metadata, _Metadata, where=f"Weights '{file}', header")
     config = _config(file, metadata)
     tensors = unwrap(tensors, file)
-    require_fit(file, tensors, lambda: build_network(config))
-    model = build_network(config)
-    model.load_state_dict(tensors)
-    return model.eval(), metadata
+    return with_weights(file, tensors, lambda: build_network(config)), metadata
 
 
 def unwrap(content: Mapping[str, Any], file: Path) -> dict[str, Tensor]:

@@ -223,9 +223,11 @@ class RedNet(nn.Module):
 def folded(model: nn.Module) -> nn.Module:
     """Returns a copy for inference whose batch normalisations are part of the convolutions before them.
 
-    The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only.
+    The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only. It shares the
+    numbers that the folding does not change.
     """
-    copied = copy.deepcopy(model).eval()
+    shared = {id(tensor): tensor for tensor in (*model.parameters(), *model.buffers())}
+    copied = copy.deepcopy(model, shared).eval()
     for module in list(copied.modules()):
         for (conv_name, conv), (norm_name, norm) in itertools.pairwise(list(module.named_children())):
             if isinstance(norm, nn.BatchNorm2d) and isinstance(conv, nn.Conv2d | nn.ConvTranspose2d):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 
 from sim.datasets.views import sample_views
@@ -30,6 +33,16 @@ def test_it_is_small_and_its_card_agrees_with_it() -> None:
         "| category | IoU |",
     ):
         assert heading in card
+
+
+def test_a_process_that_uses_it_does_not_load_the_compilers_of_pytorch() -> None:
+    use = (
+        "import sys; from stubborn.segmentation.network import NetworkSegmenter; "
+        "from stubborn.segmentation.shipped import SHIPPED_REDNET; NetworkSegmenter.from_file(SHIPPED_REDNET); "
+        "print(sorted({'sympy', 'torch._dynamo', 'torch._inductor'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", use], capture_output=True, text=True, check=True, timeout=300)
+    assert done.stdout.strip() == "[]"  # 80 MB in each worker
 
 
 def test_it_is_right_at_most_pixels_in_a_house_of_val() -> None:
