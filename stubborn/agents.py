@@ -18,6 +18,7 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.poni import PoniConfig
+from stubborn.exploration.potentials import PotentialConfig
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.exploration.tour import TourConfig
@@ -53,6 +54,7 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
         "thorough": ThoroughConfig(),
         "frontier": FrontierConfig(),
         "tour": TourConfig(),
+        "informed-tour": TourConfig(potentials=PotentialConfig()),
         "semexp": SemExpConfig(),
         "poni": PoniConfig(),
     }

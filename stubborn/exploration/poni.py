@@ -1,10 +1,8 @@
 """Frontiers chosen by predicted potentials: how much area and how near the goal object is behind each of them.
 
 Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
-Learning", CVPR, arXiv:2201.10029. A network (`stubborn.exploration.poni_net`) predicts two potentials at each frontier
-of a partial semantic map: the share of the unexplored floor that the frontier leads to, and for each goal category how
-near its objects are. It was trained on house plans alone (tools/train_poni.py). The robot goes to the frontier with the
-highest weighted sum.
+Learning", CVPR, arXiv:2201.10029. The robot goes to the frontier with the highest weighted sum of its two potentials
+(`stubborn.exploration.potentials`).
 """
 
 from __future__ import annotations
@@ -18,11 +16,11 @@ from jaxtyping import Bool, Float32
 from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, CameraModel, ConfigError
+from sim.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, spend_around
-from stubborn.exploration.patches import MapPatch, patch_around
 from stubborn.exploration.places import MapCells
+from stubborn.exploration.potentials import PotentialConfig, Potentials
 from stubborn.planning.planner import Goal
 from stubborn.raster import connected, large_parts
 
@@ -30,26 +28,16 @@ if TYPE_CHECKING:
     from stubborn.exploration.poni_net import Predictor
 
 _MOVED_M = 0.05
-GoalKind = Literal["true", "wrong"]
-SemanticsKind = Literal["seen", "shuffled", "none"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PoniConfig:
+class PoniConfig(PotentialConfig):
     """The potentials, their weights, and when a frontier is done with."""
 
-    weights: str | None = None
-    """File of the network's weights (tools/train_poni.py); None: those that ship."""
-    alpha: float = 0.5
-    """Weight of the area potential; the object potential of the goal has the rest."""
     path_weight_per_m: float = 0.0
     """The score of a frontier falls by this for each metre of path to it; 0: as in the reference."""
     replan_steps: int = 25
     """The potentials are predicted again after this many steps, and when a frontier is done with."""
-    goal: GoalKind = "true"
-    """Category whose object potential counts; `wrong`: another one, drawn for each episode, as a control."""
-    semantics: SemanticsKind = "seen"
-    """Goal categories on the map as seen, as a control in a wrong order drawn for each episode, or none."""
     piece_m: float = 1.0
     """The goal is the part of the frontier within this distance of its cell with the highest score."""
     least_length_m: float = 0.40
@@ -68,8 +56,7 @@ class PoniConfig:
     """Margin around the known part of the map within which paths may run."""
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.alpha <= 1.0:
-            raise ConfigError(f"PoniConfig.alpha must lie in [0, 1], got {self.alpha}.")
+        super().__post_init__()
         if self.path_weight_per_m < 0.0:
             raise ConfigError(f"PoniConfig.path_weight_per_m must be >= 0, got {self.path_weight_per_m}.")
         if min(self.replan_steps, self.stalled_steps) < 1:
@@ -86,9 +73,7 @@ class PoniConfig:
         Raises:
             ConfigError: the weights do not exist or are of another network.
         """
-        from stubborn.exploration.poni_net import shared_predictor  # PyTorch takes seconds to import
-
-        return PoniExplorer(self, shared_predictor(self.weights))
+        return PoniExplorer(self, self.predictor())
 
 
 class PoniExplorer:
@@ -98,14 +83,12 @@ class PoniExplorer:
 
     def __init__(self, config: PoniConfig, predictor: Predictor) -> None:
         self.config = config
-        self.predictor = predictor
+        self.potentials = Potentials(config, predictor)
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
         """Forgets the last episode; the draws of the controls come from `seed`."""
-        rng = np.random.default_rng(seed)
-        self._order: list[int] = rng.permutation(len(GOAL_CATEGORIES)).tolist()
-        self._other = int(rng.integers(1, len(GOAL_CATEGORIES)))
+        self.potentials.reset(seed)
         self._goal: MapCells | None = None
         self._age_steps = 0
         self._path_m = 0.0
@@ -124,18 +107,6 @@ class PoniExplorer:
             or (yield from self._to_best(known, ground))
             or (yield from known.to_least_visited(config.arrived_m))
         )
-
-    def potential(self, patch: MapPatch, goal: str) -> Float32[np.ndarray, "cells cells"]:
-        """Returns the weighted sum of the predicted potentials for a goal category, in [0, 1]."""
-        semantics, alpha = self.config.semantics, self.config.alpha
-        channels = patch.channels(self._order if semantics == "shuffled" else None)
-        if semantics == "none":
-            channels[-len(GOAL_CATEGORIES) :] = 0
-        number = GOAL_CATEGORIES.index(goal)
-        if self.config.goal == "wrong":
-            number = (number + self._other) % len(GOAL_CATEGORIES)
-        predicted = self.predictor.predict(channels)
-        return np.float32(alpha) * predicted[0] + np.float32(1.0 - alpha) * predicted[1 + number]
 
     def _go_on(self, known: Frontiers, pose: Pose) -> Search:
         """Returns the route to the rest of the frontier pursued; None when it is done with, or after some steps."""
@@ -180,19 +151,12 @@ class PoniExplorer:
     def _score(self, known: Frontiers, ground: Ground) -> Float32[np.ndarray, "rows cols"]:
         """Returns the score of each frontier cell: its potential less the cost of the path to it; -inf elsewhere."""
         frame, pose = known.free.frame, ground.pose
-        patch = patch_around(ground.navmap, pose, cells=self.predictor.cells, pool=self.predictor.pool)
-        potential = self.potential(patch, ground.goal)
-        score = np.full(frame.shape, -np.inf, np.float32)
-        rows, cols = np.nonzero(known.cells)
-        at = patch.frame.cells(*frame.centres(rows, cols))
-        inside = patch.frame.contains(*at)
-        score[rows, cols] = 0.0  # beyond the patch nothing is predicted
-        score[rows[inside], cols[inside]] = potential[at[0][inside], at[1][inside]]
+        score = self.potentials.of(ground, frame, known.cells)
         if self.config.path_weight_per_m > 0.0:
             here = np.zeros(frame.shape, np.bool_)
             here[frame.cell(pose.x_m, pose.y_m)] = True
             path_m = travel_times(here, known.free.reachable, known.free.speed, frame.cell_m)
-            score[rows, cols] -= np.float32(self.config.path_weight_per_m) * path_m[rows, cols]
+            score[known.cells] -= np.float32(self.config.path_weight_per_m) * path_m[known.cells]
         return score
 
     def _best_piece(

@@ -4,7 +4,8 @@ Two kinds of ground are left to see: unknown ground behind frontiers, and ground
 small object covers too little of the image to be noticed. Each frontier, and each part of the ground seen from afar, is
 a stop of the tour with a weight, the area that it would show. The order minimizes the sum of weight times path length
 until the stop (the minimum latency problem; Blum et al. 1994), which is the expected path until an object is seen whose
-place is equally likely everywhere. The nearest stop comes first only if it is worth it. In passing, the robot looks
+place is equally likely everywhere. Predicted potentials of the frontiers (`stubborn.exploration.potentials`) can weigh
+the stops by where the goal is likely. The nearest stop comes first only if it is worth it. In passing, the robot looks
 aside where a turn shows much (`stubborn.exploration.glance`).
 """
 
@@ -14,6 +15,7 @@ import functools
 import itertools
 import math
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
@@ -25,7 +27,9 @@ from sim.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.glance import GlanceConfig, Glancer
+from stubborn.exploration.patches import or_of_blocks
 from stubborn.exploration.places import MapCells
+from stubborn.exploration.potentials import PotentialConfig, Potentials
 from stubborn.planning.planner import Goal
 from stubborn.raster import distance_to, numbered_parts
 
@@ -36,6 +40,13 @@ class TourConfig:
 
     glance: GlanceConfig = field(default_factory=GlanceConfig)
     """Looks to the side."""
+    potentials: PotentialConfig | None = None
+    """Predicted potentials that weigh the frontiers; None: their area alone counts."""
+    potential_floor: float = 0.05
+    """The weight of a frontier is multiplied by a power of this plus its highest potential; that of other ground by the
+    same power of this alone."""
+    potential_power: float = 2.0
+    """The power: the larger it is, the earlier the best frontier comes."""
     least_length_m: float = 0.40
     """Shorter frontiers are no stops while there are others."""
     own_known_m: float = 1.0
@@ -62,16 +73,28 @@ class TourConfig:
     """Around a place where a stop was reached, the rest of it does not count any more."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
+    block_cells: int = 4
+    """Path lengths between stops are computed on blocks of so many cells each way."""
 
     def __post_init__(self) -> None:
+        if self.block_cells < 1 or self.potential_floor < 0.0 or self.potential_power < 0.0:
+            raise ConfigError(
+                "TourConfig needs block_cells >= 1, potential_floor and potential_power >= 0, got "
+                f"{self.block_cells}, {self.potential_floor} and {self.potential_power}."
+            )
         if not 1 <= self.most_stops <= 8:
             raise ConfigError(f"TourConfig.most_stops must be 1 to 8, got {self.most_stops}.")
         if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
             raise ConfigError(f"TourConfig needs 0 < arrived_m <= spent_m, got {self.arrived_m} and {self.spent_m} m.")
 
     def make(self, camera: CameraModel) -> TourExplorer:
-        """Returns a new explorer with these parameters."""
-        return TourExplorer(self, camera)
+        """Returns a new explorer with these parameters.
+
+        Raises:
+            ConfigError: the weights of the potentials do not exist or are of another network.
+        """
+        known = None if self.potentials is None else Potentials(self.potentials, self.potentials.predictor())
+        return TourExplorer(self, camera) if known is None else InformedTourExplorer(self, camera, known)
 
 
 @dataclass(frozen=True)
@@ -92,10 +115,47 @@ class _Left:
 
 @dataclass(frozen=True)
 class _Stop:
-    """A stop of the tour."""
+    """A stop of the tour: cells of the known part of the map."""
 
-    cells: Bool[np.ndarray, "rows cols"]
-    weight_m2: float
+    rows: Int[np.ndarray, " n"]
+    cols: Int[np.ndarray, " n"]
+    weight: float
+
+
+class _Paths:
+    """Path lengths in the free space, on blocks of cells: the order of the stops needs no more, in large houses too."""
+
+    def __init__(self, known: Frontiers, block_cells: int) -> None:
+        free = known.free
+        self.block_cells, self.block_m = block_cells, block_cells * free.frame.cell_m
+        self.reachable = or_of_blocks(free.reachable, block_cells)
+        self.unknown = or_of_blocks(free.reachable & known.unknown, block_cells)
+        self.speed = np.ones(self.reachable.shape, np.float32)
+        slow = self.unknown & ~or_of_blocks(free.reachable & ~known.unknown, block_cells)
+        self.speed[slow] = free.speed.min(where=free.reachable & known.unknown, initial=1.0)
+
+    def from_cells(
+        self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"]
+    ) -> Float32[np.ndarray, "block_rows block_cols"]:
+        """Returns the path length from the nearest of some cells to each block."""
+        return travel_times(self._blocks(rows, cols), self.reachable, self.speed, self.block_m)
+
+    def nearest_m(self, field_m: Float32[np.ndarray, "block_rows block_cols"], stop: _Stop) -> float:
+        """Returns the least value of a field in a stop."""
+        return float(field_m[stop.rows // self.block_cells, stop.cols // self.block_cells].min())
+
+    def unknown_m2(self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"], within_m: float) -> float:
+        """Returns the area of the unknown ground within some path length through it of some cells."""
+        start, even = self._blocks(rows, cols), np.ones_like(self.speed)
+        path_m = travel_times(start, self.unknown | start, even, self.block_m, within_m)
+        return float(np.count_nonzero(np.isfinite(path_m) & self.unknown)) * self.block_m**2
+
+    def _blocks(
+        self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"]
+    ) -> Bool[np.ndarray, "block_rows block_cols"]:
+        blocks = np.zeros(self.reachable.shape, np.bool_)
+        blocks[rows // self.block_cells, cols // self.block_cells] = True
+        return blocks
 
 
 class TourExplorer:
@@ -124,7 +184,7 @@ class TourExplorer:
         left = self._left(ground)
         return (
             (yield from self._go_on(left, ground.pose))
-            or (yield from self._to_first_stop(left, ground.pose))
+            or (yield from self._to_first_stop(left, ground))
             or (yield from left.known.to_least_visited(self.config.arrived_m))
         )
 
@@ -161,49 +221,57 @@ class TourExplorer:
             return None
         return route
 
-    def _to_first_stop(self, left: _Left, pose: Pose) -> Search:
+    def _to_first_stop(self, left: _Left, ground: Ground) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
-        known = left.known
+        known, pose = left.known, ground.pose
+        paths, factor = _Paths(known, self.config.block_cells), self._factor(ground, known)
         while True:
-            stops = self._stops(left)
+            stops = self._stops(left, paths, factor)
             if not stops:
                 self._goal = None
                 return None
-            stop = stops[self._first(known, stops, pose)]
-            route = yield Goal(known.free, stop.cells)
+            stop = stops[self._first(known, paths, stops, pose)]
+            cells = np.zeros(known.free.frame.shape, np.bool_)
+            cells[stop.rows, stop.cols] = True
+            route = yield Goal(known.free, cells)
             if route is not None and route.length_m > self.config.arrived_m:
-                self._goal, self._age_steps = MapCells.of(stop.cells, known.window), 0
+                self._goal, self._age_steps = MapCells.of(cells, known.window), 0
                 return route
-            left.spent[stop.cells] |= route is None
+            left.spent[cells] |= route is None
             if route is not None:
                 self._spend(left, pose)
                 left.spent[known.free.frame.cell(pose.x_m, pose.y_m)] = True
 
-    def _stops(self, left: _Left) -> list[_Stop]:
+    def _factor(self, ground: Ground, known: Frontiers) -> Float32[np.ndarray, "rows cols"] | None:
+        """Returns the factor of each frontier cell for the weight of its stop; None: all are 1."""
+        return None
+
+    def _stops(self, left: _Left, paths: _Paths, factor: Float32[np.ndarray, "rows cols"] | None) -> list[_Stop]:
         """Returns the stops that can be reached."""
         config, known, cell_m = self.config, left.known, left.known.free.frame.cell_m
-        frontiers = [_Stop(cells, self._shown_m2(known, cells)) for cells in _parts(known.cells & ~left.spent, 1.0)]
-        long = [stop for stop in frontiers if np.count_nonzero(stop.cells) * cell_m >= config.least_length_m]
+        frontiers = [
+            _Stop(
+                rows,
+                cols,
+                paths.unknown_m2(rows, cols, config.gain_radius_m)
+                * (1.0 if factor is None else float(factor[rows, cols].max())),
+            )
+            for rows, cols in _parts(known.cells & ~left.spent, 1.0)
+        ]
+        long = [stop for stop in frontiers if stop.rows.size * cell_m >= config.least_length_m]
+        per_m2 = config.far_weight * (1.0 if factor is None else config.potential_floor**config.potential_power)
         far = [
-            _Stop(cells, config.far_weight * float(np.count_nonzero(cells)) * cell_m**2)
-            for cells in _parts(left.far & ~left.spent, config.least_far_m2 / cell_m**2)
+            _Stop(rows, cols, per_m2 * rows.size * cell_m**2)
+            for rows, cols in _parts(left.far & ~left.spent, config.least_far_m2 / cell_m**2)
         ]
         return long + far or frontiers
 
-    def _shown_m2(self, known: Frontiers, frontier: Bool[np.ndarray, "rows cols"]) -> float:
-        """Returns the area of the unknown ground within some path length behind a frontier."""
-        cell_m, open_ground = known.free.frame.cell_m, known.unknown & known.free.reachable
-        speed = np.ones(frontier.shape, np.float32)
-        path_m = travel_times(frontier, open_ground | frontier, speed, cell_m, self.config.gain_radius_m)
-        return float(np.count_nonzero(np.isfinite(path_m) & open_ground)) * cell_m**2
-
-    def _first(self, known: Frontiers, stops: list[_Stop], pose: Pose) -> int:
+    def _first(self, known: Frontiers, paths: _Paths, stops: list[_Stop], pose: Pose) -> int:
         """Returns the index of the stop with which the best tour begins."""
-        here = np.zeros(known.free.frame.shape, np.bool_)
-        here[known.free.frame.cell(pose.x_m, pose.y_m)] = True
-        weight = np.array([stop.weight_m2 for stop in stops]) + 1e-3
-        from_here_m = self._from(known, here)
-        to_m = np.array([_nearest_m(from_here_m, stop.cells) for stop in stops])
+        row, col = known.free.frame.cell(pose.x_m, pose.y_m)
+        weight = np.array([stop.weight for stop in stops]) + 1e-6
+        from_here_m = paths.from_cells(np.array([row]), np.array([col]))
+        to_m = np.array([paths.nearest_m(from_here_m, stop) for stop in stops])
         to_m += self.config.turn_m * np.array([self._turns(known, stop, pose) for stop in stops])
         best = np.argsort(-weight / (to_m + self.config.stop_m), kind="stable")[: self.config.most_stops]
         best = best[np.isfinite(to_m[best])]
@@ -211,25 +279,40 @@ class TourExplorer:
             return int(best[0]) if best.size else 0
         between_m = np.zeros((best.size, best.size))
         for i, one in enumerate(best[:-1].tolist()):
-            field_m = self._from(known, stops[one].cells)
+            field_m = paths.from_cells(stops[one].rows, stops[one].cols)
             for j in range(i + 1, best.size):
-                between_m[i, j] = between_m[j, i] = _nearest_m(field_m, stops[int(best[j])].cells)
+                between_m[i, j] = between_m[j, i] = paths.nearest_m(field_m, stops[int(best[j])])
         return int(best[first_of_best_order(weight[best], to_m[best], between_m, self.config.stop_m)])
-
-    def _from(self, known: Frontiers, cells: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
-        """Returns the travel time from some cells to all others."""
-        return travel_times(cells, known.free.reachable, known.free.speed, known.free.frame.cell_m)
 
     def _turns(self, known: Frontiers, stop: _Stop, pose: Pose) -> float:
         """Returns the number of turns from the heading to the middle of a stop."""
-        rows, cols = np.nonzero(stop.cells)
-        x_m, y_m = known.free.frame.centres(rows.mean(), cols.mean())
+        x_m, y_m = known.free.frame.centres(stop.rows.mean(), stop.cols.mean())
         return abs(wrap_angle(math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m) - pose.yaw_rad)) / TURN_RAD
 
     def _spend(self, left: _Left, pose: Pose) -> None:
         """Closes the stops around the robot, which has seen what they show."""
         spend_around(self._spent, left.known.window, pose, self.config.spent_m)
         self._goal = None
+
+
+class InformedTourExplorer(TourExplorer):
+    """A tour whose frontiers are weighed by predicted potentials as well."""
+
+    reads_semantics: Literal[True] = True
+
+    def __init__(self, config: TourConfig, camera: CameraModel, potentials: Potentials) -> None:
+        self.potentials = potentials
+        super().__init__(config, camera)
+
+    def reset(self, seed: int = 0) -> None:
+        """Forgets the last episode; the draws of the controls come from `seed`."""
+        super().reset(seed)
+        self.potentials.reset(seed)
+
+    def _factor(self, ground: Ground, known: Frontiers) -> Float32[np.ndarray, "rows cols"]:
+        """Returns the factor of each frontier cell for the weight of its stop."""
+        potential = np.maximum(self.potentials.of(ground, known.free.frame, known.cells), 0.0)
+        return (np.float32(self.config.potential_floor) + potential) ** np.float32(self.config.potential_power)
 
 
 def first_of_best_order(
@@ -259,12 +342,13 @@ def _orders(count: int) -> Int[np.ndarray, "orders n"]:
     return np.array(list(itertools.permutations(range(count))), np.intp)
 
 
-def _parts(mask: Bool[np.ndarray, "rows cols"], least_cells: float) -> list[Bool[np.ndarray, "rows cols"]]:
-    """Returns the 8-connected parts of a mask with at least this many cells."""
-    labels, sizes = numbered_parts(mask)
-    return [labels == part for part in range(1, len(sizes)) if sizes[part] >= least_cells]
-
-
-def _nearest_m(field_m: Float32[np.ndarray, "rows cols"], cells: Bool[np.ndarray, "rows cols"]) -> float:
-    """Returns the least value of a field in some cells."""
-    return float(field_m[cells].min())
+def _parts(
+    mask: Bool[np.ndarray, "rows cols"], least_cells: float
+) -> list[tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]]:
+    """Returns the rows and columns of the 8-connected parts of a mask with at least this many cells."""
+    numbers, sizes = numbered_parts(mask)
+    rows, cols = np.nonzero(mask)
+    order = np.argsort(numbers[rows, cols], kind="stable")
+    ends = np.cumsum(sizes[1:])[:-1]
+    parts = zip(np.split(rows[order], ends), np.split(cols[order], ends), strict=True)
+    return [(rows, cols) for rows, cols in parts if rows.size >= max(least_cells, 1)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
@@ -104,6 +105,8 @@ class TrackSeeker:
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
         self._went_nearer = False
+        self._pose = Pose(0.0, 0.0, 0.0)
+        self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         self._pursuit: tuple[Pose, int] | None = None  # where and at which step the count of patience began
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
@@ -115,7 +118,7 @@ class TrackSeeker:
         self.tracks.add(self.segmenter.posteriors(observation), observation["depth"], pose, self.goal)
         least_voxels = 1 if self.verdicts.exact else self.config.tracks.least_voxels
         self.probability = self.tracks.probabilities(self.goal, least_voxels)
-        self.step = step
+        self.step, self._pose = step, pose
         if self._decide(pose):
             navmap.rejected[:] = self.cells_of(navmap, self.verdicts.rejected)  # for pictures of the map
 
@@ -173,6 +176,7 @@ class TrackSeeker:
             return True
         if self.pursued is not None:
             self.verdicts.looked(self.pursued)
+            self._note_hidden(self.pursued)
             self.pursued = None
         return False
 
@@ -278,11 +282,12 @@ class TrackSeeker:
         """Returns the approach to a place to look at a track from; None: it was decided on, or it is set aside."""
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
+        looked_from = seen_from | self._hidden.get(track, False)
         for part in (window, self._known(navmap)):
             view, mask = navmap.view(part), cells[part.index]
             if not mask.any():
                 continue
-            found = look_at(view, nearest(mask), middle_xy_m, seen_from, pose, self.finder, self.config.look)
+            found = look_at(view, nearest(mask), middle_xy_m, looked_from, pose, self.finder, self.config.look)
             if found is not None:
                 return _on_map(found, part)
         if self.verdicts.looks.get(track, 0) or seen_from.any():
@@ -292,6 +297,15 @@ class TrackSeeker:
         if found is None:
             self._set_aside([track])
         return found
+
+    def _note_hidden(self, track: int) -> None:
+        """Remembers that something hides a track from here, if this look at it did not show it."""
+        tracks = self._of_episode()
+        evidence, (x_m, y_m) = tracks.evidence, tracks.track(track).middle_xy_m
+        bearing_rad = math.atan2(self._pose.y_m - y_m, self._pose.x_m - x_m)
+        sector = int(evidence.sector_of(np.array([bearing_rad]))[0])
+        if not evidence.near_sectors(track)[sector]:
+            self._hidden.setdefault(track, np.zeros(evidence.config.sectors, np.bool_))[sector] = True
 
     def _is_due(self, track: int) -> bool:
         return self.step >= self._retry_step.get(track, 0)

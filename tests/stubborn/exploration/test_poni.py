@@ -19,26 +19,11 @@ from stubborn.navmap import NavMap
 from stubborn.network_files import read_weights
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.ground import ground, route_of
+from tests.helpers.slopes import Slopes
 
 SMALL = PoniNetConfig(cells=32, pool=8, widths=(4, 4, 4, 4))
 BED = GOAL_CATEGORIES.index("bed")
 START = Pose(0.5, 0.0, 0.0)
-
-
-class Slopes:
-    """Predicts potentials that rise evenly across the patch: the area to the west, the bed to the east."""
-
-    cells, pool = 64, 4
-
-    def __init__(self) -> None:
-        self.shown: list[np.ndarray] = []
-
-    def predict(self, channels: np.ndarray) -> np.ndarray:
-        self.shown.append(channels.copy())
-        maps = np.zeros((MAPS, self.cells, self.cells), np.float32)
-        maps[0] = np.linspace(1.0, 0.0, self.cells)
-        maps[1 + BED] = np.linspace(0.0, 1.0, self.cells)
-        return maps
 
 
 def explorer(**options: object) -> tuple[PoniExplorer, Slopes]:

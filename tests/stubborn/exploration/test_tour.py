@@ -13,13 +13,24 @@ from sim.geometry.pose import Pose
 from sim.interface import ConfigError, RobotModel
 from stubborn import agents
 from stubborn.agent import StubbornAgent
+from stubborn.exploration.frontiers import Frontiers
 from stubborn.exploration.glance import GlanceConfig
-from stubborn.exploration.tour import TourConfig, TourExplorer, first_of_best_order
+from stubborn.exploration.potentials import PotentialConfig, Potentials
+from stubborn.exploration.tour import (
+    InformedTourExplorer,
+    TourConfig,
+    TourExplorer,
+    _Paths,
+    _Stop,
+    first_of_best_order,
+)
 from stubborn.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 from tests.helpers.ground import ground, route_of
+from tests.helpers.slopes import Slopes
 
+ALPHA = PotentialConfig(alpha=0.1)
 NO_GLANCE = GlanceConfig(gain_per_turn_m2=math.inf)
 
 
@@ -79,6 +90,35 @@ def test_a_large_opening_comes_before_a_small_pocket_that_is_nearer():
     assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) < -3.0
 
 
+@pytest.mark.parametrize(("goal", "wanted_x_m"), [("bed", 4.0), ("chair", -4.0)])
+def test_potentials_put_the_frontier_first_behind_which_the_goal_is(goal: str, wanted_x_m: float):
+    explore = InformedTourExplorer(
+        TourConfig(glance=NO_GLANCE, near_m=0.0, potentials=ALPHA), SMALL_CAMERA, Potentials(ALPHA, Slopes())
+    )
+    navmap = corridor()
+    here = Pose(-math.copysign(0.8, wanted_x_m), 0.0, math.radians(90.0))  # nearer to the other end
+    route = route_of(explore, ground(navmap, here, navmap.frame.window_at(0.0, 0.0, 300), goal=goal))
+    x_m, _ = route.frame.centres(*np.nonzero(route.goal.cells))
+    assert x_m.mean() == pytest.approx(wanted_x_m, abs=0.2)
+
+
+def test_paths_on_blocks_are_about_as_long_as_on_cells():
+    navmap = corridor()
+    rectangle(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a way around a wall
+    window = navmap.frame.window_at(0.0, 0.0, 300)
+    known = Frontiers.of(ground(navmap, Pose(0.0, 0.0, 0.0), window), own_known_m=1.0, margin_cells=20)
+    start = known.free.frame.cell(0.0, -0.5)
+    rows, cols = np.nonzero(known.cells & (known.free.frame.centres(*np.indices(known.cells.shape))[0] > 3.0))
+    lengths_m = []
+    for block_cells in (1, 4):
+        paths = _Paths(known, block_cells)
+        field_m = paths.from_cells(np.array([start[0]]), np.array([start[1]]))
+        lengths_m.append(paths.nearest_m(field_m, _Stop(rows, cols, 1.0)))
+        assert paths.unknown_m2(rows, cols, 2.0) == pytest.approx(6.3, abs=1.5)
+    assert 4.2 < lengths_m[0] < 4.8
+    assert lengths_m[1] == pytest.approx(lengths_m[0], abs=0.3)
+
+
 def test_ground_seen_from_afar_only_is_visited_when_nothing_is_unknown():
     navmap = corridor()
     for x_m in ((-4.1, -4.0), (4.0, 4.1)):
@@ -129,5 +169,9 @@ def test_the_agent_finds_a_bed_two_rooms_away_by_a_tour():
 def test_options_that_make_no_sense_are_refused():
     with pytest.raises(ConfigError, match="most_stops must be 1 to 8, got 9"):
         TourConfig(most_stops=9)
+    with pytest.raises(ConfigError, match="block_cells >= 1"):
+        TourConfig(block_cells=0)
+    with pytest.raises(ConfigError, match=r"PotentialConfig.alpha must lie in \[0, 1\], got 2"):
+        PotentialConfig(alpha=2.0)
     with pytest.raises(ConfigError, match=r"0 < arrived_m <= spent_m, got 0\.5 and 0\.1"):
         TourConfig(arrived_m=0.5, spent_m=0.1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +15,7 @@ from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+from stubborn.target import track_seeker
 from stubborn.target.approach import Approach
 from stubborn.target.fusion import Fusion
 from stubborn.target.look import LookConfig
@@ -167,6 +169,23 @@ def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
     run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=30)
     assert seeker.tracks is not None
     return agent, seeker, seeker.tracks, int(np.argmax(seeker.probability))
+
+
+def test_a_look_that_something_hid_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, tracks, track = tracked()
+    x_m, y_m = tracks.track(track).middle_xy_m
+    seen = tracks.evidence.near_sectors(track)
+    behind = int(np.flatnonzero(~seen)[0])
+    bearing_rad = behind * math.tau / seen.size
+    seeker._accepted = []
+    seeker._pose = Pose(x_m + 2.0 * math.cos(bearing_rad), y_m + 2.0 * math.sin(bearing_rad), 0.0)
+    seeker.pursued = track
+    assert not seeker.judge(agent.navmap, (0, 0))
+    looked_from: list[np.ndarray] = []
+    monkeypatch.setattr(track_seeker, "look_at", lambda view, cells, middle, sides, *_: looked_from.append(sides))
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    seeker._look(agent.navmap, window, seeker._pose, track)
+    assert set(np.flatnonzero(looked_from[0]).tolist()) == {*np.flatnonzero(seen).tolist(), behind}
 
 
 def test_the_nearest_of_equally_good_tracks_is_approached_and_a_much_better_one_before_it():
