@@ -15,7 +15,7 @@ import functools
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +51,8 @@ class Args:
     plans: tuple[Path, ...]
     """Folders of plans (tools/export_plans.py)."""
     explorers: tuple[str, ...] = ("corners", RANDOM, "semexp")
-    """Names of explorers, with fields of their configuration: semexp:semantics=shuffled,goal=wrong."""
+    """Names of explorers, with fields of their configuration: semexp:semantics=shuffled,goal=wrong or
+    informed-tour:potentials.goal=wrong."""
     weights: Path | None = None
     """File of weights of semexp; None: those that ship."""
     houses: str = "held-back"
@@ -109,10 +110,20 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
     if name == "semexp" and weights is not None:
         values.setdefault("weights", str(weights))
     config = EXPLORERS[name]
-    unknown = sorted(set(values) - set(vars(config)))
-    if unknown:
-        raise ConfigError(f"--explorers: '{name}' has no field '{unknown[0]}'. It has: {', '.join(vars(config))}.")
-    return convert(vars(config) | values, type(config), where=f"--explorers {text}", strict=False)
+    for field, value in values.items():
+        config = _with_field(config, field.split("."), value, text)
+    return config
+
+
+def _with_field(config: Any, path: Sequence[str], value: str, text: str) -> Any:
+    """Returns a configuration with another value of one field, which may be one of a nested configuration."""
+    where = f"--explorers {text}"
+    if not is_dataclass(config) or path[0] not in vars(config):
+        fields = ", ".join(vars(config)) if is_dataclass(config) else "no fields"
+        raise ConfigError(f"{where}: there is no field '{path[0]}'. There is: {fields}.")
+    if len(path) > 1:
+        return replace(config, **{path[0]: _with_field(vars(config)[path[0]], path[1:], value, text)})
+    return convert(vars(config) | {path[0]: value}, type(config), where=where, strict=False)
 
 
 def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> dict[str, Any]:

@@ -119,7 +119,12 @@ def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path
     ("explorer", "message"),
     [
         ("corner", "there is no 'corner'. There is: corners, "),
-        ("semexp:colour=red", "'semexp' has no field 'colour'. It has: weights, "),
+        ("semexp:colour=red", "semexp:colour=red: there is no field 'colour'. There is: weights, "),
+        (
+            "informed-tour:potentials.colour=red",
+            "there is no field 'colour'. There is: weights, alpha, goal, semantics",
+        ),
+        ("tour:turn_m.colour=red", "there is no field 'colour'. There is: no fields"),
         ("semexp:goal=red", "--explorers semexp:goal=red"),
     ],
 )
