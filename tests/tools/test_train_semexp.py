@@ -120,7 +120,7 @@ def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path
     [
         ("corner", "there is no 'corner'. There is: corners, "),
         ("semexp:colour=red", "semexp:colour=red: there is no field 'colour'. There is: weights, "),
-        ("informed-tour:potentials.colour=red", "no field .colour.. There is: weights, alpha, goal, semantics"),
+        (
             "informed-tour:potentials.colour=red",
             "there is no field 'colour'. There is: weights, alpha, goal, semantics",
         ),
