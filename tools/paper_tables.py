@@ -185,6 +185,7 @@ TABLES: Mapping[str, PaperTable] = {
             "stubborn",
             "frontier-avoid",
             "stubborn --explorer tour",
+            "stubborn --explorer informed-tour",
             "poni",
             "semexp",
             *(f"semexp --config agent.explorer.{control}" for control in CONTROLS),

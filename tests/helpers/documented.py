@@ -291,6 +291,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
+    f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
+        f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
     f"{_RUN} --agent cloned --semantics gt": (
         f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
