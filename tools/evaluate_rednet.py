@@ -33,7 +33,7 @@ from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.breakdown import Breakdown
 from stubborn.segmentation.calibration import Calibration, fit_calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
-from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, stored_block_px
+from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
 from stubborn.segmentation.evaluation import Iou, Reliability, confusion
 from stubborn.segmentation.network import NetworkSegmenter
 from stubborn.segmentation.networks import Network
@@ -54,6 +54,8 @@ class Args:
     """Folders of shards of one size (tools/generate_views.py), of houses that the network was not trained on."""
     weights: Path | None = None
     """Weights of the network; None: the shipped ones."""
+    count: cli.Amount = 0
+    """Number of views of each folder, spread over its shards; 0: all."""
     calibrate: bool = False
     """Fit the calibration and write it to the file of the weights."""
     card: cli.OutFile | None = None
@@ -110,7 +112,7 @@ def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
         ConfigError: all views are of one house, or they are stored at a lower resolution than the network needs.
     """
     block_px = int(metadata.get("block_px", 1))
-    seen = predict(args.views, model, block_px)
+    seen = predict(args.views, model, block_px, args.count)
     houses = sorted(seen.samples)
     if len(houses) < 2:
         raise ConfigError(
@@ -137,8 +139,8 @@ def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
     )
 
 
-def predict(folders: Sequence[Path], model: Network, block_px: int) -> Predictions:
-    """Returns the predictions of a network on the views of some folders, each view computed once.
+def predict(folders: Sequence[Path], model: Network, block_px: int, count: int = 0) -> Predictions:
+    """Returns the predictions of a network on the views of some folders, or on `count` of each; each is computed once.
 
     Raises:
         ConfigError: views are stored at a lower resolution than the network needs.
@@ -149,8 +151,9 @@ def predict(folders: Sequence[Path], model: Network, block_px: int) -> Predictio
         before = seen.matrix.copy()
         shards = list_shards(folder)
         stored_px = stored_block_px(shards)
-        for shard in shards:
-            _add_views(seen, model, list(read_shard(shard)), block_px, stored_px)
+        parts = [spread_views(shards, count)] if count else (list(read_shard(shard)) for shard in shards)
+        for views in parts:
+            _add_views(seen, model, views, block_px, stored_px)
         seen.by_folder[folder.name] = Iou.of(seen.matrix - before).goals
     return seen
 

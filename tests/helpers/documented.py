@@ -291,6 +291,17 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
+    f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 6300 --houses 24 "
+    "--out runs/plans/large_new": (
+        *_PLANS,
+    ),
+    f"{PYTHON} tools/compare_explorers.py --plans runs/plans/large_new --houses all --episodes 96 --seed 11 "
+    "--explorers corners tour poni informed-tour informed-tour:potentials.goal=wrong "
+    "informed-tour:potentials.semantics=none": (
+        *_PLANS,
+        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 "
+        "--explorers informed-tour:potentials.goal=wrong",
+    ),
     f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
@@ -499,6 +510,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
         f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --calibrate --card {{tmp}}/card.md "
         "--weights {tmp}/rednet.safetensors",
+    ),
+    f"{PYTHON} tools/evaluate_rednet.py --count 400 --views runs/v/train runs/v/wide runs/v/imported runs/v/imported2 "
+    "runs/v/val runs/v/transfer": (
+        _VIEWS.replace("shard 4", "shard 2"),
+        f"{PYTHON} tools/evaluate_rednet.py --count 3 --views {{tmp}}/views",
     ),
     f"{PYTHON} tools/worst_objects.py --views views_val --out worst.png": (
         _VIEWS,

@@ -55,6 +55,8 @@ def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path
     assert measured.views == 8
     assert measured.after.error < 0.5 * measured.before.error
     assert 0.0 <= measured.iou.goals <= 1.0
+    some = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1, count=3), model, metadata)
+    assert some.views == 6
     assert measured.frame_ms > 0.5
     text = card.read_text()
     assert "| number of views | 8 |" in text
