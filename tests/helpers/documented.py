@@ -293,13 +293,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 6300 --houses 24 "
     "--out runs/plans/large_new": (
-        *_PLANS,
+        f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 6300 --houses 1 "
+        "--out {tmp}/plans",
     ),
     f"{PYTHON} tools/compare_explorers.py --plans runs/plans/large_new --houses all --episodes 96 --seed 11 "
     "--explorers corners tour poni informed-tour informed-tour:potentials.goal=wrong "
     "informed-tour:potentials.semantics=none": (
         *_PLANS,
-        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 "
+        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
         "--explorers informed-tour:potentials.goal=wrong",
     ),
     f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
