@@ -118,7 +118,7 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
 def _with_field(config: Any, path: Sequence[str], value: str, text: str) -> Any:
     """Returns a configuration with another value of one field, which may be one of a nested configuration."""
     where = f"--explorers {text}"
-    if not is_dataclass(config) or path[0] not in vars(config):
+    if not is_dataclass(config) or isinstance(config, type) or path[0] not in vars(config):
         fields = ", ".join(vars(config)) if is_dataclass(config) else "no fields"
         raise ConfigError(f"{where}: there is no field '{path[0]}'. There is: {fields}.")
     if len(path) > 1:
