@@ -19,6 +19,7 @@ from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.interface import GOAL_CATEGORIES, Agent, AgentSpec, Segmenter
+from sim.memory import give_large_blocks_pages_of_their_own
 from sim.sensors.sensor import Sensor
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
@@ -58,6 +59,7 @@ class EpisodeRunner:
     """Runs episodes in one process; see `sim.evaluation.workers`."""
 
     def __init__(self, options: RunOptions) -> None:
+        give_large_blocks_pages_of_their_own()
         self._options = options
         self._spec = find_agent(options.agent)
         parts = build_parts(options, watched=selection.any_selected(options))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
 from collections import OrderedDict
 from collections.abc import Callable
 
 from sim.houses.house import House
 from sim.interface import CameraModel
+from sim.memory import return_freed_memory
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.sensors.gloss import geom_gloss
@@ -59,7 +58,7 @@ class SceneCache:
             return self._scenes[house]
         while len(self._scenes) >= self._size:
             self._scenes.popitem(last=False)[1].close()
-            _return_freed_memory()
+            return_freed_memory()
         self._scenes[house] = self._make(house)
         return self._scenes[house]
 
@@ -67,9 +66,3 @@ class SceneCache:
         """Frees all scenes."""
         while self._scenes:
             self._scenes.popitem()[1].close()
-
-
-def _return_freed_memory() -> None:
-    """Returns freed memory to the system; glibc would keep tens of megabytes of a house, in ever smaller pieces."""
-    with contextlib.suppress(OSError, AttributeError):  # not glibc
-        ctypes.CDLL(None).malloc_trim(0)
