@@ -6,8 +6,9 @@ import contextlib
 import ctypes
 
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3  # malloc.h
-_APART_BYTES = 1_000_000
-"""Blocks from this size on get pages of their own: images, layers of maps, activations of a network."""
+_APART_BYTES = 4_000_000
+"""Blocks from this size on get pages of their own: layers of maps, activations of a network. With 1 MB also the images
+of a frame would, and new pages for them cost 8 ms a step."""
 _KEPT_BYTES = 16_000_000
 """So much freed memory at the end of the heap is kept for the next blocks."""
 
@@ -16,8 +17,7 @@ def give_large_blocks_pages_of_their_own() -> None:
     """Lets the system have each large block back as soon as it is freed.
 
     By itself glibc stops this after the first large block: it then puts blocks of up to 32 MB on the heap, where
-    smaller ones between them keep freed ones from being returned. For a worker with a network the difference is
-    60 MB, and no time per frame (docs/performance.md).
+    smaller ones between them keep freed ones from being returned (docs/performance.md has the difference).
     """
     with contextlib.suppress(OSError, AttributeError):  # not glibc
         libc = ctypes.CDLL(None)

@@ -76,7 +76,7 @@ class Allowed:
         common = Path(os.path.commonpath((target, self.file)))
         levels = len(self.file.parent.relative_to(common).parts)
         if levels <= MOST_LEVELS_UP and len(common.parts) > 1:
-            return f"If you trust this file, allow the folder of both: --root '{common}'."
+            return f"If you trust this file, give it by --house and allow the folder of both: --root '{common}'."
         return "A house may use files of its own folder, and those of the folder given with --root."
 
 

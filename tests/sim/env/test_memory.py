@@ -89,7 +89,7 @@ def test_maps_take_no_memory_for_unseen_parts() -> None:
     assert float(ended.stdout) < 24, ended.stdout  # all layers have 68
 
 
-FRAMES = """
+LAYERS = """
 import numpy as np
 
 from sim.memory import give_large_blocks_pages_of_their_own
@@ -98,20 +98,20 @@ from tests.sim.env.test_memory import resident_mb
 give_large_blocks_pages_of_their_own()
 np.ones(30_000_000, np.uint8)  # from now on malloc would put blocks up to this size on the heap
 before_mb = resident_mb()
-images, notes = [], []
-for _ in range(40):
-    images.append(np.ones(2_000_000, np.uint8))
+layers, notes = [], []
+for _ in range(20):
+    layers.append(np.ones(5_000_000, np.uint8))
     notes.append(np.ones(5_000, np.uint8))  # keeps the heap from shrinking
-assert resident_mb() - before_mb > 60
-images.clear()
+assert resident_mb() - before_mb > 80
+layers.clear()
 print(resident_mb() - before_mb)
 """
 
 
-def test_freed_images_are_returned_though_small_blocks_between_them_live_on() -> None:
+def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() -> None:
     """In a process of its own, because the switch is for a whole process."""
-    ended = subprocess.run([sys.executable, "-c", FRAMES], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert float(ended.stdout) < 10, ended.stdout  # the images have 80
+    ended = subprocess.run([sys.executable, "-c", LAYERS], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert float(ended.stdout) < 10, ended.stdout  # the layers have 100
 
 
 @pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
