@@ -12,8 +12,8 @@ and detector are the same. --minutes 0 runs no episode and fits the existing log
 finds the rest of an object again after such a rejection: of the true candidates of an episode within 2 m of each other
 only the first counts, and so for the false ones.
 
-Then each method of verification is fitted for each goal category, and pooled for those with too few true or false
-candidates, and written as JSON with the counts and its quality on episodes left out (`stubborn.target.verifier_fit`).
+Then each method of verification is fitted and written as JSON with the counts and its quality on houses left out
+(`stubborn.target.verifier_fit`).
 Houses of val and test are for --judge only.
 """
 
@@ -66,7 +66,7 @@ class Args(LogOptions):
     max_steps: cli.Count = 200
     """Steps of an episode; an agent never verifies what it first finds after step 200."""
     least_of_either: cli.Count = 20
-    """A category with fewer true or fewer false candidates uses the pooled classifier."""
+    """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
     out: cli.OutFile | None = None
     """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
 
@@ -197,7 +197,7 @@ def command(args: Args, episodes: int) -> str:
 
 
 def report(content: Mapping[str, Any]) -> None:
-    """Prints the counts, and the quality of each method on episodes left out."""
+    """Prints the counts, and the quality of each method on houses left out."""
     print(f"{content['episodes']} episodes")
     own = content["methods"]["naive-bayes"]["categories"]
     for goal, pair in content["candidates"].items():
@@ -206,7 +206,11 @@ def report(content: Mapping[str, Any]) -> None:
     for method, fitted in content["methods"].items():
         left_out = dict(fitted["left_out"])
         rows = left_out.pop("by_probability")
-        print(f"{method}, on episodes left out: " + ", ".join(f"{key} {value}" for key, value in left_out.items()))
+        bar = fitted.get("least_probability", 0.5)
+        print(
+            f"{method}, accepted above {bar}, on houses left out: "
+            + ", ".join(f"{key} {value}" for key, value in left_out.items())
+        )
         for row in rows:
             print("  " + ", ".join(f"{key} {value}" for key, value in row.items()))
 

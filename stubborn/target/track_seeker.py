@@ -104,10 +104,15 @@ class TrackSeeker:
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
+        self._left_spots: list[
+            tuple[float, float, int]
+        ] = []  # where pursuit got nowhere, and until which step it waits
         self._went_nearer = False
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
-        self._pursuit: tuple[Pose, int] | None = None  # where and at which step the count of patience began
+        self._pursuit: tuple[Pose, int] | None = (
+            None  # where the count of patience began, and steps of pursuit since then
+        )
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
@@ -131,12 +136,11 @@ class TrackSeeker:
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress, another one."""
         found = self._pursue(navmap, window, pose, step)
-        if found is not None and self._is_stuck(pose, step):
+        if self._is_stuck(pose, pursuing=found is not None):
+            self._leave_spot()
             self.postpone(navmap, step)
             self.pursued = None
             found = self._pursue(navmap, window, pose, step)
-        if found is None:
-            self._pursuit = None
         return found
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
@@ -149,7 +153,7 @@ class TrackSeeker:
                 return found
             self._set_aside(self._targets)
         self._targets = []
-        doubtful = [t for t in self.verdicts.doubtful if self._is_due(t)]
+        doubtful = [t for t in self.verdicts.doubtful if self._is_due(t) and not self._is_at_left_spot(t)]
         while doubtful:
             track = self._best_doubtful(doubtful, pose)
             found = self._look(navmap, window, pose, track)
@@ -229,14 +233,18 @@ class TrackSeeker:
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
         return rejected != self.verdicts.rejected
 
-    def _is_stuck(self, pose: Pose, step: int) -> bool:
-        """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again."""
+    def _is_stuck(self, pose: Pose, *, pursuing: bool) -> bool:
+        """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again.
+
+        Steps between in which it pursued nothing do not count, and do not end the count: a track that only one of two
+        headings shows would otherwise turn the robot to and fro.
+        """
         look = self.config.look
         if self._pursuit is None or pose.distance_to(self._pursuit[0]) > look.patience_m:
-            self._pursuit = pose, step
-        stuck = step - self._pursuit[1] >= look.patience_steps
-        if stuck:
-            self._pursuit = pose, step
+            self._pursuit = pose, 0
+        begin, steps = self._pursuit
+        stuck = pursuing and steps >= look.patience_steps
+        self._pursuit = (pose, 0) if stuck else (begin, steps + pursuing)
         return stuck
 
     def _best_accepted(self, pose: Pose) -> list[int]:
@@ -306,6 +314,19 @@ class TrackSeeker:
         sector = int(evidence.sector_of(np.array([bearing_rad]))[0])
         if not evidence.near_sectors(track)[sector]:
             self._hidden.setdefault(track, np.zeros(evidence.config.sectors, np.bool_))[sector] = True
+
+    def _leave_spot(self) -> None:
+        """Lets the doubtful tracks around the pursued one wait too: an object may come back as another track."""
+        if self.pursued is not None:
+            place = self._of_episode().track(self.pursued).middle_xy_m
+            self._left_spots.append((*place, self.step + self.target.retry_after_steps))
+
+    def _is_at_left_spot(self, track: int) -> bool:
+        x_m, y_m = self._of_episode().track(track).middle_xy_m
+        return any(
+            self.step < until and math.hypot(x_m - spot_x_m, y_m - spot_y_m) <= self.config.look.patience_m
+            for spot_x_m, spot_y_m, until in self._left_spots
+        )
 
     def _is_due(self, track: int) -> bool:
         return self.step >= self._retry_step.get(track, 0)

@@ -38,7 +38,9 @@ class TrackConfig:
     top_m: float = 2.2
     """Higher points belong to no track."""
     hot: float = 0.25
-    """A pixel is labelled as the goal from this probability on, though another class may be more probable."""
+    """A pixel is labelled as the goal from this probability on, though another class may be more probable, and so is a
+    track when regions are assigned to tracks. Otherwise what was labelled as the goal in one frame would be merged in
+    the next one with the object that it lies on, and begin again as a new track."""
     least_pixels: int = 12
     """Smaller regions of a frame are no detections."""
     least_pixels_of_others: int = 40
@@ -222,24 +224,31 @@ class Tracks:
         c, track_of = self.config, np.zeros(len(labels), np.int64)
         takes_over = np.zeros(len(labels), np.bool_)
         pixels, shown = overlap.sum(axis=1), overlap.sum(axis=0)
+        category = self._categories(overlap.shape[1], goal)
         for region in np.flatnonzero(pixels >= c.least_pixels).tolist():
             owned = overlap[region, 1:]
             best = 1 + int(np.argmax(owned)) if owned.size else 0
             if best and overlap[region, best] >= c.same_share * pixels[region]:
                 small = overlap[region, best] < c.part_share * shown[best]
-                one_is_goal = (labels[region] == goal) != (int(np.argmax(self.evidence.probability[best])) == goal)
+                one_is_goal = (labels[region] == goal) != (category[best] == goal)
                 takes_over[region] = small and one_is_goal
-                track_of[region] = self._begin() if takes_over[region] else self._merged(overlap[region], best)
+                track_of[region] = (
+                    self._begin() if takes_over[region] else self._merged(overlap[region], best, category)
+                )
             elif overlap[region, 0] >= (c.least_pixels if labels[region] == goal else c.least_pixels_of_others):
                 track_of[region] = self._begin()
         return track_of, takes_over
 
-    def _merged(self, overlap: Int[np.ndarray, " tracks"], best: int) -> int:
+    def _categories(self, tracks: int, goal: int) -> Int[np.ndarray, " tracks"]:
+        """Returns the category by which the first tracks are told apart: that of the goal from `hot` on."""
+        probability = self.evidence.probability[:tracks]
+        return np.where(probability[:, goal] >= self.config.hot, goal, np.argmax(probability, axis=1))
+
+    def _merged(self, overlap: Int[np.ndarray, " tracks"], best: int, category: Int[np.ndarray, " tracks"]) -> int:
         """Returns the track of a region, after tracks of the same category that it shows as one object are merged.
 
         The oldest one stays, with what was decided on it.
         """
-        category = np.argmax(self.evidence.probability[: len(overlap)], axis=1)
         shown = overlap >= max(self.config.merge_share * overlap.sum(), self.config.least_pixels)
         shown[0], shown[best] = False, True
         same = np.unique(self._now[np.flatnonzero(shown & (category == category[best]))]).tolist()

@@ -2,8 +2,8 @@
 
 The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
 kind of segmentation. They are shipped as `stubborn/target/verifiers/<kind>.json`, which also holds the command that
-fitted them (`tools/train_verifier.py`) and the quality of each method on episodes left out. A category with too few
-examples uses the pooled classifier.
+fitted them (`tools/train_verifier.py`) and the quality of each method on houses left out. A category that is not in the
+file uses the pooled classifier.
 """
 
 from __future__ import annotations
@@ -56,6 +56,7 @@ class _Method(msgspec.Struct):
 
     pooled: dict[str, Any]
     categories: dict[str, dict[str, Any]]
+    least_probability: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] = 0.5
 
 
 class _File(msgspec.Struct):
@@ -111,6 +112,7 @@ class FittedVerifier:
     pooled: Classifier
     """Classifier of all other goal categories."""
     least_probability: float = 0.5
+    """Of `logistic` and `threshold` the fit chooses it by the cost of a wrong STOP; the paper's is one half."""
     may_refuse = True
 
     @classmethod
@@ -132,7 +134,8 @@ class FittedVerifier:
         for name, each in checked.items():
             convert(each, kind, where=f"{where}, method '{method}', '{name}'")
         try:
-            return cls({name: make(each) for name, each in content.categories.items()}, make(content.pooled))
+            own = {name: make(each) for name, each in content.categories.items()}
+            return cls(own, make(content.pooled), content.least_probability)
         except ConfigError as error:
             raise ConfigError(f"{where} is not what tools/train_verifier.py writes: {error}") from None
 

@@ -163,6 +163,33 @@ def test_an_object_that_is_pursued_on_one_spot_is_set_aside_and_driving_begins_t
     assert aside == [119]
 
 
+def test_pursuit_that_begins_anew_in_every_second_step_ends_too(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker = agent_with(0.97, LookConfig(patience_steps=10, patience_m=1.0))
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    aside: list[int] = []
+    turns = iter(range(100))
+    monkeypatch.setattr(seeker, "_pursue", lambda *_: Approach(None, 0.0, (0, 0)) if next(turns) % 2 else None)
+    monkeypatch.setattr(seeker, "postpone", lambda navmap, step: aside.append(step))
+    for step in range(30):
+        seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step)
+    assert aside == [21]  # the eleventh step of pursuit
+
+
+def test_around_a_place_where_pursuit_got_nowhere_doubtful_tracks_wait(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, _, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    seeker._accepted, seeker.verdicts.doubtful, seeker._pursuit = [], [track], None
+    monkeypatch.setattr(seeker, "_look", lambda *_: Approach(None, 0.0, (0, 0)))
+    monkeypatch.setattr(seeker, "_set_aside", lambda tracks: None)  # it comes back as another track
+    found = []
+    first_step = seeker.step
+    for step in range(first_step, first_step + 80):
+        seeker.step = step
+        found.append(seeker.approach(agent.navmap, window, Pose(0.0, 0.0, 0.0), step) is not None)
+    patience, wait = seeker.config.look.patience_steps, seeker.target.retry_after_steps
+    assert found == [True] * patience + [False] * wait + [True] * (80 - patience - wait)
+
+
 def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
     """Returns an agent that has seen the table, its tracks, and the number of the most probable one."""
     agent, seeker = agent_with(0.97)

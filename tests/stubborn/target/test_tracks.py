@@ -84,6 +84,24 @@ def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
     assert len(of(tracks, "table")) == 1
 
 
+def test_a_part_that_may_be_the_goal_stays_one_track_though_another_heading_shows_it_as_the_whole():
+    """Otherwise each heading would end it or begin it again, and no look at it would ever count."""
+    tracks = tracked()
+    table, cushion = (MPCAT40_ID[name] - 1 for name in ("table", "cushion"))
+    look(tracks, VIEWS[0], TABLE, goal="cushion")
+    for probability in (0.45, 0.2) * 8:
+        world = GridWorld([WALL, TABLE], VIEWS[0], camera=SMALL_CAMERA)
+        observation = world.observe("cushion")
+        posteriors = np.array(GroundTruthSegmenter().posteriors(observation))
+        on_table = posteriors[table] > 0.5
+        part = on_table & (np.cumsum(on_table, axis=1) <= 0.3 * on_table.sum(axis=1, keepdims=True))
+        assert part.any()
+        posteriors[cushion][part], posteriors[table][part] = probability, 1.0 - probability
+        tracks.add(posteriors, observation["depth"], Pose(*VIEWS[0]), "cushion")
+    assert 0.25 < tracks.probabilities("cushion").max() < 0.45
+    assert tracks.count <= 4  # the wall and the table's sides may add one or two
+
+
 def test_what_is_hidden_is_not_judged():
     tracks = tracked()
     look(tracks, VIEWS[0], TABLE)

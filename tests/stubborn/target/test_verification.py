@@ -12,7 +12,7 @@ from sklearn.preprocessing import StandardScaler
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from stubborn.target.classifiers import Features, Logistic, NaiveBayes
 from stubborn.target.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
-from stubborn.target.verifier_fit import fit, judge_by_category
+from stubborn.target.verifier_fit import OPEN_SHARE, _candidates, expected_success, fit, judge_by_category
 
 IMPERFECT = SegmenterSpec()
 TRUE = SegmenterSpec(needs_verification=False)
@@ -30,12 +30,13 @@ def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tu
 
 
 def log_of(by_goal: dict[str, tuple[np.ndarray, np.ndarray]]) -> list[dict]:
-    """Lines of the tool's log, one candidate per episode."""
-    return [
+    """Lines of the tool's log, one candidate per episode, ten episodes per house."""
+    lines = [
         {"goal": goal, "steps": 30, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
         for goal, (features, truth) in by_goal.items()
         for row, true in zip(features, truth, strict=True)
     ]
+    return [{"house": f"house_{number // 10}", **line} for number, line in enumerate(lines)]
 
 
 def written(content: dict, folder: Path) -> FittedVerifier:
@@ -72,6 +73,59 @@ def test_the_other_methods_are_logistic_regressions_and_threshold_uses_the_mean_
     expected = LogisticRegression().fit(scaler.transform(x), truth).predict_proba(scaler.transform(x))[:, 1]
     ours = [logistic.probability("chair", Features(*row)) for row in features]
     np.testing.assert_allclose(ours, expected, atol=1e-3)
+
+
+def test_a_category_shifts_the_logistic_regression_by_what_its_candidates_warrant(tmp_path: Path):
+    chairs, (features, truth) = examples(400, 0.5, seed=11), examples(200, 0.5, seed=12)
+    false = features[~truth]
+    few, many = false[:4], false[:80]
+    content = fit(log_of({"chair": chairs, "sofa": (few, np.zeros(4, bool)), "bed": (many, np.zeros(80, bool))}), 20)
+    file = tmp_path / "kind.json"
+    file.write_text(json.dumps(content))
+    verifier = FittedVerifier.read(file, "logistic")
+    row = Features(20, 11.0, 0.7, 0.5)
+    pooled, sofa, bed = (verifier.probability(goal, row) for goal in ("toilet", "sofa", "bed"))
+    assert bed < sofa < pooled  # only false ones were met: of four sofas, and of eighty beds
+    assert verifier.probability("chair", row) > pooled
+
+
+def episode(number: int, *candidates: tuple[float, bool]) -> dict:
+    """A line with candidates of a mean score, far from each other."""
+    met = [[10.0, 10.0 * score, score, 0.3, float(true), 5.0 * i, 0.0] for i, (score, true) in enumerate(candidates)]
+    return {"goal": "bed", "house": f"house_{number}", "steps": 200, "candidates": met}
+
+
+def test_the_expected_success_is_that_of_stops_at_the_first_candidate_above_the_bar():
+    lines = [episode(0, (0.6, False), (0.9, True)), episode(1, (0.7, True)), episode(2)]
+    table = _candidates(lines)
+    probability = table.features[:, 2]
+    assert expected_success(probability, table, 0.5, 3) == pytest.approx((1 / 3) / (1 - OPEN_SHARE / 3))
+    assert expected_success(probability, table, 0.65, 3) == pytest.approx((2 / 3) / (1 - OPEN_SHARE / 3))
+    assert expected_success(probability, table, 0.95, 3) == 0.0
+
+
+@pytest.mark.parametrize(("next_one_is_true", "low"), [(0.95, False), (0.0, True)])
+def test_the_bar_is_higher_where_waiting_pays(tmp_path: Path, next_one_is_true: float, low: bool):
+    """Of the first, doubtful candidates 45 % are true; a sure one follows in most episodes or in none."""
+    rng = np.random.default_rng(0)
+    lines = []
+    for number in range(300):
+        doubtful = (float(rng.uniform(0.45, 0.55)), bool(rng.random() < 0.45))
+        sure = [(float(rng.uniform(0.9, 0.99)), True)] * bool(rng.random() < next_one_is_true)
+        lines.append(episode(number, doubtful, *sure))
+    if low:  # so that there are true and false ones to tell apart
+        lines += [episode(300 + number, (0.1, False)) for number in range(100)]
+    content = fit(lines, 20)
+    bar = content["methods"]["threshold"]["least_probability"]
+    assert (bar < 0.45) == low, bar
+    file = tmp_path / "kind.json"
+    file.write_text(json.dumps(content))
+    assert FittedVerifier.read(file, "threshold").least_probability == bar
+    assert FittedVerifier.read(file, "naive-bayes").least_probability == 0.5
+    content["methods"]["threshold"]["least_probability"] = 1.5
+    file.write_text(json.dumps(content))
+    with pytest.raises(ConfigError, match="least_probability"):
+        FittedVerifier.read(file, "threshold")
 
 
 def test_all_methods_are_judged_on_the_same_candidates_left_out():
@@ -143,7 +197,12 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     strong, weak = [20.0, 18.0, 0.98, 0.3], [12.0, 1.0, 0.6, 0.9]
     here, near, far = (0.0, 0.0), (1.0, 1.0), (4.0, 0.0)
     met = [(strong, 1.0, here), (weak, 1.0, near), (weak, 0.0, near), (weak, 0.0, here), (strong, 1.0, far)]
-    line = {"goal": "bed", "steps": 30, "candidates": [[*features, truth, *place] for features, truth, place in met]}
+    line = {
+        "goal": "bed",
+        "house": "house_0",
+        "steps": 30,
+        "candidates": [[*features, truth, *place] for features, truth, place in met],
+    }
     content = fit([line, line], 2)
     assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
