@@ -127,8 +127,8 @@ _TRANSFER = (
 )
 _UNSEEN = (
     *_MODELS,
-    f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --only-imported --first-seed 7000 --houses 1"
-    " --area-m2 60 --out {tmp}/unseen",
+    f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --furniture-split transfer --only-imported"
+    " --first-seed 7000 --houses 1 --area-m2 60 --out {tmp}/unseen",
     f"{PYTHON} tools/make_episodes.py --split {{tmp}}/unseen --recipe val --episodes 3",
 )
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
@@ -591,8 +591,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_verifier.py --semantics rednet --split val --episodes 1 --workers 1 --minutes 3 --judge"
         " --max-steps 20 --log {tmp}/log",
     ),
-    f"{PYTHON} tools/generate_houses.py --furniture runs/models --only-imported --first-seed 7000 --houses 24"
-    " --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
+    f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
+    " --first-seed 7000 --houses 24 --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
     f"{PYTHON} tools/make_episodes.py --split runs/unseen --recipe val --episodes 72": _UNSEEN,
     f"{PYTHON} tools/train_tracks.py --split runs/unseen --episodes 72": (
         *_UNSEEN,
