@@ -36,6 +36,9 @@ class LookConfig:
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
     """Directions less than this apart are one view."""
+    step_back_steps: int = 100
+    """With at least so many steps left a track above the bar that was only seen from nearer than 1.2 m, where the image
+    does not hold the whole of it, gets a look first."""
     per_metre: float = 0.03
     """A track a metre farther away must be this much more probable to come first."""
     steps_per_metre: float = 6.0
@@ -58,7 +61,7 @@ class LookConfig:
             )
         if not 0.0 < self.look_m[0] < self.look_m[1]:
             raise ConfigError(f"LookConfig.look_m must be two growing distances > 0 m, got {self.look_m}.")
-        for name in ("most_looks", "per_metre", "steps_per_metre", "patience_steps", "patience_m"):
+        for name in ("most_looks", "per_metre", "step_back_steps", "steps_per_metre", "patience_steps", "patience_m"):
             if not getattr(self, name) >= 0:
                 raise ConfigError(f"LookConfig.{name} must be >= 0, got {getattr(self, name)}.")
 
@@ -114,6 +117,8 @@ class Verdicts:
         in_time = c.steps_per_metre * distance_m <= steps_left
         passes = (probability >= self.bar) & (in_time | self.exact)
         remains = probability >= (1.0 - c.slack) * self.bar
+        for track in np.flatnonzero(passes & (distance_m <= evidence.config.rings_m[0])).tolist():
+            passes[track] = not self._needs_a_step_back(track, evidence, steps_left)
         self.accepted = {t for t in self.accepted if remains[t]} | set(np.flatnonzero(passes).tolist())
         self.rejected -= self.accepted
         least = np.full(len(probability), c.visit)
@@ -127,6 +132,12 @@ class Verdicts:
                 self.rejected.add(track)
             else:
                 self.doubtful.append(track)
+
+    def _needs_a_step_back(self, track: int, evidence: Evidence, steps_left: int) -> bool:
+        """Returns True for a near track that was never seen whole, if it has had no look yet and there is time."""
+        if self.exact or track in self.accepted or track in self.rejected or steps_left < self.config.step_back_steps:
+            return False
+        return self.looks.get(track, 0) == 0 and not evidence.near_sectors(track).any()
 
     def looked(self, track: int) -> None:
         """Counts a look at a track."""

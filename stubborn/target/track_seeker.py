@@ -303,6 +303,8 @@ class TrackSeeker:
             return None
         found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
         if found is None:
+            if self.probability[track] >= self.verdicts.bar:
+                self.verdicts.looked(track)  # there is no place to step back to: it is accepted as it is
             self._set_aside([track])
         return found
 

@@ -94,6 +94,15 @@ def test_an_accepted_track_remains_so_until_it_is_well_below_the_bar():
     assert [track.at(p) for p in (0.81, 0.75, 0.65, 0.75)] == ["accepted", "accepted", "doubtful", "doubtful"]
 
 
+def test_a_near_object_that_was_never_seen_whole_gets_a_look_before_it_is_accepted():
+    near = 1.0
+    assert Judged(distance_m=near).at(0.95) == "doubtful"
+    assert Judged(distance_m=near).at(0.95, 0, (0.0,)) == "accepted"
+    assert Judged(distance_m=near, looks=1).at(0.95) == "accepted"
+    assert Judged(distance_m=near).at(0.95, MAX_STEPS - 99) == "accepted"  # no time
+    assert Judged(distance_m=near, exact=True).at(0.95) == "accepted"
+
+
 def test_what_cannot_be_reached_any_more_is_not_accepted():
     assert Judged(distance_m=15.0).at(0.95, MAX_STEPS - 100) == "accepted"
     assert Judged(distance_m=18.0).at(0.95, MAX_STEPS - 100) == "doubtful"

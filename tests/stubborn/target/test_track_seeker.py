@@ -198,6 +198,22 @@ def tracked() -> tuple[StubbornAgent, TrackSeeker, Tracks, int]:
     return agent, seeker, seeker.tracks, int(np.argmax(seeker.probability))
 
 
+def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monkeypatch: pytest.MonkeyPatch):
+    agent, seeker, tracks, track = tracked()
+    window = agent.navmap.frame.window_at(0.0, 0.0, agent.config.window_cells)
+    never = np.zeros(tracks.evidence.config.sectors, np.bool_)
+    monkeypatch.setattr(tracks.evidence, "near_sectors", lambda _: never)
+    monkeypatch.setattr(track_seeker, "look_at", lambda *_: None)
+    monkeypatch.setattr(seeker, "_drive_in", lambda *_: None)
+    seeker.verdicts.looks.clear()
+    seeker.probability[track] = 0.5 * seeker.verdicts.bar
+    assert seeker._look(agent.navmap, window, Pose(0.0, 0.0, 0.0), track) is None
+    assert seeker.verdicts.looks == {}
+    seeker.probability[track] = seeker.verdicts.bar
+    assert seeker._look(agent.navmap, window, Pose(0.0, 0.0, 0.0), track) is None
+    assert seeker.verdicts.looks == {track: 1}
+
+
 def test_a_look_that_something_hid_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, tracks, track = tracked()
     x_m, y_m = tracks.track(track).middle_xy_m
