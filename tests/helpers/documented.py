@@ -385,6 +385,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
+    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 100": (
+        *_TRANSFER,
+        f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
+        " --out {tmp}/run",
+    ),
     f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
         *_TRANSFER,
         f"{_RUN} --split {{tmp}}/transfer --episodes 1 --agent oracle --workers 1 --out {{tmp}}/run",
