@@ -104,15 +104,13 @@ class TrackSeeker:
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
-        self._left_spots: list[
-            tuple[float, float, int]
-        ] = []  # where pursuit got nowhere, and until which step it waits
+        # Where pursuit got nowhere (x and y in metres), and until which step doubtful tracks there wait.
+        self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
-        self._pursuit: tuple[Pose, int] | None = (
-            None  # where the count of patience began, and steps of pursuit since then
-        )
+        # Where the count of patience began, and the steps of pursuit since then.
+        self._pursuit: tuple[Pose, int] | None = None
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""

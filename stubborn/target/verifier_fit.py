@@ -181,8 +181,10 @@ def expected_success(probability: Float64[np.ndarray, " n"], table: Candidates, 
 def best_bar(probability: Float64[np.ndarray, " n"], table: Candidates, episodes: int) -> float:
     """Returns the bar from 0.05 to 0.95 with the highest `expected_success`, the lowest of equally good ones.
 
-    Neighbouring bars are averaged, so that a single lucky one is not chosen.
+    Neighbouring bars are averaged, so that a single lucky one is not chosen. Without any probability it is one half.
     """
+    if not np.isfinite(probability).any():
+        return 0.5
     bars = np.arange(5, 100, 5) / 100.0
     success = np.array([expected_success(probability, table, bar, episodes) for bar in bars.tolist()])
     smooth = np.convolve(np.pad(success, 1, mode="edge"), np.full(3, 1.0 / 3.0), mode="valid")

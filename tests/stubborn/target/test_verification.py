@@ -206,6 +206,7 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     content = fit([line, line], 2)
     assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
+    assert content["methods"]["threshold"]["least_probability"] == 0.5  # one house: nothing was left out to judge by
 
 
 def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: Path):
