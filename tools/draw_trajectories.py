@@ -2,11 +2,13 @@
 
     python tools/draw_trajectories.py runs/mine                          # the failed ones
     python tools/draw_trajectories.py runs/mine --episodes val_0007 val_0012
+    python tools/draw_trajectories.py runs/corners runs/tour             # side by side, where one finds the goal
 
 In the plan: free space white, blocked space grey, the goal's instances green, the area where a STOP succeeds light
 green; the path from blue to red, contacts that stopped the robot black, the start a ring, the end a disc, and a yellow
 ring where the goal was first seen (0.8 % of a frame). Below: the distance to the goal over the steps, yellow where the
-goal was in view. The pictures are made from trajectory files and houses; no episode is run again.
+goal was in view. Several runs of the same episodes are drawn side by side. The pictures are made from trajectory files
+and houses; no episode is run again.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from rich.console import Console
 
 from sim import cli
 from sim.analysis import display
-from sim.analysis.comparison import read_run
+from sim.analysis.comparison import Run, read_run, require_same_episodes
 from sim.analysis.report.drawings import ground_truth_of, split_of
 from sim.files import write_picture
 from sim.geometry.grid import GridFrame
@@ -37,6 +39,9 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 Picture = NDArray[np.uint8]
 PX_M = 60.0
 """Pixels per metre."""
+SMALL_PX_M = 30.0
+"""Pixels per metre of several runs side by side."""
+GAP_PX = 12
 CHART_PX = 140
 MIN_WIDTH_PX = 640
 BLOCKED, FREE, SUCCEEDS, INSTANCE = (150, 150, 150), (255, 255, 255), (214, 240, 205), (60, 160, 70)
@@ -45,40 +50,72 @@ CONTACT, SEEN, INK = (0, 0, 0), (230, 180, 0), (30, 30, 30)
 
 @dataclass(frozen=True, kw_only=True)
 class Args:
-    """Draw episodes of a run that was made with --record."""
+    """Draw episodes of runs that were made with --record."""
 
-    run: tyro.conf.Positional[Path]
-    """Folder of the run."""
+    runs: tyro.conf.Positional[tuple[Path, ...]]
+    """Folders of runs of the same episodes; the pictures of one episode are side by side, in this order."""
     episodes: tuple[str, ...] = ()
-    """Ids of the episodes; all failed ones if not given."""
+    """Ids of the episodes; if not given, all failed ones of one run, or those that some of several runs failed."""
     out: cli.OutFolder | None = None
-    """Folder for the pictures (<run>/pictures)."""
+    """Folder for the pictures (<first run>/pictures)."""
 
 
 def main(args: Args) -> int:
     """Draws the episodes; returns the exit status, 1 if none of them has a trajectory."""
+    if not args.runs:
+        raise ConfigError("Give the folder of a run, or of several runs of the same episodes.")
     console = display.make_console()
-    run = read_run(args.run)
-    wanted = args.episodes or tuple(i for i, line in run.lines.items() if not line["success"])
-    unknown = [i for i in wanted if i not in run.lines]
-    if unknown:
-        raise ConfigError(f"'{args.run}' has no episode '{unknown[0]}'.")
-    missing = [i for i in wanted if not trajectory_file(run.path, i).is_file()]
+    runs = [read_run(path) for path in args.runs]
+    wanted = _wanted(runs, args.episodes)
+    missing = [i for i in wanted if not all(_file(run, i).is_file() for run in runs)]
     if missing:
         why = "written with --record; an episode with an error has none"
         _print(console, f"No trajectory, not drawn: {' '.join(missing)} ({why})")
-    split, out = split_of(run), args.out or args.run / "pictures"
-    truth: GroundTruth | None = None
-    for episode_id in sorted(set(wanted) - set(missing), key=lambda i: (run.lines[i]["house"], i)):
-        line = run.lines[episode_id]
-        trajectory = read_trajectory(trajectory_file(run.path, episode_id))
+    first, out = runs[0], args.out or args.runs[0] / "pictures"
+    split, truth = split_of(first), None
+    for episode_id in sorted(set(wanted) - set(missing), key=lambda i: (first.lines[i]["house"], i)):
+        line = first.lines[episode_id]
         if truth is None or truth.world.house.name != line["house"]:
-            truth = ground_truth_of(run, split.load_house(line["house"]))
-        words = in_words(episode_id, line["goal"], trajectory)
+            truth = ground_truth_of(first, split.load_house(line["house"]))
+        pictures = []
         file = out / f"{trajectory_file(Path(), episode_id).stem}.png"
-        write_picture(file, draw(truth, line["goal"], trajectory, words))
-        _print(console, f"{words} -> {file}")
+        for run in runs:
+            trajectory = read_trajectory(_file(run, episode_id))
+            words = in_words(episode_id, line["goal"], trajectory)
+            if len(runs) > 1:
+                words = f"{run.path.name}, {words}"
+            pictures.append(draw(truth, line["goal"], trajectory, words, px_m=PX_M if len(runs) == 1 else SMALL_PX_M))
+            _print(console, f"{words} -> {file}")
+        write_picture(file, _side_by_side(pictures))
     return int(bool(wanted) and len(missing) == len(wanted))
+
+
+def _wanted(runs: Sequence[Run], given: Sequence[str]) -> Sequence[str]:
+    """Returns the ids of the episodes to draw."""
+    common = require_same_episodes(*runs)
+    unknown = [i for i in given if i not in common]
+    if unknown:
+        without = next((run.path for run in runs if unknown[0] not in run.lines), runs[0].path)
+        raise ConfigError(f"'{without}' has no episode '{unknown[0]}'.")
+    if given:
+        return given
+    found = [[bool(run.lines[i]["success"]) for run in runs] for i in common]
+    drawn = [not any(of) if len(runs) == 1 else any(of) and not all(of) for of in found]
+    return [i for i, draws in zip(common, drawn, strict=True) if draws]
+
+
+def _file(run: Run, episode_id: str) -> Path:
+    return trajectory_file(run.path, episode_id)
+
+
+def _side_by_side(pictures: Sequence[Picture]) -> Picture:
+    """Returns pictures beside each other, aligned at their lower edges, with a gap between them."""
+    height = max(picture.shape[0] for picture in pictures)
+    columns = []
+    for picture in pictures:
+        gap_px = GAP_PX if columns else 0
+        columns.append(np.pad(picture, ((height - picture.shape[0], 0), (gap_px, 0), (0, 0)), constant_values=255))
+    return np.hstack(columns)
 
 
 def _print(console: Console, words: str) -> None:
@@ -103,26 +140,26 @@ def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
     return f"{episode_id} {goal}: {outcome}; {', '.join(facts)}"
 
 
-def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str) -> Picture:
-    """Returns plan and chart with a line of text above, uint8 (h, w, 3)."""
-    plan = draw_plan(truth, goal, trajectory)
-    width = max(plan.shape[1], MIN_WIDTH_PX)
+def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str, *, px_m: float = PX_M) -> Picture:
+    """Returns plan and chart with a line of text above, uint8 (h, w, 3); the plan has `px_m` pixels per metre."""
+    plan = draw_plan(truth, goal, trajectory, px_m)
+    width = max(plan.shape[1], round(MIN_WIDTH_PX * (px_m / PX_M) ** 0.5))
     parts = [_heading(words, width), _widened(plan, width), draw_chart(trajectory, width)]
     return np.vstack(parts)
 
 
-def draw_plan(truth: GroundTruth, goal: str, trajectory: Trajectory) -> Picture:
+def draw_plan(truth: GroundTruth, goal: str, trajectory: Trajectory, px_m: float = PX_M) -> Picture:
     """Returns the storey of the start from above, x to the right and y up."""
     floor_z_m = float(trajectory.poses[0, 3])
     space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
     cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
     cells[target.reached] = SUCCEEDS
-    scale = PX_M * space.frame.cell_m
+    scale = px_m * space.frame.cell_m
     size = (round(cells.shape[1] * scale), round(cells.shape[0] * scale))
     image = np.asarray(cv2.resize(cells, size, interpolation=cv2.INTER_NEAREST)[::-1], np.uint8).copy()
 
     def pixels(points_m: NDArray[np.floating]) -> NDArray[np.int32]:
-        return to_pixels(space.frame, points_m, image.shape[0])
+        return to_pixels(space.frame, points_m, image.shape[0], px_m)
 
     for footprint in target.region.footprints:
         for part in footprint.parts:
@@ -162,12 +199,12 @@ def draw_chart(trajectory: Trajectory, width_px: int) -> Picture:
     return image
 
 
-def to_pixels(frame: GridFrame, points_m: NDArray[np.floating], height_px: int) -> NDArray[np.int32]:
+def to_pixels(
+    frame: GridFrame, points_m: NDArray[np.floating], height_px: int, px_m: float = PX_M
+) -> NDArray[np.int32]:
     """Returns (n, 2) column and row in the picture of points (n, 2) in the world."""
-    from_corner_m = np.asarray(points_m, np.float64) - np.asarray(frame.origin_xy_m)
-    return (
-        np.stack([PX_M * from_corner_m[:, 0], height_px - PX_M * from_corner_m[:, 1]], axis=1).round().astype(np.int32)
-    )
+    right_px, up_px = px_m * (np.asarray(points_m, np.float64) - np.asarray(frame.origin_xy_m)).T
+    return np.stack([right_px, height_px - up_px], axis=1).round().astype(np.int32)
 
 
 def _heading(words: str, width_px: int) -> Picture:

@@ -473,6 +473,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
     ),
+    f"{PYTHON} tools/draw_trajectories.py runs/paper/stubborn_gt_none_val runs/paper/poni_gt_none_val": (
+        _RECORDED,
+        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine {{tmp}}/mine",
+    ),
     # docs/datasets.md
     f"{PYTHON} tools/generate_views.py --split val --views 500 --shrink 2 --profile fast"
     " --extras instances normals poses --out views_objects": (f"{_VIEWS} --extras instances normals poses",),

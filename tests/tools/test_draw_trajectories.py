@@ -42,7 +42,7 @@ def test_x_goes_right_and_y_up_at_the_scale_of_the_picture() -> None:
 def test_each_failed_episode_gets_a_picture_with_the_end_of_its_path(
     played: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert draw_trajectories.main(draw_trajectories.Args(run=played / "run")) == 0
+    assert draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",))) == 0
     told = capsys.readouterr().out
     for episode_id, line in read_run(played / "run").lines.items():
         assert f"{episode_id} sofa: {line['failure']} (stop); 1 steps, 0.0 m" in told
@@ -65,7 +65,7 @@ def test_an_episode_without_a_trajectory_is_skipped_and_named(
     shutil.copytree(played / "run", tmp_path / "run")
     first, second = read_run(tmp_path / "run").lines
     trajectory_file(tmp_path / "run", first).unlink()
-    args = draw_trajectories.Args(run=tmp_path / "run", out=tmp_path / "pictures")
+    args = draw_trajectories.Args(runs=(tmp_path / "run",), out=tmp_path / "pictures")
     assert draw_trajectories.main(args) == 0
     assert f"No trajectory, not drawn: {first} (" in capsys.readouterr().out
     assert [file.stem for file in (tmp_path / "pictures").iterdir()] == [second]
@@ -79,11 +79,39 @@ def test_a_house_that_has_changed_since_is_refused(played: Path) -> None:
     try:
         file.write_text(before + "\n")
         with pytest.raises(ConfigError, match="another version of 'lounge'"):
-            draw_trajectories.main(draw_trajectories.Args(run=played / "run"))
+            draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",)))
     finally:
         file.write_text(before)
 
 
 def test_an_unknown_episode_is_refused(played: Path) -> None:
     with pytest.raises(ConfigError, match="no episode 'nowhere'"):
-        draw_trajectories.main(draw_trajectories.Args(run=played / "run", episodes=("nowhere",)))
+        draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",), episodes=("nowhere",)))
+
+
+def test_two_runs_are_drawn_side_by_side(played: Path, tmp_path: Path) -> None:
+    shutil.copytree(played / "run", tmp_path / "other")
+    episode_id = next(iter(read_run(played / "run").lines))
+    args = draw_trajectories.Args(
+        runs=(played / "run", tmp_path / "other"), episodes=(episode_id,), out=tmp_path / "pictures"
+    )
+    assert draw_trajectories.main(args) == 0
+    picture = np.asarray(cv2.imread(str(tmp_path / "pictures" / f"{episode_id}.png")))
+    width_px = (picture.shape[1] - draw_trajectories.GAP_PX) // 2
+    left, gap, right = np.split(picture, [width_px, width_px + draw_trajectories.GAP_PX], axis=1)
+    assert (gap == 255).all()
+    assert right.shape == left.shape
+    chart = slice(-draw_trajectories.CHART_PX, None)
+    assert (left[chart] == right[chart]).all()
+
+
+def test_two_runs_that_agree_leave_nothing_to_draw(played: Path, tmp_path: Path) -> None:
+    shutil.copytree(played / "run", tmp_path / "other")
+    args = draw_trajectories.Args(runs=(played / "run", tmp_path / "other"), out=tmp_path / "pictures")
+    assert draw_trajectories.main(args) == 0
+    assert not (tmp_path / "pictures").exists()
+
+
+def test_no_run_is_refused() -> None:
+    with pytest.raises(ConfigError, match="Give the folder of a run"):
+        draw_trajectories.main(draw_trajectories.Args(runs=()))

@@ -150,7 +150,7 @@ def glass_comb() -> Trap:
     site.furniture("sofa", 8.8, 3.0, math.pi)
     return Trap(site, Sidecar(
         start=Pose(1.2, 3.0, 0.0), goal="sofa", zone_m=(2.7, 1.0, 5.2, 6.0),
-        reason="Four glass pockets side by side, 2.2 m deep: whoever leaves one finds the next one on the way.",
+        reason="Four glass pockets side by side, 2.2 m deep: a robot that leaves one meets the next one.",
     ))  # fmt: skip
 
 
