@@ -385,6 +385,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
+    f"{_RUN} --agent stubborn-plus --split hazards --episodes 100": (
+        f"{_RUN} --agent stubborn-plus --split hazards --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-plus --split large --episodes 100": (
+        f"{_RUN} --agent stubborn-plus --split large --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
+    ),
     f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 100": (
         *_TRANSFER,
         f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
@@ -447,7 +453,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py splits --splits val --semantics rednet --agents stubborn stubborn-plus"
         " --episodes 1 --workers 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 100 --workers 2": (
+    f"{PYTHON} tools/reproduce.py splits --splits val --semantics noisy --agents stubborn stubborn-plus --episodes 200"
+    " --workers 2": (
+        f"{PYTHON} tools/reproduce.py splits --splits val --semantics noisy --agents stubborn stubborn-plus"
+        " --episodes 1 --workers 1 --out {tmp}/tables",
+    ),
+    f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
         " --out {tmp}/tables",
     ),
@@ -596,9 +607,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 1 --workers 1 --judge"
         " --max-steps 20 --log {tmp}/log",
     ),
-    f"{PYTHON} tools/train_verifier.py --semantics rednet --split val --episodes 200 --workers 2 --minutes 3 --judge": (
-        f"{PYTHON} tools/train_verifier.py --semantics rednet --split val --episodes 1 --workers 1 --minutes 3 --judge"
-        " --max-steps 20 --log {tmp}/log",
+    f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
+    " --first-seed 8000 --houses 60 --area-m2 100 --out runs/unseen3": _UNSEEN[:-1],
+    f"{PYTHON} tools/make_episodes.py --split runs/unseen3 --recipe val --episodes 720": _UNSEEN,
+    f"{PYTHON} tools/train_verifier.py --semantics rednet --split runs/unseen3 --episodes 720": (
+        *_UNSEEN,
+        f"{PYTHON} tools/train_verifier.py --semantics rednet --split {{tmp}}/unseen --episodes 2 --max-steps 40"
+        " --log {tmp}/log --out {tmp}/verifier.json",
     ),
     f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
     " --first-seed 7000 --houses 24 --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
