@@ -610,10 +610,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
     " --first-seed 8000 --houses 60 --area-m2 100 --out runs/unseen3": _UNSEEN[:-1],
     f"{PYTHON} tools/make_episodes.py --split runs/unseen3 --recipe val --episodes 720": _UNSEEN,
-    f"{PYTHON} tools/train_verifier.py --semantics rednet --split runs/unseen3 --episodes 720": (
-        *_UNSEEN,
-        f"{PYTHON} tools/train_verifier.py --semantics rednet --split {{tmp}}/unseen --episodes 2 --max-steps 40"
-        " --log {tmp}/log --out {tmp}/verifier.json",
+    f"{PYTHON} tools/train_verifier.py --semantics rednet --split runs/unseen3 --episodes 720": Only(
+        "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
     ),
     f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
     " --first-seed 7000 --houses 24 --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
