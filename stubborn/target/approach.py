@@ -51,6 +51,23 @@ def approach_on(
     return None
 
 
+def approach_from_here(
+    view: NavMap, candidates: Bool[np.ndarray, "rows cols"], pose: Pose, finder: ViewpointFinder
+) -> Approach | None:
+    """Returns the approach that ends where the robot stands; its cell is counted in that part of the map.
+
+    None where no candidate is in sight within `StopDistances.pushing_m`.
+    """
+    if not candidates.any():
+        return None
+    cells, here = nearest(candidates), view.frame.cell(pose.x_m, pose.y_m)
+    gap_m = cells.gap_cells * np.float32(view.frame.cell_m)
+    if not finder.in_sight(view, gap_m, cells, finder.distances.pushing_m)[here]:
+        return None
+    cell = int(cells.rows[here]), int(cells.cols[here])
+    return Approach(None, _bearing_rad(view, cell, pose), cell)
+
+
 def approach_to(
     view: NavMap,
     viewpoints: Viewpoints,
@@ -70,6 +87,10 @@ def approach_to(
         return None
     end = here if route is None else route_end(route, pose)
     cell = int(nearest_row[end]), int(nearest_col[end])
+    return Approach(route, _bearing_rad(view, cell, pose), cell, viewpoints.near_enough)
+
+
+def _bearing_rad(view: NavMap, cell: tuple[int, int], pose: Pose) -> float:
+    """Returns the world angle from the robot to the centre of a cell."""
     x_m, y_m = view.frame.centres(*cell)
-    bearing_rad = math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)
-    return Approach(route, bearing_rad, cell, viewpoints.near_enough)
+    return math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m)

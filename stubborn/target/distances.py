@@ -16,7 +16,7 @@ _LEAST_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class TargetConfig:
-    """Distances and steps of the approach. With another success distance than 1 m, the first four distances shift."""
+    """Distances and steps of the approach. With another success distance than 1 m, the first five distances shift."""
 
     stop_in_view_m: float = 0.92
     """A target point in view within this distance ends the approach: it is near and nothing hides it."""
@@ -24,6 +24,8 @@ class TargetConfig:
     """A viewpoint is this near a candidate cell: a metre, less the error of the cells."""
     far_viewpoint_m: float = 0.93
     """A viewpoint this near will do where there is no nearer one."""
+    pushing_m: float = 0.98
+    """A candidate in sight this near will do where the robot pushes against something on its way to a viewpoint."""
     last_resort_m: float = 1.6
     """Where there is no viewpoint at all, a candidate is verified from the nearest reachable place within this
     distance; late in an episode the agent stops there, which may still succeed."""
@@ -47,10 +49,10 @@ class TargetConfig:
     """A wall this near the candidate cell is the wall that the object is mounted on, and does not hide it."""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.viewpoint_m <= self.far_viewpoint_m <= self.last_resort_m:
+        if not 0.0 < self.viewpoint_m <= self.far_viewpoint_m <= self.pushing_m <= self.last_resort_m:
             raise ConfigError(
-                "TargetConfig needs 0 < viewpoint_m <= far_viewpoint_m <= last_resort_m, "
-                f"got {self.viewpoint_m}, {self.far_viewpoint_m} and {self.last_resort_m} m."
+                "TargetConfig needs 0 < viewpoint_m <= far_viewpoint_m <= pushing_m <= last_resort_m, "
+                f"got {self.viewpoint_m}, {self.far_viewpoint_m}, {self.pushing_m} and {self.last_resort_m} m."
             )
         if not 0.0 <= self.outline_margin_m < min(self.viewpoint_m, self.stop_in_view_m):
             raise ConfigError(
@@ -69,6 +71,8 @@ class StopDistances:
     """Viewpoints this near come first, with inexact outlines; they are not worth crossing collision marks for."""
     viewpoints_m: tuple[float, ...]
     """Viewpoints within the first distance come before those within the next one."""
+    pushing_m: float
+    """Limit for a STOP where the robot pushes against something on its way to a viewpoint."""
     last_resort_m: float
     """Limit for the nearest reachable place, where there is no viewpoint."""
 
@@ -76,12 +80,13 @@ class StopDistances:
     def of(cls, config: TargetConfig, success: SuccessRule, segmenter: SegmenterSpec) -> StopDistances:
         """Returns the distances, shifted by the difference of the success distance to 1 m, but never below a cell."""
         shift_m = success.distance_m - TUNED_FOR_M
-        in_view_m, usual_m, far_m, last_m = (
+        in_view_m, usual_m, far_m, pushing_m, last_m = (
             max(distance_m + shift_m, _LEAST_M)
             for distance_m in (
                 config.stop_in_view_m,
                 config.viewpoint_m,
                 config.far_viewpoint_m,
+                config.pushing_m,
                 config.last_resort_m,
             )
         )
@@ -90,6 +95,7 @@ class StopDistances:
             in_view_m=max(in_view_m - margin_m, _LEAST_M),
             nearer_viewpoint_m=max(usual_m - margin_m, _LEAST_M) if margin_m > 0.0 else None,
             viewpoints_m=(usual_m, far_m),
+            pushing_m=pushing_m,
             last_resort_m=last_m,
         )
 

@@ -11,16 +11,29 @@ from jaxtyping import Bool, Float32, Float64
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import FORWARD_M, MAX_STEPS, CameraModel, ConfigError, Observation, RobotModel, Segmenter
+from sim.interface import (
+    FORWARD_M,
+    MAX_STEPS,
+    TURN_RAD,
+    CameraModel,
+    ConfigError,
+    Observation,
+    RobotModel,
+    Segmenter,
+    wrap_angle,
+)
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import nearest
-from stubborn.target.approach import Approach, approach_on
+from stubborn.target.approach import Approach, approach_from_here, approach_on
 from stubborn.target.distances import StopDistances, TargetConfig
 from stubborn.target.fusion import fusion_for
 from stubborn.target.look import LookConfig, Verdicts, look_at
 from stubborn.target.tracks import TrackConfig, Tracks
 from stubborn.target.viewpoints import LastResort, ViewpointFinder
+
+_STAYED_M = 0.4 * FORWARD_M
+"""A robot that moved less than this in a forward was stopped by something."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +51,8 @@ class TrackSeekerConfig:
     """A track beside an accepted one, with at least this share of its probability, is driven to as a part of it."""
     part_gap_voxels: int = 1
     """Boxes of two tracks with at most this gap are beside each other."""
+    most_pushes: int = 2
+    """After so many steps of an approach that left the robot where it was, the agent stops there if a STOP counts."""
 
     def __post_init__(self) -> None:
         if not (0.0 <= self.core_share <= 1.0 and 0.0 <= self.part_share <= 1.0 and self.as_good >= 0.0):
@@ -45,6 +60,8 @@ class TrackSeekerConfig:
                 "TrackSeekerConfig needs core_share and part_share in [0, 1] and as_good >= 0, got "
                 f"{self.core_share}, {self.part_share} and {self.as_good}."
             )
+        if self.most_pushes < 1:
+            raise ConfigError(f"TrackSeekerConfig.most_pushes must be >= 1, got {self.most_pushes}.")
 
 
 class TrackSeeker:
@@ -111,6 +128,10 @@ class TrackSeeker:
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
         # Where the count of patience began, and the steps of pursuit since then.
         self._pursuit: tuple[Pose, int] | None = None
+        # The pose at the last approach, whether it led along a route, and the steps that left the robot where it was.
+        self._approached_from: Pose | None = None
+        self._drove = False
+        self._pushes = 0
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
         """See `Seeker`."""
@@ -133,19 +154,23 @@ class TrackSeeker:
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress, another one."""
+        self._count_pushes(pose)
         found = self._pursue(navmap, window, pose, step)
         if self._is_stuck(pose, pursuing=found is not None):
             self._leave_spot()
             self.postpone(navmap, step)
             self.pursued = None
             found = self._pursue(navmap, window, pose, step)
+        self._drove = found is not None and found.route is not None
         return found
 
     def _pursue(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
         resort = LastResort.STOP if step >= self._last_resort_step else LastResort.NONE
         while self._accepted:
             self._targets = self._best_accepted(pose)
-            found = self._drive_in(navmap, window, pose, self._with_parts(self._targets), resort)
+            tracks = self._with_parts(self._targets)
+            found = self._stop_here(navmap, window, pose, tracks)
+            found = found or self._drive_in(navmap, window, pose, tracks, resort)
             if found is not None:
                 self.pursued = None
                 return found
@@ -185,7 +210,7 @@ class TrackSeeker:
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """See `Seeker`: once, where nothing that was seen is in the way and the STOP would be short."""
         wanted_m = self.distances.nearer_viewpoint_m
-        if self._went_nearer or wanted_m is None:
+        if self._went_nearer or wanted_m is None or self._pushes_on():
             return False
         x_m, y_m = navmap.frame.centres(*approach.cell)
         if pose.distance_to(Pose(float(x_m), float(y_m), 0.0)) <= wanted_m:
@@ -283,6 +308,28 @@ class TrackSeeker:
             if found is not None:
                 return _on_map(found, part)
         return None
+
+    def _stop_here(self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int]) -> Approach | None:
+        """Returns the approach that ends here, where the robot pushes against something and a STOP counts.
+
+        The robot's own ground is free to the planner: a viewpoint on it may be behind what stops the robot.
+        """
+        if not self._pushes_on():
+            return None
+        found = approach_from_here(navmap.view(window), self.cells_of(navmap, tracks)[window.index], pose, self.finder)
+        return None if found is None else _on_map(found, window)
+
+    def _pushes_on(self) -> bool:
+        """Returns True if something stops the robot here."""
+        return self._pushes >= self.config.most_pushes
+
+    def _count_pushes(self, pose: Pose) -> None:
+        """Counts the steps in which the robot drove and stayed where it was; where it moves, the count begins again."""
+        before, self._approached_from = self._approached_from, pose
+        if before is None or pose.distance_to(before) >= _STAYED_M:
+            self._pushes = 0
+        elif self._drove and abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) < TURN_RAD / 2:
+            self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
         """Returns the approach to a place to look at a track from; None: it was decided on, or it is set aside."""

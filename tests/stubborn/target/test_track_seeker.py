@@ -22,7 +22,7 @@ from stubborn.target.look import LookConfig
 from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.target.tracks import TrackConfig, Tracks
 from stubborn.target.viewpoints import LastResort
-from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
+from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
 ROOM = boxes_from_plan(
     """
@@ -293,3 +293,26 @@ def test_of_a_track_that_holds_a_part_of_something_else_only_the_core_is_driven_
     agent.navmap.score_sum[other] = 2.0
     assert not seeker.cells_of(agent.navmap, [track])[other]
     assert seeker.cells_of(agent.navmap, [track]).sum() == mask.sum() - 1
+
+
+GLASS_M = 0.96
+"""How near the table the robot's centre gets where glass keeps it away: beyond all viewpoints, and a STOP counts."""
+
+
+def behind_glass() -> GridWorld:
+    table = [box for box in ROOM if box.category == "table"]
+    gap_m = GLASS_M - RobotModel().radius_m
+    x, y = (
+        (min(lo for lo, _ in spans) - gap_m, max(hi for _, hi in spans) + gap_m)
+        for spans in ([box.x for box in table], [box.y for box in table])
+    )
+    return GridWorld([*ROOM, Box(x, y, (0.0, 0.4), "objects", seen=False)], START, camera=SMALL_CAMERA)
+
+
+def test_where_something_keeps_the_robot_from_every_viewpoint_it_stops_within_the_success_distance():
+    agent, seeker = agent_with(0.97)
+    world = behind_glass()
+    trace = run_episode(world, agent, "bed", max_steps=200)
+    assert trace.stopped
+    assert GLASS_M - 0.02 < world.distance_to("table") < 1.0
+    assert trace.collisions <= 10  # it tries all around first
