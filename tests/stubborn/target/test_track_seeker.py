@@ -310,7 +310,7 @@ def behind_glass() -> GridWorld:
 
 
 def test_where_something_keeps_the_robot_from_every_viewpoint_it_stops_within_the_success_distance():
-    agent, seeker = agent_with(0.97)
+    agent, _ = agent_with(0.97)
     world = behind_glass()
     trace = run_episode(world, agent, "bed", max_steps=200)
     assert trace.stopped
