@@ -15,6 +15,7 @@ from jaxtyping import Bool, Float32
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
 from stubborn.exploration.explorer import Ground, Search
+from stubborn.navmap import CollisionLayer
 from stubborn.planning.planner import FreeSpace, Goal
 from stubborn.raster import distance_to
 
@@ -41,18 +42,21 @@ class Frontiers:
     """Distance from the robot's trail."""
 
     @classmethod
-    def of(cls, ground: Ground, *, own_known_m: float, margin_cells: int) -> Frontiers:
+    def of(
+        cls, ground: Ground, *, own_known_m: float, margin_cells: int, layer: CollisionLayer | None = None
+    ) -> Frontiers:
         """Returns the frontiers of a map.
 
         Args:
             ground: map and pose at this step.
             own_known_m: ground this near the trail counts as known.
             margin_cells: margin around the known part of the map within which paths may run.
+            layer: the collision layer to plan on; None: the preferred one.
         """
         window = ground.navmap.known_window(margin_cells)
         trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
         unknown = ground.unknown(window) & (trail_m > own_known_m)
-        free = ground.free_space(window, costly=unknown)
+        free = ground.free_space(window, layer, unknown)
         cells = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
         return cls(window, free, cells, unknown, trail_m)
 

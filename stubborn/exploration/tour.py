@@ -30,6 +30,7 @@ from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.patches import or_of_blocks
 from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
+from stubborn.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
 from stubborn.raster import distance_to, numbered_parts
 
@@ -71,6 +72,10 @@ class TourConfig:
     """A stop is reached within this length of path."""
     spent_m: float = 0.60
     """Around a place where a stop was reached, the rest of it does not count any more."""
+    unmarked_steps: int = 40
+    """Where collision marks close all ways to what is left to see, they do not count for so many steps."""
+    regain_m2: float = 2.0
+    """When this much more ground has been seen, they may again not count for so many steps."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
     block_cells: int = 4
@@ -102,6 +107,8 @@ class _Left:
     """What is left to see in the known part of the map at one step."""
 
     known: Frontiers
+    layer: CollisionLayer
+    """The collision layer of the free space."""
     far: Bool[np.ndarray, "rows cols"]
     """Reachable ground that was seen from afar only."""
     spent: Bool[np.ndarray, "rows cols"]
@@ -170,23 +177,32 @@ class TourExplorer:
         """Forgets the last episode."""
         self.glancer.reset()
         self._goal: MapCells | None = None
+        self._layer: CollisionLayer | None = None  # that the route to the goal was planned on
         self._age_steps = 0
+        self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
+        self._unmarked_from_m2 = 0.0
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map, as the next two; made at an episode's first step
         self._inspected = self._spent
         self._frames = np.zeros((0, 0), np.uint16)
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; the route to the stop pursued, else to the first of a new tour, else far from the trail."""
+        """See `Explorer`; the route to the stop pursued, else to the first of a new tour, else far from the trail.
+
+        Where nothing is left to see in the free space of the preferred collision layer, a mark may close a passage:
+        the tour is made on the next layer, and last on none for some steps.
+        """
         self._note_view(ground)
         turn = self.glancer.next_turn(ground.navmap, ground.pose)
         if turn is not None:
             return turn
-        left = self._left(ground)
-        return (
-            (yield from self._go_on(left, ground.pose))
-            or (yield from self._to_first_stop(left, ground))
-            or (yield from left.known.to_least_visited(self.config.arrived_m))
-        )
+        left = self._left(ground, ground.layers[0] if self._layer is None else self._layer)
+        route = yield from self._go_on(left, ground.pose)
+        for layer in self._layers(ground) if route is None else ():
+            left = self._left(ground, layer) if layer is not left.layer else left
+            route = yield from self._to_first_stop(left, ground)
+            if route is not None:
+                return route
+        return route or (yield from left.known.to_least_visited(self.config.arrived_m))
 
     def _note_view(self, ground: Ground) -> None:
         """Enters the ground that the last frame showed near the robot into the inspected ground."""
@@ -200,19 +216,28 @@ class TourExplorer:
         self._inspected[index] |= near & (frames != self._frames[index])
         self._frames[index] = frames
 
-    def _left(self, ground: Ground) -> _Left:
-        """Returns what is left to see in the known part of the map."""
+    def _layers(self, ground: Ground) -> tuple[CollisionLayer, ...]:
+        """Returns the collision layers to make a tour on, in order of preference."""
+        seen_m2 = ground.navmap.seen_area_m2()
+        if seen_m2 >= self._unmarked_from_m2 + self.config.regain_m2:
+            self._unmarked_from_m2, self._unmarked_steps = seen_m2, 0
+        closed = self._unmarked_steps > self.config.unmarked_steps
+        return ground.layers if closed else (*ground.layers, CollisionLayer.NONE)
+
+    def _left(self, ground: Ground, layer: CollisionLayer) -> _Left:
+        """Returns what is left to see in the known part of the map and can be reached on a collision layer."""
         config = self.config
-        known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells)
+        known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells, layer=layer)
         far = np.zeros_like(known.cells)
         if config.near_m > 0.0:
             inspected_m = distance_to(self._inspected[known.window.index]) * np.float32(known.window.frame.cell_m)
             far = known.free.reachable & ~known.unknown & (inspected_m > 0.2) & (known.trail_m > config.own_known_m)
-        return _Left(known, far, self._spent[known.window.index])
+        return _Left(known, layer, far, self._spent[known.window.index])
 
     def _go_on(self, left: _Left, pose: Pose) -> Search:
         """Returns the route to the rest of the stop pursued; None when it is done with, or after some steps."""
         self._age_steps += 1
+        self._unmarked_steps += self._layer is CollisionLayer.NONE
         if self._goal is None or self._age_steps > self.config.replan_steps:
             return None
         route = yield Goal(left.known.free, self._goal.within(left.known.window) & left.cells)
@@ -235,7 +260,7 @@ class TourExplorer:
             cells[stop.rows, stop.cols] = True
             route = yield Goal(known.free, cells)
             if route is not None and route.length_m > self.config.arrived_m:
-                self._goal, self._age_steps = MapCells.of(cells, known.window), 0
+                self._goal, self._layer, self._age_steps = MapCells.of(cells, known.window), left.layer, 0
                 return route
             left.spent[cells] |= route is None
             if route is not None:

@@ -175,3 +175,18 @@ def test_options_that_make_no_sense_are_refused():
         PotentialConfig(alpha=2.0)
     with pytest.raises(ConfigError, match=r"0 < arrived_m <= spent_m, got 0\.5 and 0\.1"):
         TourConfig(arrived_m=0.5, spent_m=0.1)
+
+
+@pytest.mark.parametrize("layers", [1, 2])
+def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_steps(layers: int):
+    navmap, explore = corridor(), explorer(near_m=0.0, replan_steps=1, unmarked_steps=5)
+    rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
+    row_0, col = navmap.frame.cell(3.0, -1.1)
+    row_1, _ = navmap.frame.cell(3.0, 1.1)
+    for mark in (navmap.pessimistic_marks, navmap.optimistic_marks)[:layers]:
+        mark[row_0:row_1, col : col + 3] = True
+    goals_x_m = [goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) for _ in range(8)]
+    beyond = [x_m > 3.5 for x_m in goals_x_m]
+    assert beyond == ([True] * 8 if layers == 1 else [True] * 6 + [False] * 2)
+    rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
+    assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.5
