@@ -44,6 +44,9 @@ SMALL_PX_M = 30.0
 GAP_PX = 12
 CHART_PX = 140
 MIN_WIDTH_PX = 640
+"""The heading needs as much."""
+SMALL_MIN_WIDTH_PX = 450
+"""The same with several runs side by side."""
 BLOCKED, FREE, SUCCEEDS, INSTANCE = (150, 150, 150), (255, 255, 255), (214, 240, 205), (60, 160, 70)
 CONTACT, SEEN, INK = (0, 0, 0), (230, 180, 0), (30, 30, 30)
 
@@ -143,7 +146,7 @@ def in_words(episode_id: str, goal: str, trajectory: Trajectory) -> str:
 def draw(truth: GroundTruth, goal: str, trajectory: Trajectory, words: str, *, px_m: float = PX_M) -> Picture:
     """Returns plan and chart with a line of text above, uint8 (h, w, 3); the plan has `px_m` pixels per metre."""
     plan = draw_plan(truth, goal, trajectory, px_m)
-    width = max(plan.shape[1], round(MIN_WIDTH_PX * (px_m / PX_M) ** 0.5))
+    width = max(plan.shape[1], MIN_WIDTH_PX if px_m == PX_M else SMALL_MIN_WIDTH_PX)
     parts = [_heading(words, width), _widened(plan, width), draw_chart(trajectory, width)]
     return np.vstack(parts)
 
