@@ -216,16 +216,34 @@ def report(content: Mapping[str, Any]) -> None:
 
 
 def judgement(lines: Sequence[Mapping[str, Any]], file: Path) -> str:
-    """Returns a Markdown table of the candidates of each category, before and after verification."""
-    rows = ["| method | goal | true | false | precision before | precision after | true accepted | false rejected |"]
-    rows.append("|---|---|---|---|---|---|---|---|")
+    """Returns Markdown tables: the candidates of each category, before and after verification, and the calibration."""
+    header = (
+        "method", "goal", "true", "false", "mean P", "Brier score",
+        "precision before", "precision after", "true accepted", "false rejected",
+    )  # fmt: skip
+    rows = _table_head(header)
+    bins = _table_head(("method", "P from", "to", "candidates", "mean P", "true"))
     for method in METHODS:
         for goal, found in judge_by_category(lines, FittedVerifier.read(file, method)).items():
             true = round(found["precision_before"] * found["candidates"])
-            shares = [found[key] for key in ("precision_before", "precision", "true_accepted", "false_rejected")]
+            mean = sum(each["candidates"] * each["mean_probability"] for each in found["by_probability"])
+            keys = ("brier", "precision_before", "precision", "true_accepted", "false_rejected")
+            shares = (mean / found["candidates"], *(found[key] for key in keys))
             cells = " | ".join("-" if share is None else f"{share:.2f}" for share in shares)
             rows.append(f"| {method} | {goal} | {true} | {found['candidates'] - true} | {cells} |")
-    return "\n".join(rows)
+            bins += [_bin_row(method, each) for each in found["by_probability"] if goal == "all"]
+    return "\n".join([*rows, "", *bins])
+
+
+def _table_head(titles: Sequence[str]) -> list[str]:
+    return [f"| {' | '.join(titles)} |", "|---" * len(titles) + "|"]
+
+
+def _bin_row(method: str, one: Mapping[str, Any]) -> str:
+    return (
+        f"| {method} | {one['from']} | {one['to']} | {one['candidates']} | {one['mean_probability']:.2f} | "
+        f"{one['true_share']:.2f} |"
+    )
 
 
 def _check(args: Args) -> None:

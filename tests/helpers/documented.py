@@ -385,17 +385,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
-    f"{_RUN} --agent stubborn-plus --split hazards --episodes 100": (
-        f"{_RUN} --agent stubborn-plus --split hazards --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --split large --episodes 100": (
-        f"{_RUN} --agent stubborn-plus --split large --episodes 1 --config task.max_steps=5 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --split runs/transfer --episodes 100": (
-        *_TRANSFER,
-        f"{_RUN} --agent stubborn-plus --split {{tmp}}/transfer --episodes 1 --config task.max_steps=5"
-        " --out {tmp}/run",
-    ),
     f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
         *_TRANSFER,
         f"{_RUN} --split {{tmp}}/transfer --episodes 1 --agent oracle --workers 1 --out {{tmp}}/run",
@@ -461,6 +450,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
         " --out {tmp}/tables",
+    ),
+    f"{PYTHON} tools/reproduce.py splits --splits hazards large runs/transfer --semantics rednet --agents stubborn"
+    " stubborn-plus --episodes 100": (
+        *_TRANSFER,
+        f"{PYTHON} tools/reproduce.py splits --splits {{tmp}}/transfer --semantics rednet --agents"
+        " 'random --config task.max_steps=5' --episodes 1 --out {tmp}/tables",
     ),
     f"{PYTHON} tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits val large --episodes 1 --workers 1 --agents random oracle "

@@ -19,6 +19,7 @@ from sim.interface import ConfigError
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.target.classifiers import Features
 from stubborn.target.seeker import TargetSeeker
+from stubborn.target.verification import FOLDER, FittedVerifier
 from tests.helpers.worlds import room, with_box
 from tools import episode_logs, train_verifier
 
@@ -166,3 +167,15 @@ def test_val_and_test_are_only_judged():
 def test_segmentation_that_needs_no_verification_is_refused():
     with pytest.raises(ConfigError, match=r"'gt' makes no errors to learn\. There is: noisy, rednet"):
         train_verifier.main(train_verifier.Args(semantics="gt"))
+
+
+def test_a_judgement_says_what_is_true_and_what_the_verifier_thinks():
+    file = FOLDER / "rednet.json"
+    near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
+    lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]
+    verifier = FittedVerifier.read(file, "naive-bayes")
+    p = [verifier.probability("bed", Features(int(each[0]), *each[1:4])) for each in (near, far)]
+    brier = 0.5 * ((1.0 - p[0]) ** 2 + p[1] ** 2)
+    rows = train_verifier.judgement(lines, file).splitlines()
+    assert f"| naive-bayes | bed | 1 | 1 | {0.5 * sum(p):.2f} | {brier:.2f} | 0.50 | 1.00 | 1.00 | 1.00 |" in rows
+    assert f"| naive-bayes | 0.8 | 1.0 | 1 | {p[0]:.2f} | 1.00 |" in rows
