@@ -303,6 +303,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
         "--explorers informed-tour:potentials.goal=wrong",
     ),
+    f"{_RUN} --agent stubborn --explorer informed-tour --semantics gt --split large --episodes 200 --workers 2": (
+        f"{_RUN} --agent stubborn --explorer informed-tour --semantics gt --split large --episodes 1 --workers 1"
+        " --config task.max_steps=5 --out {tmp}/run",
+    ),
     f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
