@@ -67,7 +67,12 @@ class TourConfig:
     most_stops: int = 6
     """Largest number of stops that are put in order: those with most weight for their path."""
     replan_steps: int = 8
-    """The order is computed again after this many steps, and when a stop is done with."""
+    """The order is computed again when a stop is done with, and after this many steps if they showed new ground: two
+    stops that are about equally good would otherwise send the robot to and fro."""
+    news_m2: float = 0.5
+    """New ground smaller than this is none."""
+    keep_steps: int = 80
+    """A stop is pursued for at most this many steps."""
     arrived_m: float = 0.35
     """A stop is reached within this length of path."""
     spent_m: float = 0.60
@@ -179,6 +184,7 @@ class TourExplorer:
         self._goal: MapCells | None = None
         self._layer: CollisionLayer | None = None  # that the route to the goal was planned on
         self._age_steps = 0
+        self._goal_from_m2 = 0.0  # the ground seen when the goal was chosen
         self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
         self._unmarked_from_m2 = 0.0
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map, as the next two; made at an episode's first step
@@ -196,7 +202,7 @@ class TourExplorer:
         if turn is not None:
             return turn
         left = self._left(ground, ground.layers[0] if self._layer is None else self._layer)
-        route = yield from self._go_on(left, ground.pose)
+        route = yield from self._go_on(left, ground)
         for layer in self._layers(ground) if route is None else ():
             left = self._left(ground, layer) if layer is not left.layer else left
             route = yield from self._to_first_stop(left, ground)
@@ -234,15 +240,17 @@ class TourExplorer:
             far = known.free.reachable & ~known.unknown & (inspected_m > 0.2) & (known.trail_m > config.own_known_m)
         return _Left(known, layer, far, self._spent[known.window.index])
 
-    def _go_on(self, left: _Left, pose: Pose) -> Search:
-        """Returns the route to the rest of the stop pursued; None when it is done with, or after some steps."""
+    def _go_on(self, left: _Left, ground: Ground) -> Search:
+        """Returns the route to the rest of the stop pursued; None when it is done with, or time for a new tour."""
         self._age_steps += 1
         self._unmarked_steps += self._layer is CollisionLayer.NONE
-        if self._goal is None or self._age_steps > self.config.replan_steps:
+        news = ground.navmap.seen_area_m2() - self._goal_from_m2 >= self.config.news_m2
+        longest_steps = self.config.replan_steps if news else self.config.keep_steps
+        if self._goal is None or self._age_steps > longest_steps:
             return None
         route = yield Goal(left.known.free, self._goal.within(left.known.window) & left.cells)
         if route is not None and route.length_m <= self.config.arrived_m:
-            self._spend(left, pose)
+            self._spend(left, ground.pose)
             return None
         return route
 
@@ -261,6 +269,7 @@ class TourExplorer:
             route = yield Goal(known.free, cells)
             if route is not None and route.length_m > self.config.arrived_m:
                 self._goal, self._layer, self._age_steps = MapCells.of(cells, known.window), left.layer, 0
+                self._goal_from_m2 = ground.navmap.seen_area_m2()
                 return route
             left.spent[cells] |= route is None
             if route is not None:

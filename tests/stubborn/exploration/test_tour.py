@@ -179,7 +179,7 @@ def test_options_that_make_no_sense_are_refused():
 
 @pytest.mark.parametrize("layers", [1, 2])
 def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_steps(layers: int):
-    navmap, explore = corridor(), explorer(near_m=0.0, replan_steps=1, unmarked_steps=5)
+    navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1, unmarked_steps=5)
     rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
     row_0, col = navmap.frame.cell(3.0, -1.1)
     row_1, _ = navmap.frame.cell(3.0, 1.1)
@@ -190,3 +190,17 @@ def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_step
     assert beyond == ([True] * 8 if layers == 1 else [True] * 6 + [False] * 2)
     rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
     assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.5
+
+
+def test_a_stop_is_given_up_for_an_equally_good_one_only_where_new_ground_was_seen():
+    navmap, explore = corridor(), explorer(near_m=0.0, replan_steps=1, keep_steps=20)
+    first = goal_x_m(explore, navmap, Pose(0.3, 0.0, 0.0))
+    assert first > 3.0
+    to_and_fro = [goal_x_m(explore, navmap, Pose(x_m, 0.0, 0.0)) for x_m in 9 * (-0.6, 0.3)]
+    assert to_and_fro == pytest.approx([first] * 18)
+    rectangle(navmap, (-6.0, -4.0), (-1.0, 1.0))
+    goals_x_m = [goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) for _ in range(2)]
+    assert goals_x_m[-1] < -4.0
+    explore.reset()
+    kept = [goal_x_m(explore, navmap, Pose(x_m, 0.0, 0.0)) for x_m in (2.0, *21 * (-2.0,))]
+    assert [x_m > 0.0 for x_m in kept] == [True] * 21 + [False]
