@@ -196,7 +196,7 @@ def test_a_stop_is_given_up_for_an_equally_good_one_only_where_new_ground_was_se
     navmap, explore = corridor(), explorer(near_m=0.0, replan_steps=1, keep_steps=20)
     first = goal_x_m(explore, navmap, Pose(0.3, 0.0, 0.0))
     assert first > 3.0
-    to_and_fro = [goal_x_m(explore, navmap, Pose(x_m, 0.0, 0.0)) for x_m in 9 * (-0.6, 0.3)]
+    to_and_fro = [goal_x_m(explore, navmap, Pose(x_m, 0.0, 0.0)) for x_m in 6 * (-0.6, -0.6, 0.3)]
     assert to_and_fro == pytest.approx([first] * 18)
     rectangle(navmap, (-6.0, -4.0), (-1.0, 1.0))
     goals_x_m = [goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) for _ in range(2)]
