@@ -18,10 +18,9 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.poni import PoniConfig
-from stubborn.exploration.potentials import PotentialConfig
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.thorough import ThoroughConfig
-from stubborn.exploration.tour import TourConfig
+from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.target.verification import Verifier
 
@@ -54,7 +53,7 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
         "thorough": ThoroughConfig(),
         "frontier": FrontierConfig(),
         "tour": TourConfig(),
-        "informed-tour": TourConfig(potentials=PotentialConfig()),
+        "informed-tour": INFORMED_TOUR,
         "semexp": SemExpConfig(),
         "poni": PoniConfig(),
     }
@@ -78,7 +77,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": _stubborn_spec(
-            "ours: tracks objects, looks before it goes, visits what it has not seen",
+            "ours: tracks objects, looks before it goes, tours what is left to see (informed-tour)",
             PlusConfig(),
             plus_agent,
         ),

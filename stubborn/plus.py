@@ -1,4 +1,4 @@
-"""`stubborn-plus`, our agent: the paper's agent with tracks of objects and a more thorough exploration."""
+"""`stubborn-plus`, our agent: the paper's agent with tracks of objects and a tour over what is left to see."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from sim.interface import MAX_STEPS, CameraModel, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.explorer import ExplorerConfig
-from stubborn.exploration.thorough import ThoroughConfig
+from stubborn.exploration.tour import INFORMED_TOUR
 from stubborn.planning.avoidance import collision_policies
 from stubborn.planning.planner import Planner
 from stubborn.target.distances import StopDistances
@@ -21,8 +21,8 @@ from stubborn.target.viewpoints import ViewpointFinder
 class PlusConfig(AgentConfig):
     """All parameters of `stubborn-plus`."""
 
-    explorer: ExplorerConfig = field(default_factory=ThoroughConfig)
-    """See `AgentConfig`; the default also looks around and visits places that it has not seen."""
+    explorer: ExplorerConfig = INFORMED_TOUR
+    """See `AgentConfig`."""
     seeker: TrackSeekerConfig = field(default_factory=TrackSeekerConfig)
     """Tracks of objects, and the decisions on them."""
 

@@ -23,7 +23,7 @@ from jaxtyping import Bool, Float32, Float64, Int
 from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import cells_near_segment
 from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, CameraModel, ConfigError, wrap_angle
+from sim.interface import FORWARD_M, TURN_RAD, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.glance import GlanceConfig, Glancer
@@ -33,6 +33,9 @@ from stubborn.exploration.potentials import PotentialConfig, Potentials
 from stubborn.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
 from stubborn.raster import distance_to, numbered_parts
+
+_STAYED_M = 0.4 * FORWARD_M
+"""A forward that moves the robot less has left it where it was."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,6 +84,8 @@ class TourConfig:
     """Where collision marks close all ways to what is left to see, they do not count for so many steps."""
     regain_m2: float = 2.0
     """When this much more ground has been seen, they may again not count for so many steps."""
+    most_pushes: int = 2
+    """After so many forwards on such a route that left the robot where it was, they count again."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
     block_cells: int = 4
@@ -105,6 +110,10 @@ class TourConfig:
         """
         known = None if self.potentials is None else Potentials(self.potentials, self.potentials.predictor())
         return TourExplorer(self, camera) if known is None else InformedTourExplorer(self, camera, known)
+
+
+INFORMED_TOUR = TourConfig(potentials=PotentialConfig())
+"""The tour whose stops are weighed by the predicted potentials; `stubborn-plus` explores with it."""
 
 
 @dataclass(frozen=True)
@@ -187,6 +196,8 @@ class TourExplorer:
         self._goal_from_m2 = 0.0  # the ground seen when the goal was chosen
         self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
         self._unmarked_from_m2 = 0.0
+        self._unmarked_pose: Pose | None = None  # at the last step of such a route
+        self._pushes = 0  # forwards on such routes that left the robot where it was
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map, as the next two; made at an episode's first step
         self._inspected = self._spent
         self._frames = np.zeros((0, 0), np.uint16)
@@ -226,8 +237,8 @@ class TourExplorer:
         """Returns the collision layers to make a tour on, in order of preference."""
         seen_m2 = ground.navmap.seen_area_m2()
         if seen_m2 >= self._unmarked_from_m2 + self.config.regain_m2:
-            self._unmarked_from_m2, self._unmarked_steps = seen_m2, 0
-        closed = self._unmarked_steps > self.config.unmarked_steps
+            self._unmarked_from_m2, self._unmarked_steps, self._pushes = seen_m2, 0, 0
+        closed = self._unmarked_steps > self.config.unmarked_steps or self._pushes >= self.config.most_pushes
         return ground.layers if closed else (*ground.layers, CollisionLayer.NONE)
 
     def _left(self, ground: Ground, layer: CollisionLayer) -> _Left:
@@ -243,7 +254,8 @@ class TourExplorer:
     def _go_on(self, left: _Left, ground: Ground) -> Search:
         """Returns the route to the rest of the stop pursued; None when it is done with, or time for a new tour."""
         self._age_steps += 1
-        self._unmarked_steps += self._layer is CollisionLayer.NONE
+        if self._layer is CollisionLayer.NONE and self._pushes_on(ground.pose):
+            return None
         news = ground.navmap.seen_area_m2() - self._goal_from_m2 >= self.config.news_m2
         longest_steps = self.config.replan_steps if news else self.config.keep_steps
         if self._goal is None or self._age_steps > longest_steps:
@@ -253,6 +265,14 @@ class TourExplorer:
             self._spend(left, ground.pose)
             return None
         return route
+
+    def _pushes_on(self, pose: Pose) -> bool:
+        """Counts a step of a route over collision marks; returns True when the robot pushes and gets no further."""
+        before, self._unmarked_pose = self._unmarked_pose, pose
+        self._unmarked_steps += 1
+        if before is not None and pose.distance_to(before) < _STAYED_M:
+            self._pushes += abs(wrap_angle(pose.yaw_rad - before.yaw_rad)) < TURN_RAD / 2
+        return self._pushes >= self.config.most_pushes
 
     def _to_first_stop(self, left: _Left, ground: Ground) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
@@ -270,6 +290,7 @@ class TourExplorer:
             if route is not None and route.length_m > self.config.arrived_m:
                 self._goal, self._layer, self._age_steps = MapCells.of(cells, known.window), left.layer, 0
                 self._goal_from_m2 = ground.navmap.seen_area_m2()
+                self._unmarked_pose = pose
                 return route
             left.spent[cells] |= route is None
             if route is not None:

@@ -185,11 +185,25 @@ def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_step
     row_1, _ = navmap.frame.cell(3.0, 1.1)
     for mark in (navmap.pessimistic_marks, navmap.optimistic_marks)[:layers]:
         mark[row_0:row_1, col : col + 3] = True
-    goals_x_m = [goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) for _ in range(8)]
+    goals_x_m = [goal_x_m(explore, navmap, Pose(0.2 * step, 0.0, 0.0)) for step in range(8)]
     beyond = [x_m > 3.5 for x_m in goals_x_m]
     assert beyond == ([True] * 8 if layers == 1 else [True] * 6 + [False] * 2)
     rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
     assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.5
+
+
+def test_marks_count_again_where_the_robot_pushes():
+    navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1)
+    rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
+    row_0, col = navmap.frame.cell(3.0, -1.1)
+    row_1, _ = navmap.frame.cell(3.0, 1.1)
+    for mark in (navmap.pessimistic_marks, navmap.optimistic_marks):
+        mark[row_0:row_1, col : col + 3] = True
+    turning = [goal_x_m(explore, navmap, Pose(2.0, 0.0, yaw_rad)) for yaw_rad in (2.0, 1.5, 1.0, 0.5, 0.0)]
+    pushing = [goal_x_m(explore, navmap, Pose(2.0 + 0.01 * step, 0.0, 0.0)) for step in range(4)]
+    assert [x_m > 3.5 for x_m in (*turning, *pushing)] == [True] * 6 + [False] * 3
+    rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
+    assert goal_x_m(explore, navmap, Pose(2.0, 0.0, 0.0)) > 3.5
 
 
 def test_a_stop_is_given_up_for_an_equally_good_one_only_where_new_ground_was_seen():
