@@ -19,7 +19,7 @@ from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import broken_metrics, episode_seed, play_episode, record_episode
 from sim.interface import GOAL_CATEGORIES, Agent, AgentSpec, Segmenter
-from sim.memory import give_large_blocks_pages_of_their_own
+from sim.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.sensors.sensor import Sensor
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
@@ -74,6 +74,7 @@ class EpisodeRunner:
 
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode and returns its result line."""
+        return_freed_memory()
         seed = episode_seed(self._options.seed, episode.episode_id)
         try:
             metrics = play_episode(
