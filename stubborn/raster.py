@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
+from stubborn.grid_kernels import distance_within
+
 Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 """Rows and columns."""
 
@@ -16,6 +18,14 @@ Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
     """Returns the exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
     return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
+
+
+def farther_than(
+    mask: Bool[np.ndarray, "rows cols"], distance_m: float, cell_m: float
+) -> Bool[np.ndarray, "rows cols"]:
+    """Returns the cells whose centre is farther than some metres, at most 178 cells, from that of any True cell."""
+    reach = math.floor(distance_m / cell_m) + 2  # one for rounding
+    return distance_within(mask, reach) * np.float32(cell_m) > np.float32(distance_m)
 
 
 class NearestCells(NamedTuple):

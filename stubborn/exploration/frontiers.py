@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Bool, Float32
+from jaxtyping import Bool
 
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
 from stubborn.exploration.explorer import Ground, Search
 from stubborn.navmap import CollisionLayer
 from stubborn.planning.planner import FreeSpace, Goal
-from stubborn.raster import distance_to
+from stubborn.raster import distance_to, farther_than
 
 
 def frontier_cells(
@@ -38,8 +38,10 @@ class Frontiers:
     """The frontiers that can be reached."""
     unknown: Bool[np.ndarray, "rows cols"]
     """Ground that was not in view; that near the trail counts as known."""
-    trail_m: Float32[np.ndarray, "rows cols"]
-    """Distance from the robot's trail."""
+    trail: Bool[np.ndarray, "rows cols"]
+    """The robot's trail; shares memory with the map."""
+    off_trail: Bool[np.ndarray, "rows cols"]
+    """Ground that is not near the trail."""
 
     @classmethod
     def of(
@@ -54,19 +56,20 @@ class Frontiers:
             layer: the collision layer to plan on; None: the preferred one.
         """
         window = ground.navmap.known_window(margin_cells)
-        trail_m = distance_to(ground.navmap.view(window).trail) * np.float32(window.frame.cell_m)
-        unknown = ground.unknown(window) & (trail_m > own_known_m)
+        trail = ground.navmap.view(window).trail
+        off_trail = farther_than(trail, own_known_m, window.frame.cell_m)
+        unknown = ground.unknown(window) & off_trail
         free = ground.free_space(window, layer, unknown)
         cells = frontier_cells(free.reachable & ~unknown, free.traversable & unknown)
-        return cls(window, free, cells, unknown, trail_m)
+        return cls(window, free, cells, unknown, trail, off_trail)
 
     def to_least_visited(self, arrived_m: float) -> Search:
         """Returns the route to the ground farthest from the trail, for when nothing unknown is left.
 
         None: there is none, or it is within `arrived_m` of path.
         """
-        far_m = np.where(self.free.reachable, self.trail_m, -np.inf)
-        route = yield Goal(self.free, far_m == far_m.max())
+        far_cells = np.where(self.free.reachable, distance_to(self.trail), -np.inf)
+        route = yield Goal(self.free, far_cells == far_cells.max())
         return None if route is None or route.length_m <= arrived_m else route
 
 

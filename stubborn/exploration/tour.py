@@ -32,10 +32,12 @@ from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
 from stubborn.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
-from stubborn.raster import distance_to, numbered_parts
+from stubborn.raster import farther_than, numbered_parts
 
 _STAYED_M = 0.4 * FORWARD_M
 """A forward that moves the robot less has left it where it was."""
+_INSPECTED_GAP_M = 0.2
+"""Ground this near inspected ground is inspected too: distant floor is seen with gaps."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -247,8 +249,8 @@ class TourExplorer:
         known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells, layer=layer)
         far = np.zeros_like(known.cells)
         if config.near_m > 0.0:
-            inspected_m = distance_to(self._inspected[known.window.index]) * np.float32(known.window.frame.cell_m)
-            far = known.free.reachable & ~known.unknown & (inspected_m > 0.2) & (known.trail_m > config.own_known_m)
+            far = farther_than(self._inspected[known.window.index], _INSPECTED_GAP_M, known.window.frame.cell_m)
+            far &= known.free.reachable & ~known.unknown & known.off_trail
         return _Left(known, layer, far, self._spent[known.window.index])
 
     def _go_on(self, left: _Left, ground: Ground) -> Search:

@@ -15,7 +15,7 @@ from sim.interface import FORWARD_M, ConfigError
 from stubborn.grid_kernels import distance_within, speeds
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import ProvenGround
-from stubborn.raster import connected, distance_to
+from stubborn.raster import connected, farther_than
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,11 +119,11 @@ class Planner:
     def unseen(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""
         seen = (view.frames_in_view > 0) | view.visited
-        return distance_to(seen) * view.frame.cell_m > self.config.unseen_gap_m
+        return farther_than(seen, self.config.unseen_gap_m, view.frame.cell_m)
 
     def unknown(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the ground never in view, up to the border of what was; gaps within that are closed."""
-        return distance_to(self.unseen(view)) <= self.config.unseen_gap_m / view.frame.cell_m
+        return ~farther_than(self.unseen(view), self.config.unseen_gap_m, view.frame.cell_m)
 
     def free_space(
         self, view: NavMap, pose: Pose, layer: CollisionLayer, costly: Bool[np.ndarray, "rows cols"] | None = None

@@ -18,7 +18,7 @@ from stubborn.mapping.object_layers import FrameScores
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces
 from stubborn.mapping.projection import Rays, in_range, sight_window_cells
 from stubborn.navmap import NavMap
-from stubborn.raster import connected, distance_to
+from stubborn.raster import connected, distance_to, farther_than
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 CAMERA = CameraModel()
@@ -241,6 +241,21 @@ def test_distances_within_a_reach_are_exact_and_others_are_the_reach(share: floa
     near = exact <= 6.0
     assert found[near] == pytest.approx(exact[near], rel=1e-6)
     assert (found[~near] == 6.0).all()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.001, 0.05])
+@pytest.mark.parametrize("distance_m", [0.15, 0.2, 0.6, 1.0])
+def test_cells_farther_than_a_distance_are_those_of_the_exact_distances(share: float, distance_m: float) -> None:
+    mask = np.random.default_rng(3).random((60, 70)) < share
+    assert np.array_equal(farther_than(mask, distance_m, 0.05), distance_to(mask) * 0.05 > distance_m)
+
+
+def test_exact_posteriors_are_one_for_the_category_and_zero_for_void() -> None:
+    semantic = np.random.default_rng(4).integers(0, 41, (24, 32), np.uint8)
+    semantic[2, 2] = 0
+    posteriors = GroundTruthSegmenter().posteriors({"semantic": semantic})
+    middle = semantic[2::4, 2::4]
+    assert np.array_equal(posteriors, middle == np.arange(1, 41)[:, None, None])
 
 
 def test_a_reach_whose_square_is_no_short_number_is_refused() -> None:
