@@ -27,6 +27,7 @@ from sim.analysis.metrics import (
 from sim.analysis.tables import Cell, ResultTable
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate, paired_difference
+from sim.evaluation.results import metric_value
 from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
 from stubborn import agents
@@ -152,6 +153,20 @@ def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     return [replace(means, notes=(note,)), replace(differences, rows=rows)]
 
 
+def explorers(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
+    """Returns the tables of `splits`, and one of medians of the time to first sight and their ratio to the first."""
+    first = lines[setups[0]]
+    rows: list[tuple[str, list[Cell | str]]] = [
+        (setup.label, [FIRST_SIGHT.median(lines[setup]), *_against(first, lines[setup])]) for setup in setups
+    ]
+    header = ("agent", "median", f"ratio to {setups[0].name}", "sooner", "later")
+    note = (
+        "Medians of the steps to first sight; an episode that never showed the goal counts with the step limit. Sooner "
+        "and later: episodes."
+    )
+    return [*splits(lines, setups), ResultTable("first_sight", "Time to first sight", header, rows, (note,))]
+
+
 UNVERIFIED = f"stubborn --verification {ACCEPT_ALL}"
 """The paper's Single-Frame: the same map, and every candidate is accepted."""
 CONTROLS = ("semantics=shuffled", "goal=wrong", "semantics=none")
@@ -160,7 +175,18 @@ TABLES: Mapping[str, PaperTable] = {
     "failures": PaperTable(("stubborn", UNVERIFIED, "frontier-avoid"), "noisy", failures),
     "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),
     "exploration": PaperTable(
-        ("stubborn", "stubborn-i", "semexp", "frontier-avoid", "frontier"), GROUND_TRUTH, exploration
+        (
+            "stubborn",
+            "stubborn-i",
+            "semexp",
+            "frontier-avoid",
+            "frontier",
+            "poni",
+            "stubborn --explorer informed-tour",
+            "cloned",
+        ),
+        GROUND_TRUTH,
+        exploration,
     ),
     "categories": PaperTable(("stubborn", UNVERIFIED), "noisy", categories),
     "overall": PaperTable(
@@ -184,6 +210,7 @@ TABLES: Mapping[str, PaperTable] = {
         (
             "stubborn",
             "frontier-avoid",
+            "frontier",
             "stubborn --explorer tour",
             "stubborn --explorer informed-tour",
             "poni",
@@ -194,7 +221,7 @@ TABLES: Mapping[str, PaperTable] = {
             "oracle",
         ),
         GROUND_TRUTH,
-        splits,
+        explorers,
     ),
 }
 """The tables by name."""
@@ -253,6 +280,16 @@ def _differences(
 
 def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, AgentSetup]]:
     return [(setups[0], other) for other in setups[1:]]
+
+
+def _against(first: Sequence[Line], second: Sequence[Line]) -> list[Cell | str]:
+    """Returns the ratio of the median steps to first sight, and in how many episodes second is sooner and later."""
+    if first is second:
+        return ["1", "", ""]
+    values = [[metric_value(line, FIRST_SIGHT.key) for line in lines] for lines in (first, second)]
+    changes = [b - a for a, b in zip(*values, strict=True) if a is not None and b is not None]
+    ratio = replace(FIRST_SIGHT.ratio_of_medians(first, second), say_resolved=True)
+    return [ratio, str(sum(change < 0.0 for change in changes)), str(sum(change > 0.0 for change in changes))]
 
 
 def _named(pair: tuple[AgentSetup, AgentSetup]) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import Line
 from sim.analysis.tables import Cell
-from sim.evaluation.bootstrap import estimate, paired_difference
+from sim.evaluation.bootstrap import estimate, paired_difference, ratio_of_medians
 from sim.evaluation.results import metric_value
 
 
@@ -29,6 +30,16 @@ class Metric:
         """Returns the mean of second minus first; both hold the same episodes in the same order."""
         a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
         return Cell(paired_difference(a, b, houses_of(first)), self.percent, self.digits, difference=True)
+
+    def median(self, lines: Sequence[Line]) -> str:
+        """Returns the median over lines as text; `-` where no line has the number."""
+        known = [value for value in (metric_value(line, self.key) for line in lines) if value is not None]
+        return f"{statistics.median(map(float, known)):.{self.digits}f}" if known else "-"
+
+    def ratio_of_medians(self, first: Sequence[Line], second: Sequence[Line]) -> Cell:
+        """Returns the median of second over that of first; both hold the same episodes in the same order."""
+        a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
+        return Cell(ratio_of_medians(a, b, houses_of(first)), digits=2, difference=True)
 
 
 def houses_of(lines: Sequence[Line]) -> list[str]:

@@ -29,18 +29,18 @@ class Cell:
     """Shown times 100."""
     digits: int = 1
     difference: bool = False
-    """Shown with its sign, and as unresolved where the interval holds 0."""
+    """A difference, shown with its sign, or a ratio; unresolved where the interval holds `Estimate.neutral`."""
     say_resolved: bool = False
-    """A difference that is resolved is shown with that word too."""
+    """A comparison that is resolved is shown with that word too."""
 
     @property
     def verdict(self) -> str:
-        """`unresolved`, `higher` or `lower` for a difference; "" for a mean and for a difference without pairs."""
+        """`unresolved`, `higher` or `lower` for a comparison; "" for a mean and for a comparison without pairs."""
         if not self.difference or self.estimate.mean is None:
             return ""
         if not self.estimate.resolved:
             return UNRESOLVED
-        return "higher" if self.estimate.mean > 0.0 else "lower"
+        return "higher" if self.estimate.mean > self.estimate.neutral else "lower"
 
     @property
     def mean_text(self) -> str:
@@ -61,7 +61,7 @@ class Cell:
         return separator.join(filter(None, (self.mean_text, self.interval_text, word)))
 
     def _number(self, value: float) -> str:
-        sign = "+" if self.difference else ""
+        sign = "+" if self.difference and self.estimate.neutral == 0.0 else ""
         return f"{(100.0 if self.percent else 1.0) * value:{sign}.{self.digits}f}"
 
 

@@ -17,6 +17,7 @@ about ten houses the interval tends to be too narrow.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -33,7 +34,7 @@ _BLOCK = 500_000
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean over episodes, or a mean paired difference, with its 95 % bootstrap interval; None without episodes."""
+    """A mean over episodes, a paired difference or a ratio, with its 95 % interval; None without episodes."""
 
     mean: float | None
     low: float | None
@@ -42,13 +43,15 @@ class Estimate:
     """Episodes, or pairs of episodes, that have a value."""
     houses: int
     """Houses of these episodes. 1: the interval is over the episodes of this one house."""
+    neutral: float = 0.0
+    """What two equal runs give: 0 for a difference, 1 for a ratio."""
 
     @property
     def resolved(self) -> bool:
-        """For a difference: True if its interval excludes 0 and it has at least `MIN_PAIRS` pairs."""
+        """For a comparison: True if its interval excludes `neutral` and it has at least `MIN_PAIRS` pairs."""
         if self.low is None or self.high is None or self.count < MIN_PAIRS:
             return False
-        return not self.low <= 0.0 <= self.high
+        return not self.low <= self.neutral <= self.high
 
 
 def estimate(values: Sequence[Value], houses: Sequence[str]) -> Estimate:
@@ -85,6 +88,42 @@ def paired_difference(first: Sequence[Value], second: Sequence[Value], houses: S
     return estimate([None if a is None or b is None else float(b) - float(a) for a, b in pairs], houses)
 
 
+def ratio_of_medians(
+    first: Sequence[Value], second: Sequence[Value], houses: Sequence[str], *, resamples: int = RESAMPLES
+) -> Estimate:
+    """Returns the median of second over the median of first, and its interval; a pair with a None does not count.
+
+    Each resample draws houses and then pairs of their episodes, as the module says, and takes both medians of them. A
+    ratio to 0 is infinite.
+
+    Args:
+        first: one value for each episode, 0 or more.
+        second: values of the same episodes in the same order.
+        houses: the house of each episode.
+        resamples: number of resamples.
+
+    Raises:
+        ValueError: the arguments have different lengths.
+    """
+    known = sorted(
+        (house, float(a), float(b))
+        for a, b, house in zip(first, second, houses, strict=True)
+        if a is not None and b is not None
+    )
+    if not known:
+        return Estimate(None, None, None, 0, 0, neutral=1.0)
+    values = np.array([pair for _, *pair in known]).T
+    _, starts = np.unique([house for house, *_ in known], return_index=True)
+    clusters = np.split(np.arange(len(known)), starts[1:])
+    rng = np.random.default_rng(0)
+    ratios = np.empty(resamples)
+    for number, drawn in enumerate(rng.integers(len(clusters), size=(resamples, len(clusters))).tolist()):
+        pairs = np.concatenate([rng.choice(clusters[i], len(clusters[i])) for i in drawn])
+        ratios[number] = _ratio_of_medians(values[:, pairs])
+    low, high = np.percentile(ratios, [2.5, 97.5], method="nearest")  # ratios may be infinite
+    return Estimate(_ratio_of_medians(values), float(low), float(high), len(known), len(clusters), neutral=1.0)
+
+
 def bootstrap_interval(
     values: NDArray[np.float64], houses: Sequence[str], *, seed: int = 0, resamples: int = RESAMPLES
 ) -> tuple[float, float]:
@@ -105,6 +144,12 @@ def bootstrap_interval(
     sums = _resampled_sums(clusters, drawn.ravel(), rng).reshape(drawn.shape)
     low, high = np.percentile(sums.sum(axis=1) / sizes[drawn].sum(axis=1), [2.5, 97.5])
     return float(low), float(high)
+
+
+def _ratio_of_medians(pairs: NDArray[np.float64]) -> float:
+    """Returns the median of the second row over that of the first, for an array (2, n)."""
+    below, above = np.median(pairs, axis=1)
+    return float(above / below) if below > 0.0 else math.inf
 
 
 def _resampled_sums(

@@ -96,6 +96,22 @@ def test_every_table_can_be_made_of_its_own_setups(name: str) -> None:
         assert all(len(cells) == len(table.header) - 1 for _, cells in table.rows)
 
 
+def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
+    setups = TABLES["explorers"].setups(("stubborn", "poni"))
+    lines = {
+        setup: [line(n, success=True, steps_to_first_sight=factor * (100 + n % 7) - (n == 5)) for n in range(40)]
+        for setup, factor in zip(setups, (1.0, 0.5), strict=True)
+    }
+    *_, table = TABLES["explorers"].build(lines, setups)
+    rows = dict(table.rows)
+    assert rows["stubborn (gt)"] == ["103", "1", "", ""]
+    median, ratio, sooner, later = rows["poni (gt)"]
+    assert (median, sooner, later) == ("52", "40", "0")
+    assert isinstance(ratio, Cell)
+    assert ratio.text().startswith("0.50 [0.")
+    assert ratio.verdict == "lower"
+
+
 def test_tables_share_their_runs_and_the_oracle_plays_once() -> None:
     assert set(TABLES["categories"].setups()) <= set(TABLES["failures"].setups()) <= set(TABLES["overall"].setups())
     assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "gt")

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from sim.evaluation.bootstrap import Estimate, bootstrap_interval, estimate, paired_difference
+from sim.evaluation.bootstrap import Estimate, bootstrap_interval, estimate, paired_difference, ratio_of_medians
 
 
 def houses_of(count: int, episodes: int) -> list[str]:
@@ -97,3 +97,33 @@ def test_a_split_of_a_thousand_episodes_takes_well_under_a_second() -> None:
     began_s = time.process_time()
     bootstrap_interval(values, houses_of(20, 51))
     assert time.process_time() - began_s < 1.0
+
+
+def test_a_ratio_of_medians_is_resolved_against_one() -> None:
+    rng, names = np.random.default_rng(0), houses_of(20, 10)
+    first = rng.uniform(50.0, 150.0, 200)
+    half, same = (
+        ratio_of_medians(list(first), list(0.5 * first), names),
+        ratio_of_medians(list(first), list(first), names),
+    )
+    assert half.mean == pytest.approx(0.5)
+    assert half.low == half.high == pytest.approx(0.5)  # each resample keeps the pairs together
+    assert (half.resolved, same.mean, same.resolved) == (True, 1.0, False)
+
+
+def test_the_interval_of_a_ratio_of_medians_holds_the_true_one_in_about_95_of_100_samples() -> None:
+    rng, held, names = np.random.default_rng(0), 0, houses_of(20, 5)
+    for _ in range(60):
+        of_houses = np.repeat(rng.normal(0.0, 0.3, 20), 5)
+        first = np.exp(4.0 + of_houses + rng.normal(0.0, 0.5, 100))
+        second = 0.8 * np.exp(4.0 + of_houses + rng.normal(0.0, 0.5, 100))
+        found = ratio_of_medians(list(first), list(second), names, resamples=300)
+        assert found.low is not None
+        assert found.high is not None
+        held += found.low <= 0.8 <= found.high
+    assert held / 60 >= 0.88
+
+
+def test_a_ratio_without_pairs_or_to_zero_is_no_number_that_misleads() -> None:
+    assert ratio_of_medians([None], [1.0], ["a"]) == Estimate(None, None, None, 0, 0, neutral=1.0)
+    assert ratio_of_medians([0.0, 0.0], [1.0, 2.0], ["a", "b"]).mean == float("inf")
