@@ -461,6 +461,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py splits --splits {{tmp}}/transfer --semantics rednet --agents"
         " 'random --config task.max_steps=5' --episodes 1 --out {tmp}/tables",
     ),
+    f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes 500"
+    " --workers 2": (
+        f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents"
+        " 'random --config task.max_steps=5' --episodes 1 --workers 1 --out {tmp}/tables",
+    ),
     f"{PYTHON} tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits val large --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
