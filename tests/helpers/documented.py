@@ -461,8 +461,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py splits --splits {{tmp}}/transfer --semantics rednet --agents"
         " 'random --config task.max_steps=5' --episodes 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes 500"
-    " --workers 2": (
+    f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes"
+    " 500 --workers 2": (
         f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents"
         " 'random --config task.max_steps=5' --episodes 1 --workers 1 --out {tmp}/tables",
     ),
