@@ -49,6 +49,8 @@ from tools.training_files import append_row, cut_rows, load_state, options_of, r
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
+SMOOTHED = 12
+"""The thick line of a curve is a mean over one of so many parts of the training."""
 PLANS_IN_MEMORY = 256
 MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
 """Options in which a continued run may differ from its start."""
@@ -243,7 +245,7 @@ class _Watch(BaseCallback):
 
 
 def curves(files: Sequence[Path]) -> bytes:
-    """Returns a PNG of training curves: mean steps to first sight over primitive steps."""
+    """Returns a PNG of training curves: mean steps to first sight over primitive steps, and its running mean."""
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     axes = figure.subplots()
     for file in files:
@@ -252,7 +254,11 @@ def curves(files: Sequence[Path]) -> bytes:
         with file.open(newline="", encoding="utf-8") as stream:
             rows = [row for row in csv.DictReader(stream) if int(row["episodes"]) >= LAST_EPISODES // 3]
         steps = [int(row["steps"]) / 1e6 for row in rows]
-        axes.plot(steps, [float(row["steps_to_first_sight"]) for row in rows], label=file.parent.name)
+        sights = np.array([float(row["steps_to_first_sight"]) for row in rows])
+        (line,) = axes.plot(steps, sights, linewidth=0.5, alpha=0.4)
+        width = max(len(rows) // SMOOTHED, 1)
+        smooth = [sights[max(0, i - width + 1) : i + 1].mean() for i in range(len(sights))]
+        axes.plot(steps, smooth, color=line.get_color(), label=file.parent.name)
     axes.set(xlabel="primitive steps of the training, millions", ylabel="mean steps to first sight")
     axes.grid(alpha=0.3)
     axes.legend()
