@@ -1,6 +1,6 @@
 """Trains the global policy of `semexp` in house plans with PPO (needs `pip install '.[train]'`).
 
-python tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 35 --seed 0 --out runs/semexp_0
+python tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 --out runs/semexp_0
 
 Plans are written by tools/export_plans.py. Every tenth house, by a hash of its name, is held back for
 tools/compare_explorers.py. The same command continues a killed run, also with another --minutes or --goals: `state.pt`
@@ -63,7 +63,7 @@ class Args:
 
     plans: tuple[Path, ...]
     """Folders of plans (tools/export_plans.py)."""
-    minutes: cli.Positive = 35.0
+    minutes: cli.Positive = 90.0
     """Time of the training; that of earlier runs of the same folder counts."""
     goals: cli.Count = 10_000_000
     """Most long-term goals of the training, all environments together."""
@@ -75,13 +75,13 @@ class Args:
     """Folders of other runs to draw into the curve."""
     envs: cli.Count = 8
     """Number of environments, all in this process."""
-    rollout: cli.Count = 64
+    rollout: cli.Count = 128
     """Long-term goals of each environment between two updates."""
-    batch: cli.Count = 128
+    batch: cli.Count = 256
     """Long-term goals in a minibatch."""
     epochs: cli.Count = 4
     """Passes over the goals of an update."""
-    rate: cli.Positive = 2e-3
+    rate: cli.Positive = 1e-3
     """Learning rate of Adam at the start; it falls to a tenth."""
     discount: cli.Share = 0.9
     """Discount from one long-term goal to the next."""

@@ -246,7 +246,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     (
-        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 16 --seed 0 "
+        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 "
         "--out runs/semexp_0"
     ): (
         *_PLANS,
@@ -261,7 +261,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     },
     (
         f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --episodes 120 "
-        "--explorers corners random-goals semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
+        "--explorers random-goals corners semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
         "semexp:semantics=none"
     ): (
         *_PLANS,

@@ -71,7 +71,7 @@ def test_a_training_writes_curve_and_weights_and_is_continued(
 def test_other_options_and_other_plans_do_not_continue_a_run(plans: Path, tmp_path: Path):
     out = tmp_path / "run"
     assert train_semexp.main(options(plans, out, goals=8)) == 0
-    with pytest.raises(ConfigError, match=r"run' holds a run with --rate = 0\.002, this command has 0\.003; take"):
+    with pytest.raises(ConfigError, match=r"run' holds a run with --rate = 0\.001, this command has 0\.003; take"):
         train_semexp.main(options(plans, out, rate=0.003))
     fewer = tmp_path / plans.name
     shutil.copytree(plans, fewer)
