@@ -213,7 +213,8 @@ class Segmenter(Protocol):
         """Returns the probability of each category of `MPCAT40` but void, float32 (40, h, w), in their order.
 
         The resolution may be any whole fraction of the image's. Of a frame without any information on a pixel, all of
-        its probabilities may be 0. Only agents that track objects of all categories read it (`stubborn-plus`).
+        its probabilities may be 0. Agents that track objects of all categories (`stubborn-plus`), explorers that map
+        them (`poni`, `semexp`, `informed-tour`) and `cloned` read it; others do not.
         """
         ...
 

@@ -249,10 +249,7 @@ def _means_and_differences(
     metrics: Sequence[Metric],
     names: Mapping[str, str],
 ) -> list[ResultTable]:
-    labels = [
-        f"{names[setup.agent]} {setup.agent}" if setup.agent in names and not setup.variant else setup.label
-        for setup in setups
-    ]
+    labels = [f"{names[setup.agent]} {setup.agent}" if _has_own_name(setup, names) else setup.label for setup in setups]
     cells = [[metric.cell(lines[setup]) for metric in metrics] for setup in setups]
     rows = list(zip(labels, cells, strict=True))
     means = ResultTable(name, title, ("agent", *(metric.title for metric in metrics)), rows)
@@ -269,13 +266,18 @@ def _differences(
     """Returns a table with one row per pair: the first minus the second, in each metric."""
     rows = [
         (
-            f"{names.get(a.agent, a.label)} - {names.get(b.agent, b.label)}",
+            " - ".join(names[each.agent] if _has_own_name(each, names) else each.label for each in (a, b)),
             [metric.difference(lines[b], lines[a]) for metric in metrics],
         )
         for a, b in pairs
     ]
     header = ("agents", *(metric.title for metric in metrics))
     return ResultTable(f"{name}_differences", "Differences, paired by episode", header, rows)
+
+
+def _has_own_name(setup: AgentSetup, names: Mapping[str, str]) -> bool:
+    """Returns True for an agent with a name in the table; with options of its own it is another one."""
+    return setup.agent in names and not setup.variant
 
 
 def _against_first(setups: Sequence[AgentSetup]) -> list[tuple[AgentSetup, AgentSetup]]:

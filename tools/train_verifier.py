@@ -9,8 +9,8 @@ candidate. Candidates that are verified from too far away to stop are not logged
 
 The log has one line per episode. The same command continues it, and more episodes extend it, as long as split, modules
 and detector are the same. --minutes 0 runs no episode and fits the existing log, whichever code made it. The agent
-finds the rest of an object again after such a rejection: of the true candidates of an episode within 2 m of each other
-only the first counts, and so for the false ones.
+finds the rest of an object again after such a rejection: of the true candidates of an episode that the robot judged
+from places within 2 m of each other only the first counts, and so for the false ones.
 
 Then each method of verification is fitted and written as JSON with the counts and its quality on houses left out
 (`stubborn.target.verifier_fit`).

@@ -21,6 +21,8 @@ _RAYS = 72
 _STEP_M = 0.05  # a cell: longer steps would pass through thin walls
 _GAP_STEPS = 4
 _SAME_HEADING_RAD = 0.5 * TURN_RAD
+_SAME_PLACE_M = 0.1
+"""A robot that is farther from its last place has done something else since it began to turn."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,8 +61,9 @@ class Glancer:
 
     def next_turn(self, navmap: NavMap, pose: Pose) -> Action | None:
         """Returns a turn towards a heading that is worth a look; None when there is none."""
+        moved = bool(self._looks) and pose.distance_to(self._looks[-1]) > _SAME_PLACE_M
         self._looks.append(pose)
-        if self._aim_rad is not None and abs(wrap_angle(self._aim_rad - pose.yaw_rad)) <= _SAME_HEADING_RAD:
+        if moved or (self._aim_rad is not None and abs(wrap_angle(self._aim_rad - pose.yaw_rad)) <= _SAME_HEADING_RAD):
             self._aim_rad = None
         if self._aim_rad is None:
             self._aim_rad = self._worth_a_look(navmap, pose)

@@ -148,14 +148,14 @@ class _Stop:
 class _Paths:
     """Path lengths in the free space, on blocks of cells: the order of the stops needs no more, in large houses too."""
 
-    def __init__(self, known: Frontiers, block_cells: int) -> None:
+    def __init__(self, known: Frontiers, block_cells: int, unseen_speed: float) -> None:
         free = known.free
         self.block_cells, self.block_m = block_cells, block_cells * free.frame.cell_m
         self.reachable = or_of_blocks(free.reachable, block_cells)
         self.unknown = or_of_blocks(free.reachable & known.unknown, block_cells)
         self.speed = np.ones(self.reachable.shape, np.float32)
         slow = self.unknown & ~or_of_blocks(free.reachable & ~known.unknown, block_cells)
-        self.speed[slow] = free.speed.min(where=free.reachable & known.unknown, initial=1.0)
+        self.speed[slow] = unseen_speed
 
     def from_cells(
         self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"]
@@ -192,8 +192,8 @@ class TourExplorer:
     def reset(self, seed: int = 0) -> None:
         """Forgets the last episode."""
         self.glancer.reset()
-        self._goal: MapCells | None = None
-        self._layer: CollisionLayer | None = None  # that the route to the goal was planned on
+        self._goal: MapCells | None = None  # the stop pursued
+        self._layer: CollisionLayer | None = None  # that the route to it was planned on
         self._age_steps = 0
         self._goal_from_m2 = 0.0  # the ground seen when the goal was chosen
         self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
@@ -214,14 +214,22 @@ class TourExplorer:
         turn = self.glancer.next_turn(ground.navmap, ground.pose)
         if turn is not None:
             return turn
-        left = self._left(ground, ground.layers[0] if self._layer is None else self._layer)
-        route = yield from self._go_on(left, ground)
-        for layer in self._layers(ground) if route is None else ():
-            left = self._left(ground, layer) if layer is not left.layer else left
-            route = yield from self._to_first_stop(left, ground)
+        lefts: dict[CollisionLayer, _Left] = {}
+
+        def left_on(layer: CollisionLayer) -> _Left:
+            if layer not in lefts:
+                lefts[layer] = self._left(ground, layer)
+            return lefts[layer]
+
+        if self._goal is not None and self._layer is not None:
+            route = yield from self._go_on(self._goal, left_on(self._layer), ground)
             if route is not None:
                 return route
-        return route or (yield from left.known.to_least_visited(self.config.arrived_m))
+        for layer in self._layers(ground):
+            route = yield from self._to_first_stop(left_on(layer), ground)
+            if route is not None:
+                return route
+        return (yield from left_on(ground.layers[0]).known.to_least_visited(self.config.arrived_m))
 
     def _note_view(self, ground: Ground) -> None:
         """Enters the ground that the last frame showed near the robot into the inspected ground."""
@@ -229,11 +237,11 @@ class TourExplorer:
         if self._spent.size == 0:
             self._spent, self._inspected = (np.zeros(navmap.frame.shape, np.bool_) for _ in range(2))
             self._frames = np.zeros(navmap.frame.shape, np.uint16)
-        xy_m = ground.pose.xy_m
-        index, near = cells_near_segment(navmap.frame, xy_m, xy_m, max(self.config.near_m, navmap.frame.cell_m))
-        frames = navmap.frames_in_view[index]
-        self._inspected[index] |= near & (frames != self._frames[index])
-        self._frames[index] = frames
+        known, xy_m = navmap.known_window(0), ground.pose.xy_m
+        frames, before = navmap.frames_in_view[known.index], self._frames[known.index]
+        index, near = cells_near_segment(known.frame, xy_m, xy_m, max(self.config.near_m, navmap.frame.cell_m))
+        self._inspected[known.index][index] |= near & (frames[index] != before[index])
+        before[:] = frames
 
     def _layers(self, ground: Ground) -> tuple[CollisionLayer, ...]:
         """Returns the collision layers to make a tour on, in order of preference."""
@@ -253,16 +261,16 @@ class TourExplorer:
             far &= known.free.reachable & ~known.unknown & known.off_trail
         return _Left(known, layer, far, self._spent[known.window.index])
 
-    def _go_on(self, left: _Left, ground: Ground) -> Search:
+    def _go_on(self, goal: MapCells, left: _Left, ground: Ground) -> Search:
         """Returns the route to the rest of the stop pursued; None when it is done with, or time for a new tour."""
         self._age_steps += 1
         if self._layer is CollisionLayer.NONE and self._pushes_on(ground.pose):
             return None
         news = ground.navmap.seen_area_m2() - self._goal_from_m2 >= self.config.news_m2
         longest_steps = self.config.replan_steps if news else self.config.keep_steps
-        if self._goal is None or self._age_steps > longest_steps:
+        if self._age_steps > longest_steps:
             return None
-        route = yield Goal(left.known.free, self._goal.within(left.known.window) & left.cells)
+        route = yield Goal(left.known.free, goal.within(left.known.window) & left.cells)
         if route is not None and route.length_m <= self.config.arrived_m:
             self._spend(left, ground.pose)
             return None
@@ -279,7 +287,8 @@ class TourExplorer:
     def _to_first_stop(self, left: _Left, ground: Ground) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
         known, pose = left.known, ground.pose
-        paths, factor = _Paths(known, self.config.block_cells), self._factor(ground, known)
+        paths = _Paths(known, self.config.block_cells, ground.planner.config.unseen_speed)
+        factor = self._factor(ground, known)
         while True:
             stops = self._stops(left, paths, factor)
             if not stops:
@@ -368,6 +377,8 @@ class InformedTourExplorer(TourExplorer):
 
     def _factor(self, ground: Ground, known: Frontiers) -> Float32[np.ndarray, "rows cols"]:
         """Returns the factor of each frontier cell for the weight of its stop."""
+        if not known.cells.any():
+            return np.zeros(known.cells.shape, np.float32)  # no stop reads it
         potential = np.maximum(self.potentials.of(ground, known.free.frame, known.cells), 0.0)
         return (np.float32(self.config.potential_floor) + potential) ** np.float32(self.config.potential_power)
 

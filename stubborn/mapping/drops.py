@@ -122,9 +122,10 @@ class Drops:
 def _cells_at(
     frame: GridFrame, pose: Pose, depth_m: Float32[np.ndarray, "h 1"], left: Float32[np.ndarray, " w"]
 ) -> Int[np.ndarray, "h w"]:
-    """Returns the row-major cells at some depths along the columns of the image."""
+    """Returns the row-major cells at some depths along the columns of the image; beyond the map those at its edge."""
     cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     x = (pose.x_m - frame.origin_xy_m[0]) + depth_m * (cos - sin * left)
     y = (pose.y_m - frame.origin_xy_m[1]) + depth_m * (sin + cos * left)
-    cols, rows = (x / frame.cell_m).astype(np.int32), (y / frame.cell_m).astype(np.int32)
+    cols = np.clip((x / frame.cell_m).astype(np.int32), 0, frame.shape[1] - 1)
+    rows = np.clip((y / frame.cell_m).astype(np.int32), 0, frame.shape[0] - 1)
     return rows * np.int32(frame.shape[1]) + cols

@@ -189,9 +189,10 @@ class Mapper:
         if not bits.any():
             return
         points = rays.project(rays.sample(depth), bits != 0, camera_pose, window)
-        low = points.height_m <= self.config.score_max_height_m
+        counts = points.height_m <= self.config.score_max_height_m
+        counts &= window.frame.contains(points.rows, points.cols)  # at the edge of the map the camera sees beyond it
         seen = navmap.goals_seen[window.index]
-        np.bitwise_or.at(seen, (points.rows[low], points.cols[low]), bits[points.valid][low])
+        np.bitwise_or.at(seen, (points.rows[counts], points.cols[counts]), bits[points.valid][counts])
 
     def _confirm(
         self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]

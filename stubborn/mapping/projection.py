@@ -63,14 +63,15 @@ class Rays:
 
     def sample(self, depth: Float32[np.ndarray, "height_px width_px"]) -> Float32[np.ndarray, "h w"]:
         """Returns those pixels of a full-size depth image in metres, as a new array."""
-        return np.ascontiguousarray(depth[self.pick])
+        return depth[self.pick].copy()
 
     def project(
         self, d: Float32[np.ndarray, "h w"], confirmed: Bool[np.ndarray, "h w"], camera_pose: Pose, window: Window
     ) -> GroundPoints:
         """Returns cells of `window` and heights of the confirmed points of a sampled depth image.
 
-        The window must contain everything in range: see `sight_window_cells`.
+        The window contains everything in range (see `sight_window_cells`) but at the edge of the map, where cells may
+        lie outside of it.
         """
         valid = np.empty(d.shape, np.bool_)
         rows, cols, height_m = np.empty(d.size, np.int32), np.empty(d.size, np.int32), np.empty(d.size, np.float32)

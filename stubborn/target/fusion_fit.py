@@ -32,7 +32,7 @@ PARTS = 2
 """Random parts of the views of each track."""
 PLAUSIBLE = 0.1
 """Goals below this probability, before and after the fit, are not judged: nearly all are true negatives."""
-_BINS = (0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
+_BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
 
 
 @dataclass(frozen=True)

@@ -117,6 +117,7 @@ class TrackSeeker:
         """See `Seeker`: the probability of the track."""
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`."""
+        self._drawn_rejected: set[int] = set()  # rejected tracks that the map shows
         self._accepted: list[int] = []  # accepted tracks that are not set aside
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
@@ -247,14 +248,14 @@ class TrackSeeker:
         return int(index[0].start) + row, int(index[1].start) + col
 
     def _decide(self, pose: Pose) -> bool:
-        """Updates the verdicts on all tracks; returns True if other ones are rejected now."""
+        """Updates the verdicts on all tracks; returns True if others are rejected than the map shows."""
         tracks = self._of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
-        rejected = set(self.verdicts.rejected)
         self.verdicts.update(self.probability, distance_m, tracks.evidence, self.step, self.pursued)
         self._accepted = [t for t in sorted(self.verdicts.accepted) if self._is_due(t)]
-        return rejected != self.verdicts.rejected
+        drawn, self._drawn_rejected = self._drawn_rejected, set(self.verdicts.rejected)
+        return drawn != self._drawn_rejected
 
     def _is_stuck(self, pose: Pose, *, pursuing: bool) -> bool:
         """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again.

@@ -27,7 +27,7 @@ from stubborn.target.verification import METHODS, FittedVerifier
 
 FOLDS = 5
 SAME_PLACE_M = 2.0
-"""Candidates of one episode and the same truth count once within this distance."""
+"""Candidates of one episode with the same truth count once if the robot judged them from places this near."""
 SHIFT_DEVIATION = 1.0
 """Standard deviation of the prior of a category's shift, in logits."""
 OPEN_SHARE = 0.8

@@ -168,3 +168,10 @@ def test_the_table_of_verification_has_all_methods() -> None:
 def test_a_table_that_there_is_not_is_told_what_there_is() -> None:
     with pytest.raises(ConfigError, match="failures, ablation, exploration, categories, overall"):
         table_named("failure")
+
+
+def test_a_row_with_options_of_its_own_has_them_in_its_name() -> None:
+    setups = tuple(AgentSetup.named(name, "gt") for name in ("stubborn-i", "stubborn-i --config agent.cell_m=0.1"))
+    means, differences = TABLES["ablation"].build(lines_of(setups, failed=(10, 20)), setups)
+    assert len({row for row, _ in means.rows}) == 2
+    assert all("agent.cell_m=0.1" in row for row, _ in differences.rows)

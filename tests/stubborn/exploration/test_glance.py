@@ -90,3 +90,10 @@ def test_with_an_infinite_gain_it_never_looks():
 def test_a_range_of_zero_is_refused():
     with pytest.raises(ConfigError, match="got 0"):
         GlanceConfig(range_m=0.0)
+
+
+def test_a_robot_that_did_something_else_forgets_where_it_was_turning_to():
+    navmap, glance = corridor(), glancer()
+    assert glance.next_turn(navmap, START) is not None
+    navmap.frames_in_view[:] = 1
+    assert glance.next_turn(navmap, Pose(2.0, 0.0, 0.0)) is None

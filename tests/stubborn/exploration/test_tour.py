@@ -111,10 +111,13 @@ def test_paths_on_blocks_are_about_as_long_as_on_cells():
     rows, cols = np.nonzero(known.cells & (known.free.frame.centres(*np.indices(known.cells.shape))[0] > 3.0))
     lengths_m = []
     for block_cells in (1, 4):
-        paths = _Paths(known, block_cells)
+        paths = _Paths(known, block_cells, 0.4)
         field_m = paths.from_cells(np.array([start[0]]), np.array([start[1]]))
         lengths_m.append(paths.nearest_m(field_m, _Stop(rows, cols, 1.0)))
         assert paths.unknown_m2(rows, cols, 2.0) == pytest.approx(6.3, abs=1.5)
+        slow = paths.speed[paths.speed < 1.0]
+        assert slow.size > 0
+        assert np.all(slow == np.float32(0.4))  # also where a wall is near unknown ground
     assert 4.2 < lengths_m[0] < 4.8
     assert lengths_m[1] == pytest.approx(lengths_m[0], abs=0.3)
 
@@ -126,6 +129,49 @@ def test_ground_seen_from_afar_only_is_visited_when_nothing_is_unknown():
     pose = Pose(-1.5, 0.0, 0.0)
     navmap.trail[navmap.frame.cell(-1.5, 0.0)] = True
     assert goal_x_m(explorer(near_m=2.5), navmap, pose) == pytest.approx(2.5, abs=0.5)
+
+
+def test_ground_seen_from_afar_is_not_inspected_by_coming_near_without_looking():
+    navmap, explore = corridor(), explorer(near_m=2.5)
+    window = navmap.frame.window_at(0.0, 0.0, 300)
+    route_of(explore, ground(navmap, Pose(0.0, 0.0, 0.0), window))
+    there = navmap.frame.cell(3.5, 0.0)
+    assert not explore._inspected[there]
+    route_of(explore, ground(navmap, Pose(3.0, 0.0, math.pi), window))  # no new frame shows it
+    assert not explore._inspected[there]
+    navmap.frames_in_view[there] += 1
+    route_of(explore, ground(navmap, Pose(3.0, 0.0, 0.0), window))
+    assert explore._inspected[there]
+
+
+def enclosed() -> NavMap:
+    """The corridor with walls at its ends, and large marks across it at x = 3 m: nothing is left to see."""
+    navmap = corridor()
+    for x_m in ((-4.1, -4.0), (4.0, 4.1)):
+        rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
+    rows, col = slice(navmap.frame.cell(3.0, -1.1)[0], navmap.frame.cell(3.0, 1.1)[0]), navmap.frame.cell(3.0, 0.0)[1]
+    navmap.pessimistic_marks[rows, col : col + 3] = navmap.optimistic_marks[rows, col : col + 3] = True
+    return navmap
+
+
+def test_where_nothing_is_left_to_see_the_robot_stays_on_its_side_of_the_marks():
+    navmap, explore = enclosed(), explorer(near_m=0.0)
+    navmap.trail[navmap.frame.cell(-1.0, 0.0)] = True  # the ground behind the marks is farthest from the trail
+    for _ in range(3):
+        assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) < 3.0
+
+
+def test_steps_that_cross_no_mark_do_not_count_as_crossing():
+    navmap, explore = enclosed(), explorer(near_m=0.0, unmarked_steps=5, keep_steps=1)
+    navmap.frames_in_view[:, navmap.frame.cell(3.6, 0.0)[1] :] = 0  # behind the marks something is left to see
+    navmap.seen_obstacle[:, navmap.frame.cell(3.6, 0.0)[1] :] = False
+    assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.0
+    crossed = explore._unmarked_steps
+    rectangle(navmap, (3.6, 4.0), (-1.0, 1.0))
+    rectangle(navmap, (4.0, 4.1), (-1.1, 1.1), wall=True)
+    for _ in range(10):
+        goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0))
+    assert explore._unmarked_steps <= crossed + 2  # until it is done with the stop
 
 
 def test_a_stop_is_kept_for_some_steps_and_reset_forgets_it():

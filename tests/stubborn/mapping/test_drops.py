@@ -84,3 +84,10 @@ def test_a_single_deep_pixel_is_noise():
     depth = floor_with_edge(9.0, 0.0)
     depth[400, 300] = depth[401, 301] = 4.9
     assert not mapped((depth, START)).drop_evidence.any()
+
+
+def test_a_drop_beyond_the_edge_of_the_map_is_not_entered_on_its_other_side():
+    mapper, navmap = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(GridFrame.around_start(200, 0.05))
+    mapper.add_depth(navmap, floor_with_edge(2.0, 0.6), Pose(3.8, 0.0, 0.0))  # the map ends at x = 5 m
+    x_m, _ = navmap.frame.centres(*np.nonzero(navmap.seen_drop))
+    assert x_m.size == 0 or x_m.min() > 3.8

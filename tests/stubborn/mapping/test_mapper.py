@@ -5,7 +5,7 @@ import pytest
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import CameraModel, ConfigError, RobotModel, Scores
+from sim.interface import MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
 from stubborn.mapping.mapper import Mapper, MappingConfig, note_sighting
 from stubborn.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
@@ -236,3 +236,23 @@ def test_a_sighting_is_noted_on_the_whole_map_from_any_window():
     np.testing.assert_allclose(maps[0].shown_x, maps[1].shown_x, rtol=1e-5)
     assert sightings[0].distance_m[0] == pytest.approx(5.0, abs=0.05)
     assert np.count_nonzero(maps[1].shown_y) == 2
+
+
+def test_goals_beyond_the_edge_of_the_map_are_left_out_and_do_not_stop_the_agent():
+    navmap = NavMap.empty(GridFrame.around_start(200, 0.05))  # ends 5 m from the start
+    mapper, pose = Mapper(CAMERA, RobotModel(), MappingConfig()), Pose(3.5, 0.0, 0.0)
+    depth = GridWorld([Box((6.0, 6.1), (-9.0, 9.0))], (3.5, 0.0, 0.0), camera=CAMERA).render()[0]
+    posteriors = np.zeros((40, 120, 160), np.float32)
+    posteriors[MPCAT40_ID["bed"] - 1] = 1.0
+    mapper.add_goals(navmap, depth, posteriors, pose)
+    x_m, _ = navmap.frame.centres(*np.nonzero(navmap.goals_seen))
+    assert x_m.size > 0
+    assert x_m.min() > 3.5
+
+
+def test_the_observation_stays_as_it_is_when_every_pixel_is_used():
+    depth, scores = wall_ahead(2.0), Scores(np.ones((480, 640), np.float32), np.zeros((480, 640), np.float32))
+    depth += np.random.default_rng(0).normal(0.0, 0.01, depth.shape).astype(np.float32)
+    before = depth.copy()
+    Mapper(CAMERA, RobotModel(), EVERY_PIXEL).add_scores(NavMap.empty(FRAME), depth, scores, Pose(0, 0, 0), 0, rim_px=0)
+    np.testing.assert_array_equal(depth, before)

@@ -1,4 +1,5 @@
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import TURN_RAD, Action
+from sim.interface import TURN_RAD, Action, ConfigError
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
@@ -223,3 +224,18 @@ def test_routes_keep_clear_of_obstacles_where_there_is_room():
         free = planner.free_space(navmap, pose, CollisionLayer.NONE)
         clearances.append(np.mean([free.clearance_m[free.frame.cell(p.x_m, p.y_m)] for p in poses]))
     assert clearances[1] > clearances[0] + 0.02
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "allowed"),
+    [
+        ("edge_speed", 0.0, "lie in (0, 1]"),
+        ("unseen_speed", -0.5, "lie in (0, 1]"),
+        ("ring_m", 0.0, "be > 0 m"),
+        ("dilation_m", -0.1, "be >= 0"),
+        ("clearance_cost", math.nan, "be >= 0"),
+    ],
+)
+def test_a_planner_that_could_not_end_is_refused(field: str, value: float, allowed: str):
+    with pytest.raises(ConfigError, match=re.escape(f"PlanningConfig.{field} must {allowed}, got {value}")):
+        PlanningConfig(**{field: value})
