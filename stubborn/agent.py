@@ -16,6 +16,7 @@ from sim.geometry.pose import Pose
 from sim.interface import (
     FORWARD_M,
     GOAL_CATEGORIES,
+    MAX_STEPS,
     Action,
     CameraModel,
     ConfigError,
@@ -95,6 +96,7 @@ class StubbornAgent:
         layers: ObjectLayers | None = None,
         seeker: Seeker | None = None,
         config: AgentConfig = AgentConfig(),
+        max_steps: int = MAX_STEPS,
     ) -> None:
         """Builds the agent from its parts.
 
@@ -109,6 +111,7 @@ class StubbornAgent:
             layers: keeps the scores; by default those of all frames.
             seeker: decides on candidates; by default the paper's, with `verifier`.
             config: all other parameters.
+            max_steps: actions of an episode; near their end the agent takes more risk.
         """
         self.config = config
         self.robot = robot
@@ -125,6 +128,7 @@ class StubbornAgent:
             distances=StopDistances.of(config.target, success, segmenter.spec),
             candidate_score=config.mapping.candidate_score,
             least_cells=1 if segmenter.spec.exact_outlines else config.target.least_cells,
+            max_steps=max_steps,
         )
         self.untrap = Untrap(self.policies.untrap_after)
         self.reset(GOAL_CATEGORIES[0], 0)

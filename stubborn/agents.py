@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import difflib
+import inspect
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from types import MappingProxyType
 from typing import Any
 
-from sim.interface import Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
+from sim.interface import MAX_STEPS, Agent, AgentSpec, CameraModel, ConfigError, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.cloned import ClonedConfig, cloned_agent
 from stubborn.baselines.random import RandomConfig, random_agent
@@ -133,6 +134,7 @@ def make(
     segmenter: Segmenter,
     verifier: Verifier | None = None,
     success: SuccessRule = SuccessRule(),  # noqa: B008 - frozen
+    max_steps: int = MAX_STEPS,
     **options: Any,
 ) -> Agent:
     """Builds an agent by name.
@@ -144,6 +146,7 @@ def make(
         segmenter: source of the scores.
         verifier: judges candidates (`stubborn.target.verification`); None accepts all.
         success: when a STOP counts.
+        max_steps: actions of an episode, for agents that take more risk near its end.
         options: fields of `SPECS[name].config`. `explorer` also takes a name of `EXPLORERS`.
 
     Raises:
@@ -157,6 +160,7 @@ def make(
             raise ConfigError(f"Agent {name!r} has no option {option!r}. It has: {', '.join(allowed)}.")
     if isinstance(options.get("explorer"), str):
         options["explorer"] = EXPLORERS[_known(options["explorer"], EXPLORERS, "explorer")]
+    limit = {"max_steps": max_steps} if "max_steps" in inspect.signature(spec.make).parameters else {}
     return spec.make(
         camera=camera,
         robot=robot,
@@ -164,6 +168,7 @@ def make(
         segmenter=segmenter,
         verifier=verifier,
         config=replace(config, **options),
+        **limit,
     )
 
 

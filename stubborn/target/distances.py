@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sim.interface import ConfigError, SegmenterSpec, SuccessRule
+from sim.interface import MAX_STEPS, ConfigError, SegmenterSpec, SuccessRule
 from stubborn.navmap import CollisionLayer
 
 TUNED_FOR_M = 1.0
@@ -33,7 +33,7 @@ class TargetConfig:
     """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
     may include a part of what is beside the target."""
     last_resort_step: int = 420
-    """From this step on, of `MAX_STEPS`, the agent stops at a last resort."""
+    """From this step on, of `MAX_STEPS`, the agent stops at a last resort (see `last_resort_from`)."""
     rejection_margin_m: float = 0.25
     """Cells this near to rejected ones are rejected too."""
     verify_until_step: int = 200
@@ -47,6 +47,10 @@ class TargetConfig:
     """With inexact outlines, fewer connected cells are no candidate: single cells are errors at outlines."""
     target_edge_m: float = 0.08
     """A wall this near the candidate cell is the wall that the object is mounted on, and does not hide it."""
+
+    def last_resort_from(self, max_steps: int) -> int:
+        """Returns the step from which the agent stops at a last resort, in episodes of so many actions."""
+        return max_steps - (MAX_STEPS - self.last_resort_step)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.viewpoint_m <= self.far_viewpoint_m <= self.pushing_m <= self.last_resort_m:

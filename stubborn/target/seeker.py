@@ -11,7 +11,7 @@ from jaxtyping import Bool
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
-from sim.interface import Observation
+from sim.interface import MAX_STEPS, Observation
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import Planner
@@ -86,13 +86,15 @@ class TargetSeeker:
         distances: StopDistances,
         candidate_score: float,
         least_cells: int = 1,
+        max_steps: int = MAX_STEPS,
     ) -> None:
         """`layers` are the collision layers to plan on, in order of preference.
 
         Connected cells with a target score higher than `candidate_score` are a candidate if they are at least
-        `least_cells`.
+        `least_cells`. `max_steps` are the actions of an episode.
         """
         self.config = config
+        self._last_resort_step = config.last_resort_from(max_steps)
         self.candidate_score = candidate_score
         self.least_cells = least_cells
         self.planner = planner
@@ -246,7 +248,7 @@ class TargetSeeker:
                 yield _Choice(part, acceptable[part.index], LastResort.NONE, acceptable=True)
         for part in parts:
             last_resort = LastResort.VERIFY if part is whole and self.verifier.may_refuse else LastResort.NONE
-            if step >= self.config.last_resort_step:
+            if step >= self._last_resort_step:
                 last_resort = LastResort.STOP
             yield _Choice(part, candidates[part.index], last_resort, acceptable=False)
 

@@ -99,7 +99,7 @@ class TrackSeeker:
         self.finder = finder
         self.distances = distances
         self.max_steps = max_steps
-        self._last_resort_step = max_steps - (MAX_STEPS - target.last_resort_step)
+        self._last_resort_step = target.last_resort_from(max_steps)
         self.reset("")
 
     def reset(self, goal: str) -> None:

@@ -325,3 +325,11 @@ def test_importing_the_agents_imports_neither_mujoco_nor_the_rest_of_sim():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("name", agents.NAMES)
+def test_agents_with_a_last_resort_know_the_limit_of_steps(name: str) -> None:
+    agent = build(name, max_steps=300)
+    if isinstance(agent, StubbornAgent):
+        assert isinstance(agent.seeker, (TargetSeeker, TrackSeeker))
+        assert agent.seeker._last_resort_step == 220
