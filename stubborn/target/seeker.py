@@ -144,7 +144,7 @@ class TargetSeeker:
     def _acceptable(self, navmap: NavMap, parts: CandidateParts) -> Bool[np.ndarray, "rows cols"]:
         whole = self._known(navmap)
         view = navmap.view(whole)
-        best = [_seen_best(view, parts.labels == number) for number in range(1, parts.count + 1)]
+        best = _seen_best_of_each(view, parts)
         would = [self.verifier.would_accept(self.goal, features_of(view, flat)) for flat in best]
         accepted = np.array([False, *would])
         if self._pursued is not None:
@@ -256,6 +256,15 @@ class TargetSeeker:
 def _seen_best(view: NavMap, instance: Bool[np.ndarray, "rows cols"]) -> int:
     """Returns the row-major cell of an instance with the highest cumulative score."""
     return int(np.argmax(np.where(instance, view.score_sum, -1.0)))
+
+
+def _seen_best_of_each(view: NavMap, parts: CandidateParts) -> list[int]:
+    """Returns `_seen_best` of each candidate, in the order of their numbers."""
+    rows, cols = np.nonzero(parts.labels)
+    number = parts.labels[rows, cols]
+    order = np.lexsort((-view.score_sum[rows, cols], number))  # stable: the first cell of those that score the same
+    first = order[np.searchsorted(number[order], np.arange(1, parts.count + 1))]
+    return (rows[first] * view.score_sum.shape[1] + cols[first]).tolist()
 
 
 def features_of(view: NavMap, flat: int) -> Features:

@@ -9,9 +9,10 @@ from sim.interface import ConfigError, SegmenterSpec, SuccessRule
 from stubborn.mapping.mapper import Sighting
 from stubborn.navmap import NavMap
 from stubborn.raster import distance_to, nearest, sight_is_clear
+from stubborn.target.candidates import CandidateParts
 from stubborn.target.classifiers import Features
 from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.seeker import TargetSeeker
+from stubborn.target.seeker import TargetSeeker, _seen_best, _seen_best_of_each
 from stubborn.target.verification import AcceptAll, Verifier
 from tests.helpers.asciimap import map_of
 from tests.helpers.ground import BOTH_LAYERS, PLANNER, whole
@@ -541,3 +542,15 @@ def test_the_accepted_cell_is_where_the_candidate_scores_highest_and_not_the_one
         assert seek.accepted_cell == cell
         seek.reset("bed")
         assert seek.accepted_cell is None
+
+
+def test_the_cells_seen_best_of_all_candidates_are_those_of_each_alone():
+    rng = np.random.default_rng(0)
+    navmap = NavMap.empty(GridFrame.around_start(60, 0.05))
+    navmap.score_max[:] = rng.random((60, 60)) < 0.3
+    navmap.score_sum[:] = rng.integers(0, 3, (60, 60))  # many cells score the same
+    parts = CandidateParts.of(navmap, 0.5, 2)
+    assert parts.count > 5
+    alone = [_seen_best(navmap, parts.labels == number) for number in range(1, parts.count + 1)]
+    assert _seen_best_of_each(navmap, parts) == alone
+    assert _seen_best_of_each(navmap, CandidateParts.of(NavMap.empty(navmap.frame), 0.5, 2)) == []
