@@ -45,7 +45,7 @@ class TourConfig:
     """The stops of the tour and their weights."""
 
     glance: GlanceConfig = field(default_factory=lambda: GlanceConfig(gain_per_turn_m2=3.0))
-    """Looks to the side; they must show more than for other explorers, because the tour comes back to what it passes."""
+    """Looks to the side. They must show more than those of other explorers: the tour comes back to what it passes."""
     potentials: PotentialConfig | None = None
     """Predicted potentials that weigh the frontiers; None: their area alone counts."""
     potential_floor: float = 0.05
