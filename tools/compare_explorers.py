@@ -63,7 +63,7 @@ class Args:
     seed: cli.Seed = 0
     """Seed of the episodes and of the explorers."""
     out: cli.OutFile | None = None
-    """File for a JSON line of each episode."""
+    """File for a JSON line of each episode, written after each explorer."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +90,8 @@ def main(args: Args) -> int:
         lines += [{"explorer": name, **line} for line in played]
         first = played if first is None else first
         print(row(name, played, first), flush=True)
-    if args.out is not None:
-        write_atomically(args.out, "".join(json.dumps(line) + "\n" for line in lines))
+        if args.out is not None:
+            write_atomically(args.out, "".join(json.dumps(line) + "\n" for line in lines))
     return 0
 
 

@@ -90,6 +90,10 @@ def make_samples(args: Args, config: SampleConfig) -> list[Path]:
         raise ConfigError(f"No plan in {', '.join(map(str, args.plans))}: tools/export_plans.py writes them.")
     folder = args.samples or args.out / "samples"
     files = [folder / f"{plan.parent.name}-{plan.name}" for plan in plans]
+    if len(set(files)) < len(files):
+        raise ConfigError(
+            "--plans has two folders of one name with plans of one name; give one of the folders another."
+        )
     printed_s = start_s = time.monotonic()
     todo = [(plan, file) for plan, file in zip(plans, files, strict=True) if not file.exists()]
     for done, (plan, file) in enumerate(todo):

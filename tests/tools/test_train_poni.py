@@ -104,3 +104,12 @@ def test_a_plan_is_held_back_by_its_name_alone():
 def test_without_plans_the_folder_is_named(tmp_path: Path):
     with pytest.raises(ConfigError, match="No plan in"):
         main(Args(plans=(tmp_path / "nowhere",), out=tmp_path / "out"))
+
+
+def test_two_folders_of_one_name_are_refused_and_not_taken_for_one(tmp_path: Path):
+    for parent in ("a", "b"):
+        (tmp_path / parent / "train").mkdir(parents=True)
+        (tmp_path / parent / "train" / "house.npz").touch()
+    args = Args(plans=(tmp_path / "a" / "train", tmp_path / "b" / "train"), out=tmp_path / "out")
+    with pytest.raises(ConfigError, match="two folders of one name"):
+        main(args)
