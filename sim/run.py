@@ -37,15 +37,18 @@ def main(options: RunOptions) -> int:
     episodes, split = plan_episodes(options)
     report_house(options, console)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
-    options = replace(options, episodes=len(episodes), out=out)
-    if options.shard is not None and options.out is not None:
+    count = len(episodes)
+    if options.shard is not None:
         shard = Shard.parse(options.shard)
-        episodes, options = shard.select(episodes), replace(options, out=options.out / shard.folder)
+        episodes, out = shard.select(episodes), out / shard.folder
+        if not episodes:
+            console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
+            return 0
+    options = replace(options, episodes=count, out=out)
     lines, summary = run_missing(options, episodes, split, console)
     display.print_results(console, lines, summary)
-    assert options.out is not None
     failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
-    display.print_where_to_look(console, options.out, video=options.video, failed=next(failures, None))
+    display.print_where_to_look(console, out, video=options.video, failed=next(failures, None))
     return 1 if summary["errors"] else 0
 
 

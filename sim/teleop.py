@@ -7,7 +7,6 @@ nothing.
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import time
 from collections.abc import Sequence
@@ -100,7 +99,6 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
     options = run_options(args)
     assert options.out is not None
     episodes, split = plan(args, options)
-    existed = (options.out / "config.json").exists()
     content = record_of(options, configuration_of(options, HUMAN), split)
     record = RunDirectory(options.out, content)
     try:
@@ -108,22 +106,10 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
         line = play(options, episode, cockpit, content)
         record.append(line)
         record.write_summary({"split": split})
-    except (Quit, KeyboardInterrupt):
-        if not existed:
-            _remove_record(options.out)
-        raise
     finally:
+        record.discard_if_empty()
         record.close()
     return options.out, line
-
-
-def _remove_record(out: Path) -> None:
-    """Removes a folder in which nothing was recorded, so that the next start there may have other options."""
-    for name in ("config.json", "results.jsonl", ".lock"):
-        (out / name).unlink(missing_ok=True)
-    for folder in (out / "videos", out):
-        with contextlib.suppress(OSError):  # it does not exist, or holds other files
-            folder.rmdir()
 
 
 def run_options(args: Args) -> RunOptions:
@@ -177,7 +163,7 @@ def choose(args: Args, episodes: Sequence[Episode], done: set[str]) -> Episode:
     for episode in left:
         if episode.episode_id == args.episode_id:
             return episode
-    raise ConfigError(f"There is no episode '{args.episode_id}' here; there are '{left[0].episode_id}' and others.")
+    raise ConfigError(f"There is no episode '{args.episode_id}' here; there are '{episodes[0].episode_id}' and others.")
 
 
 def play(options: RunOptions, episode: Episode, cockpit: Cockpit, content: dict[str, Any]) -> dict[str, Any]:

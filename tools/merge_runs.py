@@ -54,6 +54,8 @@ def main(args: Args) -> int:
     merged = RunDirectory(out, merged_config(runs))
     try:
         merged.drop_errors()  # a shard may have run them again
+        for code in dict.fromkeys(code for run in runs for code in run.config.get("codes") or []):
+            merged.record_code(code)
         existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
             if episode_id not in existing:

@@ -23,6 +23,8 @@ def check_options(options: RunOptions) -> None:
         raise ConfigError("--labels, --root and --start-deg need --house.")
     if options.only and options.house is not None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are drawn.")
+    if options.retry_errors and options.out is None:
+        raise ConfigError("--retry-errors needs --out: the folder of the run.")
     selection.check(options)
     if options.shard is not None:
         Shard.parse(options.shard)

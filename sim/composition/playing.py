@@ -47,7 +47,8 @@ def run_missing(
             console.print(run.healed)
         _require_own_lines(options, run, episodes)
         if options.retry_errors:
-            console.print(f"{run.drop_errors()} episodes that ended with an error are run again.")
+            again = run.drop_errors({episode.episode_id for episode in episodes})
+            console.print(f"{again} episodes that ended with an error are run again.")
         done = {line["episode_id"] for line in run.lines}
         todo = [episode for episode in episodes if episode.episode_id not in done]
         segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
@@ -93,6 +94,13 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, console: Console) 
     """Prints how many episodes the folder holds already, and whether other code ran them."""
     if todo < total:
         console.print(f"{total - todo} of them were there already, {todo} to go.")
+    for name, (before, now) in (run.other_versions() if 0 < todo < total else {}).items():
+        console.print(
+            f"The run began with {name} {before}; these episodes run with {now}, and their results may differ.",
+            highlight=False,
+            markup=False,
+            soft_wrap=True,
+        )
     others = run.record_code(code_hash()) if todo else []
     if others:
         console.print(

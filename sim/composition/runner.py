@@ -193,8 +193,8 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     if options.episodes > len(episodes):
         with_goal = f" with goal '{options.goal}'" if options.goal else ""
         raise ConfigError(
-            f"--episodes must be at most {len(episodes)}, got {options.episodes}: split '{split.name}' has no more "
-            f"episodes{with_goal}."
+            f"Split '{split.name}' has {len(episodes)} episodes{with_goal}, and {options.episodes} were asked for "
+            f"(--episodes, by default {RunOptions.episodes}); give --episodes {len(episodes)}."
         )
     return episodes[: options.episodes]
 

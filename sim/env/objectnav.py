@@ -78,6 +78,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     Raises:
         ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.
+        EpisodeError: an unknown goal, or a start with numbers out of range.
         HouseError: a house that violates the house format.
     """
 
@@ -171,17 +172,18 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             raise gymnasium.error.ClosedEnvironmentError("The environment is closed: make another one.")
         super().reset(seed=seed)
         episode = self._choose(options or {})
-        self._scene = None  # frees the last house before the next one is compiled
-        self._scene = self._scenes.get(episode.house)
+        # Frees the last house before the next one is compiled; a step after a reset that failed is refused.
+        self._scene = self._episode = self._motion = None
+        scene = self._scenes.get(episode.house)
         self._noise = self._noise_in(episode.house)
         # A spawned child takes no number from the stream that draws episodes.
-        conditions = self._noise.begin(self.np_random.spawn(1)[0], self._scene.gloss)
-        self._scene.world.reset(episode.start, conditions)
-        self._scene.task.begin(episode.goal, episode.start)
-        self._episode, self._motion = episode, None
+        conditions = self._noise.begin(self.np_random.spawn(1)[0], scene.gloss)
+        scene.world.reset(episode.start, conditions)
+        scene.task.begin(episode.goal, episode.start)
+        self._scene, self._episode = scene, episode
         observation, semantic = self._observe()
         self._require_in_space(observation)
-        self._scene.task.look(semantic)
+        scene.task.look(semantic)
         return observation, self._info(collided=False)
 
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:

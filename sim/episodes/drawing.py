@@ -95,6 +95,11 @@ def draw_start(
         )
         if space.is_free(start.x_m, start.y_m) and _fits(task.world, start):
             return start
+    if not task.truth.region(goal, floor_z_m).footprints:
+        raise EpisodeError(
+            f"House '{task.world.house.name}' has '{goal}' on another storey only; the search starts on the one at z = "
+            f"{floor_z_m:g} m."
+        )
     raise EpisodeError(
         f"House '{task.world.house.name}': no place to start a search for '{goal}' from; no instance can be reached."
     )

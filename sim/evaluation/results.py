@@ -11,7 +11,7 @@ import fcntl
 import json
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
@@ -155,15 +155,22 @@ class RunDirectory:
         """Removes what this process created if no line was written, so that the next start may have other options."""
         if self.lines or self.path / "config.json" not in self._created:
             return
-        for file in ("config.json", "results.jsonl", ".lock"):
+        for file in ("config.json", "results.jsonl", "summary.json", ".lock"):
             (self.path / file).unlink(missing_ok=True)
         for folder in (self.path / "videos", self.path):
             with contextlib.suppress(OSError):  # it does not exist, or holds other files
                 folder.rmdir()
 
-    def drop_errors(self) -> int:
-        """Removes the lines of episodes that ended with an error, so that they are run again; returns their number."""
-        kept = [line for line in self.lines if line["end_reason"] != "error"]
+    def drop_errors(self, episode_ids: Collection[str] | None = None) -> int:
+        """Removes the lines of episodes that ended with an error, so that they are run again; returns their number.
+
+        Those of `episode_ids` only, if they are given.
+        """
+        kept = [
+            line
+            for line in self.lines
+            if line["end_reason"] != "error" or (episode_ids is not None and line["episode_id"] not in episode_ids)
+        ]
         dropped = len(self.lines) - len(kept)
         if dropped:
             self._results.close()
@@ -227,6 +234,18 @@ class RunDirectory:
         if codes != existing.get("codes"):
             _write_json(file, existing | {"codes": codes})
         return [other for other in codes if other != code]
+
+    def other_versions(self) -> dict[str, tuple[str, str]]:
+        """Returns what differs between the versions that the run began with and those of now, the code apart.
+
+        Both are given for each name, the earlier one first.
+        """
+        before, now = read_record(self.path / "config.json").get("versions", {}), self.config.get("versions", {})
+        return {
+            name: (before[name], now[name])
+            for name in now
+            if name != "code" and before.get(name, now[name]) != now[name]
+        }
 
     def write_summary(self, extra: Mapping[str, Any]) -> dict[str, Any]:
         """Averages all lines, writes `summary.json` and returns its content."""

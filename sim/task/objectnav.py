@@ -33,7 +33,7 @@ class _Record:
     goal: str
     start: Pose
     shortest_path_m: float | None
-    """None: the goal is on another storey, there is no path to it."""
+    """None: there is no path, because the goal is on another storey."""
     positions_m: list[tuple[float, float]]
     """Positions of the robot's centre, the start first."""
     recorder: Recorder
@@ -188,6 +188,11 @@ class Task:
 
     def unreachable_error(self, goal: str, start: Pose) -> EpisodeError:
         """Returns the error for a goal that cannot be reached from a start."""
+        if not self.truth.region(goal, start.floor_z_m).footprints:
+            return EpisodeError(
+                f"House '{self.world.house.name}' has '{goal}' on another storey only; the start is on the one at z = "
+                f"{start.floor_z_m:g} m."
+            )
         return EpisodeError(
             f"House '{self.world.house.name}': there is no path from ({start.x_m:.2f}, {start.y_m:.2f}) m to a place "
             f"where a STOP for '{goal}' succeeds."

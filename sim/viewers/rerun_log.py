@@ -210,7 +210,7 @@ class RerunLog:
         points, rows, cols = points_in_world(
             moment.seen("depth"),
             env.camera_model,
-            env.scene.world.camera_pose,
+            pose,
             stride_px=POINT_STRIDE_PX,
             forward_m=env.robot_model.camera_forward_m,
         )

@@ -16,7 +16,7 @@ Driver = Literal["agent", "person"]
 SPEEDS = (1.0, 2.0, 5.0, 60.0)
 """Actions per second that the page offers; the last is as fast as the machine allows."""
 _WAITING_ACTIONS = 4
-"""Further actions of a person are dropped, so that the robot stops soon after a key is released."""
+"""Actions of a person that wait at most. The oldest is dropped: the robot stops soon after a key is released."""
 
 
 class Interrupted(BaseException):
@@ -116,6 +116,7 @@ class Controls:
             assert wish is not None
             self._stopping, self._steps, self._next_s = False, 0, 0.0
             self.paused = False
+            self._actions.clear()
             self._hand_to(wish.driver)
             return wish
 

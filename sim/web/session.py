@@ -104,7 +104,8 @@ class Session:
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
-        line = play_episode(parts.env, shared, episode, seed=episode_seed(0, episode.episode_id), viewers=[watcher])
+        seed = episode_seed(0, episode.episode_id)
+        line = play_episode(parts.env, shared, episode, seed=seed, viewers=[watcher], name=wish.agent)
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.segmenter is not None and not shared.stopped_by_person

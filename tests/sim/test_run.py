@@ -299,4 +299,19 @@ def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsy
     assert "Did you mean 'toilet'? It has: chair, table," in told
     assert "--episodes" not in told
     assert entry(["--goal", "toilet", "--episodes", "9999"]) == 2
-    assert re.search(r"--episodes must be at most \d+, got 9999: .* with goal 'toilet'", capsys.readouterr().err)
+    told = capsys.readouterr().err
+    assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", told)
+
+
+def test_a_shard_without_episodes_says_so_and_leaves_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--agent", "random", "--split", "traps", "--episodes", "2", "--shard", "2/3", "--out", str(tmp_path)]
+    assert entry(options) == 0
+    assert "Shard 2/3 holds none of the 2 episodes." in capsys.readouterr().out
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_errors_are_run_again_in_the_folder_of_their_run(capsys: pytest.CaptureFixture[str]) -> None:
+    assert entry(["--retry-errors"]) == 2
+    assert "--retry-errors needs --out" in capsys.readouterr().err

@@ -98,6 +98,13 @@ def test_leaving_before_the_first_record_leaves_no_folder(split: Path, tmp_path:
         assert not (tmp_path / "out").exists()
 
 
+def test_an_episode_that_does_not_exist_leaves_no_folder(split: Path, tmp_path: Path) -> None:
+    args = teleop.Args(split=str(split), episode_id="e99", out=tmp_path / "out")
+    with pytest.raises(ConfigError, match="no episode 'e99'"):
+        teleop.drive(args, Script(["x"]))
+    assert not (tmp_path / "out").exists()
+
+
 def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request_only(env: ObjectNavEnv) -> None:
     cockpit = Script(["g", "c", "m", "p", "p", "?", "x"])
     line = play_episode(env, teleop.Human(env, cockpit), env.split.episodes[0], seed=0)

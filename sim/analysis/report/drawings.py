@@ -125,7 +125,7 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
     drawings, problems = Drawings(), []
     split, robot = None, None
     try:
-        split, robot = split_of(runs[0]), _robot_of(runs[0])
+        split, robot = split_of(runs[0]), robot_of(runs[0])
     except (ConfigError, HouseError, KeyError) as error:
         problems.append(f"The houses are not drawn, and their sizes are unknown: {error}")
     for house, episode_ids in _by_house(runs[0], trajectories).items():
@@ -153,16 +153,21 @@ def _by_house(run: Run, episode_ids: Iterable[str]) -> dict[str, list[str]]:
 
 
 def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) -> GroundTruth:
-    """Returns the ground truth of a house with the success rule and the camera of a run."""
+    """Returns the ground truth of a house with the success rule, the camera and the robot of a run.
+
+    `robot` is `robot_of(run)`, where it is known already.
+    """
     tree = run.config.get("config", {})
     success = with_fields(SuccessRule(), tree.get("task", {}).get("success", {}))
     camera = with_fields(CameraModel(), tree.get("camera", {}))
-    return GroundTruth(World(house, robot=robot, rule=success), success=success, camera=camera)
+    return GroundTruth(World(house, robot=robot or robot_of(run), rule=success), success=success, camera=camera)
 
 
-def _robot_of(run: Run) -> RobotConfig | None:
-    """Returns the robot of `--robot`; None for ours."""
-    return load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else None
+def robot_of(run: Run) -> RobotConfig:
+    """Returns the robot of a run: ours or that of `--robot`, with the fields that `--config` changed."""
+    robot = load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else RobotConfig()
+    recorded = run.config.get("config", {}).get("robot", {})
+    return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})
 
 
 def path_on(sheet: Sheet, trajectory: Trajectory, *, radius_m: float) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from sim.analysis.report.media import picture_of, video_of
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
-    "start_deg", "episodes",
+    "start_deg", "episodes", "shard",
 )  # fmt: skip
 """Options of `sim.run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, Any] = {
@@ -67,12 +67,16 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
 
 def command_of(config: Mapping[str, Any]) -> str:
     """Returns the command of a run without `--out`."""
-    words = ["python", "-m", "sim.run"]
+    words, only = ["python", "-m", "sim.run"], config.get("only")
     for key in (*NO_DEFAULT, *DEFAULTS):
         value = config.get(key)
         if value is None or value == DEFAULTS.get(key) or (key == "split" and config.get("house")):
             continue
+        if key == "episodes" and only:
+            continue
         words += [f"--{key.replace('_', '-')}", str(value)]
+    if only:
+        words += ["--only", *map(str, only)]
     if config.get("settings"):
         words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
     return shlex.join([*words, "--record"])

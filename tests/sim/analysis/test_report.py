@@ -604,3 +604,8 @@ def test_the_ground_truth_of_a_page_follows_the_success_rule_of_the_run() -> Non
         run = Run(Path("runs/x"), {"config": {"task": {"success": {"distance_m": distance_m}}}}, {})
         areas.append(int(ground_truth_of(run, house).target("sofa").reached.sum()))
     assert areas[1] < 0.7 * areas[0]
+
+
+def test_the_ground_truth_of_a_page_has_the_robot_of_the_run() -> None:
+    run = Run(Path("runs/x"), {"config": {"robot": {"body": {"radius_m": 0.22}, "file": None}}}, {})
+    assert ground_truth_of(run, room(6, 4)).world.robot.radius_m == 0.22

@@ -114,3 +114,10 @@ def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -
     parsed = cli.parse(RunOptions, shlex.split(command)[3:])
     assert configuration_of(parsed) == configuration_of(options)
     assert (parsed.seed, parsed.explorer, parsed.semantics) == (3, "frontier", "gt")
+
+
+def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:
+    options = RunOptions(semantics="gt", only=("val_0003", "val_0001"), episodes=2)
+    command = command_of(record_of(options, configuration_of(options), SPLIT))
+    assert cli.parse(RunOptions, shlex.split(command)[3:]).only == options.only
+    assert "--episodes" not in command

@@ -197,6 +197,17 @@ def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exce
         ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
 
 
+def test_a_step_after_a_reset_that_failed_is_refused(env: ObjectNavEnv) -> None:
+    env.reset(seed=0)
+    inside = Episode(episode_id="inside", house="sofa_room", goal="sofa", start=Pose(2.5, 0.0, 0.0))
+    with pytest.raises(EpisodeError):
+        env.reset(options={"episode": inside})
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(Action.TURN_LEFT)
+    env.reset(seed=0)
+    env.step(Action.TURN_LEFT)
+
+
 def test_step_before_reset_is_refused(env: ObjectNavEnv) -> None:
     with pytest.raises(gymnasium.error.ResetNeeded):
         env.step(Action.STOP)

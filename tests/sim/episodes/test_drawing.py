@@ -11,7 +11,7 @@ from sim.geometry.pose import Pose
 from sim.interface import Action
 from sim.task.objectnav import Task
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import room, two_storeys, with_box
 
 
 def task_in(width_m: float = 8.0) -> Task:
@@ -74,3 +74,13 @@ def test_a_start_inside_an_object_and_a_goal_that_is_missing_are_refused():
         sample_episode(TASK, "h", rng, goal="sofa")
     with pytest.raises(EpisodeError, match="no path from"):
         sample_episode(TASK, "h", rng, goal="bed", start=Pose(0.0, 3.0, 0.0))
+
+
+def test_a_goal_on_another_storey_only_is_named_as_such():
+    task = Task(World(two_storeys()))
+    with pytest.raises(
+        EpisodeError, match="has 'sofa' on another storey only; the search starts on the one at z = 0 m"
+    ):
+        draw_start(task, "sofa", np.random.default_rng(0))
+    assert "on another storey only" in str(task.unreachable_error("sofa", Pose(0.5, 0.0, 0.0)))
+    assert "no path" in str(task.unreachable_error("bed", Pose(0.5, 0.0, 0.0)))

@@ -250,3 +250,28 @@ def test_a_start_that_wrote_nothing_leaves_no_folder_and_one_that_did_stays(tmp_
     again.discard_if_empty()  # it did not begin this run
     again.close()
     assert (tmp_path / "run" / "config.json").exists()
+
+
+def test_only_the_errors_that_are_run_again_are_dropped(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path, CONFIG)
+    for number, reason in enumerate(("stop", "error", "error")):
+        run.append(line(number, end_reason=reason))
+    assert run.drop_errors({"e1", "e0"}) == 1
+    assert [each["episode_id"] for each in run.lines] == ["e0", "e2"]
+    assert run.drop_errors() == 1
+    run.close()
+
+
+def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path / "run", CONFIG)
+    run.write_summary({})
+    run.discard_if_empty()
+    run.close()
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_run_that_goes_on_with_another_library_tells_which(tmp_path: Path) -> None:
+    RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.0.0", "numpy": "2.4.6", "code": "a"}}).close()
+    run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
+    assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}
+    run.close()

@@ -62,6 +62,18 @@ def test_few_actions_wait_so_that_the_robot_stops_soon_after_a_key_is_released()
     assert controls.choose(LEFT) is None
 
 
+def test_actions_that_wait_belong_to_their_episode() -> None:
+    controls = Controls()
+    controls.ask_for(Wish(**{**vars(WISH), "driver": "person"}))
+    controls.next_wish()
+    for _ in range(3):
+        controls.obey({"do": "act", "action": 1})
+    controls.ask_for(Wish(**{**vars(WISH), "driver": "person"}))
+    controls.next_wish()
+    later(controls.redraw)
+    assert controls.choose(LEFT) is None
+
+
 @pytest.mark.parametrize("end", [lambda c: c.obey({"do": "stop"}), lambda c: c.ask_for(WISH), lambda c: c.close()])
 def test_a_new_wish_an_end_or_a_closing_server_interrupts_the_episode(end) -> None:
     controls = Controls()
