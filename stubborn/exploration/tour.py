@@ -44,8 +44,8 @@ _INSPECTED_GAP_M = 0.2
 class TourConfig:
     """The stops of the tour and their weights."""
 
-    glance: GlanceConfig = field(default_factory=lambda: GlanceConfig(gain_per_turn_m2=3.0))
-    """Looks to the side. They must show more than those of other explorers: the tour comes back to what it passes."""
+    glance: GlanceConfig = field(default_factory=GlanceConfig)
+    """Looks to the side."""
     potentials: PotentialConfig | None = None
     """Predicted potentials that weigh the frontiers; None: their area alone counts."""
     potential_floor: float = 0.05
