@@ -229,7 +229,11 @@ class TourExplorer:
             route = yield from self._to_first_stop(left_on(layer), ground)
             if route is not None:
                 return route
-        return (yield from left_on(ground.layers[0]).known.to_least_visited(self.config.arrived_m))
+        for layer in ground.layers:
+            route = yield from left_on(layer).known.to_least_visited(self.config.arrived_m)
+            if route is not None:
+                return route
+        return None
 
     def _note_view(self, ground: Ground) -> None:
         """Enters the ground that the last frame showed near the robot into the inspected ground."""

@@ -161,6 +161,14 @@ def test_where_nothing_is_left_to_see_the_robot_stays_on_its_side_of_the_marks()
         assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) < 3.0
 
 
+def test_a_robot_between_large_marks_leaves_over_the_next_layer_when_nothing_is_left_to_see():
+    navmap, explore = enclosed(), explorer(near_m=0.0)
+    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(-0.3, -0.3), navmap.frame.cell(0.3, 0.3)
+    navmap.pessimistic_marks[row_0 : row_1 + 1, [col_0, col_1]] = True
+    navmap.pessimistic_marks[[row_0, row_1], col_0 : col_1 + 1] = True
+    assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) < -3.5
+
+
 def test_steps_that_cross_no_mark_do_not_count_as_crossing():
     navmap, explore = enclosed(), explorer(near_m=0.0, unmarked_steps=5, keep_steps=1)
     navmap.frames_in_view[:, navmap.frame.cell(3.6, 0.0)[1] :] = 0  # behind the marks something is left to see
