@@ -90,6 +90,9 @@ class TourConfig:
     """After so many forwards on such a route that left the robot where it was, they count again."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
+    unknown_speed: float = 0.15
+    """Between stops a metre of unknown ground counts as 1 / `unknown_speed` metres, because it may turn out blocked. The
+    planner's 0.4 was tried: with contacts it led to longer paths."""
     block_cells: int = 4
     """Path lengths between stops are computed on blocks of so many cells each way."""
 
@@ -99,6 +102,8 @@ class TourConfig:
                 "TourConfig needs block_cells >= 1, potential_floor and potential_power >= 0, got "
                 f"{self.block_cells}, {self.potential_floor} and {self.potential_power}."
             )
+        if not 0.0 < self.unknown_speed <= 1.0:
+            raise ConfigError(f"TourConfig.unknown_speed must lie in (0, 1], got {self.unknown_speed}.")
         if not 1 <= self.most_stops <= 8:
             raise ConfigError(f"TourConfig.most_stops must be 1 to 8, got {self.most_stops}.")
         if self.arrived_m <= 0 or self.spent_m < self.arrived_m:
@@ -148,14 +153,14 @@ class _Stop:
 class _Paths:
     """Path lengths in the free space, on blocks of cells: the order of the stops needs no more, in large houses too."""
 
-    def __init__(self, known: Frontiers, block_cells: int, unseen_speed: float) -> None:
+    def __init__(self, known: Frontiers, block_cells: int, unknown_speed: float) -> None:
         free = known.free
         self.block_cells, self.block_m = block_cells, block_cells * free.frame.cell_m
         self.reachable = or_of_blocks(free.reachable, block_cells)
         self.unknown = or_of_blocks(free.reachable & known.unknown, block_cells)
         self.speed = np.ones(self.reachable.shape, np.float32)
         slow = self.unknown & ~or_of_blocks(free.reachable & ~known.unknown, block_cells)
-        self.speed[slow] = unseen_speed
+        self.speed[slow] = unknown_speed
 
     def from_cells(
         self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"]
@@ -291,7 +296,7 @@ class TourExplorer:
     def _to_first_stop(self, left: _Left, ground: Ground) -> Search:
         """Returns the route to the first stop of the best tour; None when no stop can be reached."""
         known, pose = left.known, ground.pose
-        paths = _Paths(known, self.config.block_cells, ground.planner.config.unseen_speed)
+        paths = _Paths(known, self.config.block_cells, self.config.unknown_speed)
         factor = self._factor(ground, known)
         while True:
             stops = self._stops(left, paths, factor)

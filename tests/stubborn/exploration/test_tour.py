@@ -223,6 +223,8 @@ def test_the_agent_finds_a_bed_two_rooms_away_by_a_tour():
 def test_options_that_make_no_sense_are_refused():
     with pytest.raises(ConfigError, match="most_stops must be 1 to 8, got 9"):
         TourConfig(most_stops=9)
+    with pytest.raises(ConfigError, match=r"unknown_speed must lie in \(0, 1\], got 0"):
+        TourConfig(unknown_speed=0.0)
     with pytest.raises(ConfigError, match="block_cells >= 1"):
         TourConfig(block_cells=0)
     with pytest.raises(ConfigError, match=r"PotentialConfig.alpha must lie in \[0, 1\], got 2"):
