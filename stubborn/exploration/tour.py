@@ -91,8 +91,8 @@ class TourConfig:
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
     unknown_speed: float = 0.15
-    """Between stops a metre of unknown ground counts as 1 / `unknown_speed` metres, because it may turn out blocked. The
-    planner's 0.4 was tried: with contacts it led to longer paths."""
+    """Between stops a metre of unknown ground counts as 1 / `unknown_speed` metres: it may turn out blocked. With the
+    planner's 0.4, paths were longer with contacts."""
     block_cells: int = 4
     """Path lengths between stops are computed on blocks of so many cells each way."""
 
