@@ -54,14 +54,14 @@ def main(args: Args) -> int:
     merged = RunDirectory(out, merged_config(runs))
     try:
         merged.drop_errors()  # a shard may have run them again
-        for code in dict.fromkeys(code for run in runs for code in run.config.get("codes") or []):
-            merged.record_code(code)
         existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
             if episode_id not in existing:
                 merged.append(line)
             elif without_times(existing[episode_id]) != without_times(line):
                 raise _conflict(episode_id, out, line)
+        for code in merged.config["codes"]:
+            merged.record_code(code)  # the folder may hold lines of an earlier merge
         summary = merged.write_summary({"split": runs[0].recorded("split_identity")})
         display.print_results(console, merged.lines, summary)
     finally:

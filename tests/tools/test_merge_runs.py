@@ -94,6 +94,9 @@ def test_all_the_code_that_played_is_named(tmp_path: Path) -> None:
     runs = (write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], versions={"code": "0lder"}))
     main(Args(runs=runs, out=tmp_path / "both"))
     assert json.loads((tmp_path / "both" / "config.json").read_text())["codes"] == ["c0de", "0lder"]
+    later = write(tmp_path / "c", [line_of(2)], versions={"code": "newer"})
+    main(Args(runs=(later,), out=tmp_path / "both"))
+    assert json.loads((tmp_path / "both" / "config.json").read_text())["codes"] == ["c0de", "0lder", "newer"]
 
 
 def test_nothing_to_merge_is_one_sentence(tmp_path: Path) -> None:
