@@ -303,10 +303,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
         "--explorers informed-tour:potentials.goal=wrong",
     ),
-    f"{_RUN} --agent stubborn --explorer informed-tour --semantics gt --split large --episodes 200 --workers 2": (
-        f"{_RUN} --agent stubborn --explorer informed-tour --semantics gt --split large --episodes 1 --workers 1"
-        " --config task.max_steps=5 --out {tmp}/run",
-    ),
     f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
@@ -477,9 +473,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py splits --splits val --episodes 1 --workers 1 --agents random "
         "'stubborn --config agent.planning.dilation_m=0.10 task.max_steps=3' --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py explorers --splits val large --episodes 20": (
-        f"{PYTHON} tools/reproduce.py explorers --splits val large --episodes 1 --agents random oracle "
-        "--out {tmp}/paper",
+    f"{PYTHON} tools/reproduce.py explorers --episodes 200 --workers 2": (
+        f"{PYTHON} tools/reproduce.py explorers --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+    ),
+    f"{PYTHON} tools/reproduce.py explorers --split large --episodes 300 --agents stubborn 'stubborn --explorer "
+    "informed-tour'": (
+        f"{PYTHON} tools/reproduce.py explorers --split large --episodes 1 --agents oracle random --out {{tmp}}/paper",
     ),
     f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
         f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
@@ -571,7 +570,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/compare_networks.py --views {{tmp}}/views --val-views {{tmp}}/views --hours 0 --seeds 0 "
         "--out {tmp}/networks",
     ),
-    # docs/results.md
+    # docs/results.md and the pages of results beside it
+    f"{_RUN} --agent stubborn-plus --split val --episodes 100 --config "
+    "'agent.seeker.look.bar=[[0,0.05],[40,0.05],[100,0.35],[200,0.45],[300,0.55],[400,0.64],[500,0.7]]'": (
+        f"{_RUN} --agent stubborn-plus --split val --episodes 1 --out {{tmp}}/run --config task.max_steps=5 "
+        "'agent.seeker.look.bar=[[0,0.05],[40,0.05],[100,0.35],[200,0.45],[300,0.55],[400,0.64],[500,0.7]]'",
+    ),
     f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
