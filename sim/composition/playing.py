@@ -17,6 +17,7 @@ from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import RunnerSpec
+from sim.geometry.compiling import must_compile
 from sim.houses.load import load_house
 from sim.paths import code_hash
 
@@ -57,6 +58,8 @@ def run_missing(
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
         _report_resumed(run, len(episodes), len(todo), console)
+        if todo and must_compile():
+            console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", options)
         progress = display.ProgressReport(console, total=len(todo))
         lines = executor.run(

@@ -5,7 +5,9 @@ A list of the agents imports the agents with their kernels, but calls none of th
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 
@@ -36,6 +38,12 @@ class Kernel:
             names |= {name: value.compiled() for name, value in names.items() if isinstance(value, Kernel)}
         assert self._compiled is not None
         return self._compiled
+
+
+def must_compile() -> bool:
+    """Returns True if numba's cache is empty: compiling all kernels, at their first calls, takes up to a minute."""
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(__file__).with_name("__pycache__"))
+    return not any(folder.rglob("*.nbi"))
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Kernel]:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
+import pytest
 
-from sim.geometry.compiling import Kernel, njit
+from sim.geometry.compiling import Kernel, must_compile, njit
 
 
 @njit()
@@ -47,3 +49,11 @@ print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0
 """
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert told.split() == ["False", "0.0", "True"]
+
+
+def test_an_empty_cache_means_that_kernels_are_compiled_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert must_compile()
+    (tmp_path / "module").mkdir()
+    (tmp_path / "module" / "kernel.nbi").touch()
+    assert not must_compile()
