@@ -208,7 +208,7 @@ def test_a_goal_on_the_other_storey_is_not_found():
 
 def test_an_episode_is_never_drawn_with_its_goal_on_another_storey():
     with_sofa = World(two_storeys())
-    with pytest.raises(EpisodeError, match="no instance can be reached"):
+    with pytest.raises(EpisodeError, match="on another storey only"):
         draw_start(Task(with_sofa), "sofa", np.random.default_rng(0))
 
 
