@@ -11,7 +11,7 @@ from rich.console import Console
 from sim.analysis import display
 from sim.composition.agents import find_agent
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of, record_of
+from sim.composition.run_config import code_of, configuration_of, record_of
 from sim.composition.runner import error_line
 from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
@@ -19,7 +19,6 @@ from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import RunnerSpec
 from sim.geometry.compiling import must_compile
 from sim.houses.load import load_house
-from sim.paths import code_hash
 
 
 def run_missing(
@@ -57,7 +56,7 @@ def run_missing(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
-        _report_resumed(run, len(episodes), len(todo), console)
+        _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", options)
@@ -93,7 +92,7 @@ def report_house(options: RunOptions, console: Console) -> None:
             console.print(f"House '{options.house.stem}': {note}", highlight=False, markup=False, soft_wrap=True)
 
 
-def _report_resumed(run: RunDirectory, total: int, todo: int, console: Console) -> None:
+def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:
     """Prints how many episodes the folder holds already, and whether other code ran them."""
     if todo < total:
         console.print(f"{total - todo} of them were there already, {todo} to go.")
@@ -104,10 +103,10 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, console: Console) 
             markup=False,
             soft_wrap=True,
         )
-    others = run.record_code(code_hash()) if todo else []
+    others = run.record_code(code) if todo else []
     if others:
         console.print(
-            f"The episodes that were there were run by other code ({', '.join(others)}) than these ({code_hash()}).",
+            f"The episodes that were there were run by other code ({', '.join(others)}) than these ({code}).",
             highlight=False,
             soft_wrap=True,
         )

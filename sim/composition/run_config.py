@@ -13,6 +13,7 @@ from sim.composition.options import RunOptions
 from sim.composition.segmenters import KINDS, NetworkConfig, detector_config, file_sha256
 from sim.configuration import as_json, parse_assignments, read_settings, with_fields
 from sim.errors import ConfigError
+from sim.evaluation.own_code import hash_of_own
 from sim.interface import AgentSpec, CameraModel
 from sim.paths import code_hash
 from sim.robot.config import RobotConfig
@@ -117,14 +118,24 @@ def record_of(options: RunOptions, config: RunConfig, split: dict[str, Any]) -> 
         "config": as_json(config),
         "files_sha256": _checksums(options, config),
         "split_identity": split,
-        "versions": versions(),
+        "versions": versions(options),
     }
 
 
-def versions() -> dict[str, str]:
-    """Returns the versions that a result depends on: packages, the GL renderer, and a hash of our own code."""
+def versions(options: RunOptions) -> dict[str, str]:
+    """Returns the versions that a result depends on: packages, the GL renderer, and what `code_of` gives."""
     packages = ("stubborn-objectnav", "mujoco", "numpy")
-    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_hash()}
+    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_of(options)}
+
+
+def code_of(options: RunOptions) -> str:
+    """Returns a hash of the code of a run, such as "3353e768d2c2".
+
+    With an agent or explorer of the user, whose modules are imported by now, "+" and a hash of these follow.
+    """
+    names = [name for name in (options.agent, options.explorer) if name is not None]
+    own = hash_of_own(module for module, separator, _ in (name.partition(":") for name in names) if separator)
+    return f"{code_hash()}+{own}" if own else code_hash()
 
 
 def truth_images(spec: AgentSpec, semantics: str) -> tuple[str, ...]:

@@ -69,7 +69,7 @@ class EpisodeRunner:
             "profile": options.profile,
             "noise": options.noise,
             "split": {"name": self._env.split.name, "version": self._env.split.version},
-            "versions": versions(),
+            "versions": versions(options),
         }
 
     def run(self, episode: Episode) -> dict[str, Any]:

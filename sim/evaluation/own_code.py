@@ -1,9 +1,12 @@
-"""Finds the line of a user's code in which an error was raised, for messages of one line."""
+"""A user's own code: the line of it in which an error was raised, and a hash that tells two versions apart."""
 
 from __future__ import annotations
 
+import hashlib
+import sys
 import sysconfig
 import traceback
+from collections.abc import Iterable
 from pathlib import Path
 
 _OURS = tuple(Path(__file__).resolve().parents[2] / name for name in ("sim", "stubborn"))
@@ -29,6 +32,38 @@ def place_of(error: BaseException, *, below: str) -> str:
             if tier(Path(frame.filename)):
                 return f" ({_short(Path(frame.filename))}, line {frame.lineno})"
     return ""
+
+
+def hash_of_own(modules: Iterable[str]) -> str:
+    """Returns 12 hex digits, a hash of modules of a user and of what they import from their own folder.
+
+    Args:
+        modules: names of imported modules; those of this project and of libraries do not count.
+
+    Returns:
+        The hash; "" where no module is the user's.
+    """
+    files: dict[str, Path] = {}
+    for name in modules:
+        file = _file_of(name)
+        if file is None or not _is_users(file):
+            continue
+        beside = (_file_of(other) for other in tuple(sys.modules))
+        files |= {str(each.relative_to(file.parent)): each for each in beside if each and _is_below(each, file.parent)}
+    digest = hashlib.sha256()
+    for place in sorted(files):
+        digest.update(place.encode() + files[place].read_bytes())
+    return digest.hexdigest()[:12] if files else ""
+
+
+def _file_of(module: str) -> Path | None:
+    """Returns the Python file of an imported module; None where it has none, such as `sys`."""
+    file = getattr(sys.modules[module], "__file__", None)
+    return Path(file).resolve() if file and str(file).endswith(".py") and Path(file).is_file() else None
+
+
+def _is_below(file: Path, folder: Path) -> bool:
+    return file.is_relative_to(folder) and _is_users(file)
 
 
 def _is_users(file: Path) -> bool:

@@ -234,9 +234,9 @@ def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
         assert entry([*options, "--episodes", str(episodes)]) == 0
         return capsys.readouterr().out, json.loads((tmp_path / "config.json").read_text())["codes"]
 
-    out, codes = played(1)
+    out, (code,) = played(1)
     assert "by other code" not in out
-    assert codes == [code_hash()]
+    assert re.fullmatch(rf"{code_hash()}\+[0-9a-f]{{12}}", code)  # "+" and the user's own
     config = json.loads((tmp_path / "config.json").read_text())
     (tmp_path / "config.json").write_text(json.dumps(config | {"codes": ["0lder"]}))
     out, codes = played(1)
@@ -244,9 +244,24 @@ def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
     assert codes == ["0lder"]
     out, codes = played(2)
     assert [line for line in out.splitlines() if "0lder" in line] == [
-        f"The episodes that were there were run by other code (0lder) than these ({code_hash()})."
+        f"The episodes that were there were run by other code (0lder) than these ({code})."
     ]
-    assert codes == ["0lder", code_hash()]
+    assert codes == ["0lder", code]
+
+
+def test_a_run_that_goes_on_after_an_edit_of_the_agent_says_so(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    mine = tmp_path / "edited_agent.py"
+    mine.write_text("from tests.helpers.players import make_quitter as make\n")
+    options = ["--agent", "edited_agent:make", "--house", str(house), "--out", str(tmp_path / "run")]
+    assert entry([*options, "--episodes", "1"]) == 0
+    mine.write_text(mine.read_text() + "GAIN = 2\n")
+    capsys.readouterr()
+    assert entry([*options, "--episodes", "2"]) == 0
+    (notice,) = re.findall(r"run by other code \((\S+)\) than these \((\S+)\)", capsys.readouterr().out)
+    assert notice[0] != notice[1]
 
 
 def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:

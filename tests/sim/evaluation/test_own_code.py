@@ -1,7 +1,8 @@
-"""A message about an error in a user's code names the innermost line of that code."""
+"""A message about an error in a user's code names the innermost line of that code; a hash tells two versions apart."""
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 import pytest
 
 from sim.errors import AgentError
+from sim.evaluation.own_code import hash_of_own
 from sim.evaluation.rollout import ask
 from sim.interface import Scores
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
@@ -74,3 +76,26 @@ def test_an_agent_of_this_project_is_named_by_its_own_line(tmp_path: Path, monke
 
     assert "(evaluation/test_own_code.py, line" in message_of(scores)
     assert "(segmentation/ground_truth.py, line" in message_of(partial(GroundTruthSegmenter().scores, {}, "bed"))
+
+
+def test_the_hash_is_of_the_agent_and_of_the_imported_modules_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    agent, helper, unrelated = (tmp_path / f"hashed_{name}.py" for name in ("agent", "helper", "unrelated"))
+    agent.write_text("import hashed_helper\n")
+    helper.write_text("GAIN = 1\n")
+    importlib.import_module("hashed_agent")
+    before = hash_of_own(["hashed_agent"])
+    unrelated.write_text("GAIN = 1\n")
+    assert hash_of_own(["hashed_agent"]) == before
+    helper.write_text("GAIN = 2\n")
+    edited = hash_of_own(["hashed_agent"])
+    assert edited != before
+    agent.write_text("import hashed_helper  # edited\n")
+    assert hash_of_own(["hashed_agent"]) not in (before, edited)
+
+
+def test_modules_of_this_project_and_of_libraries_are_not_the_users() -> None:
+    importlib.import_module("stubborn.agents")
+    assert hash_of_own(["stubborn.agents", "json", "sys"]) == ""
