@@ -277,4 +277,5 @@ def _fault(fault: Exception) -> str:
     message, _, path = str(fault).replace("`", "").partition(" - at ")
     path = re.sub(r"^(?:key in )?\$\.?", "", path)
     field = f", field '{path}'" if path else ""
-    return f"{field}: {message[:1].lower()}{message[1:]}."
+    begins_with_word = re.match(r"[A-Z][a-z]*\b", message)  # a name such as SemExpConfig keeps its capital
+    return f"{field}: {message[0].lower() + message[1:] if begins_with_word else message}".rstrip(".") + "."

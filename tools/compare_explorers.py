@@ -15,7 +15,7 @@ import functools
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +25,12 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does not find the package `tools` otherwise
 
 from sim import cli
+from sim.configuration import parse_assignments, with_fields
 from sim.files import write_atomically
 from sim.interface import MAX_STEPS, CameraModel, ConfigError
 from sim.plans.episode import draw_goal_and_start
 from sim.plans.plan import read_plan
 from sim.plans.sight import PlanCamera
-from sim.reading import convert
 from sim.twin import potential_files
 from sim.twin.agent import TwinAgent, play, twin_config
 from stubborn.agent import AgentConfig
@@ -80,12 +80,12 @@ def main(args: Args) -> int:
     """Prints a row for each explorer as soon as it has played."""
     plans = _plans(args)
     configs = {name: explorer_config(name, args.weights) for name in args.explorers}
+    agents = {name: TwinAgent(twin_config(AgentConfig(explorer=config))) for name, config in configs.items()}
     lines, first = [], None
     print(
         f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count {MAX_STEPS} where it is never seen"
     )
-    for name, config in configs.items():
-        agent = TwinAgent(twin_config(AgentConfig(explorer=config)))
+    for name, agent in agents.items():
         played = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]
         lines += [{"explorer": name, **line} for line in played]
         first = played if first is None else first
@@ -103,27 +103,18 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
     """
     name, _, fields = text.partition(":")
     if name == RANDOM:
+        if fields:
+            raise ConfigError(f"--explorers {text}: {RANDOM} has no fields.")
         return RandomGoals()
     if name not in EXPLORERS:
         raise ConfigError(f"--explorers: there is no '{name}'. There is: {', '.join((*EXPLORERS, RANDOM))}.")
-    values = {field.partition("=")[0]: field.partition("=")[2] for field in fields.split(",") if field}
-    if name == "semexp" and weights is not None:
-        values.setdefault("weights", str(weights))
-    config = EXPLORERS[name]
-    for field, value in values.items():
-        config = _with_field(config, field.split("."), value, text)
-    return config
-
-
-def _with_field(config: Any, path: Sequence[str], value: str, text: str) -> Any:
-    """Returns a configuration with another value of one field, which may be one of a nested configuration."""
-    where = f"--explorers {text}"
-    if not is_dataclass(config) or isinstance(config, type) or path[0] not in vars(config):
-        fields = ", ".join(vars(config)) if is_dataclass(config) else "no fields"
-        raise ConfigError(f"{where}: there is no field '{path[0]}'. There is: {fields}.")
-    if len(path) > 1:
-        return replace(config, **{path[0]: _with_field(vars(config)[path[0]], path[1:], value, text)})
-    return convert(vars(config) | {path[0]: value}, type(config), where=where, strict=False)
+    assignments = [field for field in fields.split(",") if field]
+    if name == "semexp" and weights is not None and not any(each.startswith("weights=") for each in assignments):
+        assignments.append(f"weights={weights}")
+    try:
+        return with_fields(EXPLORERS[name], parse_assignments(assignments))
+    except ConfigError as error:
+        raise ConfigError(f"--explorers {text}: {error}") from None
 
 
 def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> dict[str, Any]:

@@ -1,12 +1,12 @@
 """Writes the plans of houses, for training and tests in the 2-D twin (docs/plans.md): one npz file for each storey.
 
     python tools/export_plans.py --split val --out runs/plans/val --workers 2
-    python tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/train --workers 2
+    python tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2
     python tools/export_plans.py --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large
 
 Houses of a split are read, houses of a pool are generated from consecutive seeds; those of pool `train` use styles and
 textures that no house of val, test, large or hazards has. A plan that exists is kept, so that a killed run is resumed
-by the same command.
+by the same command; one of other options or of another generator is refused.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from typing import Any
 
 from sim import cli
 from sim.episodes.splits import load_split
-from sim.errors import HouseError
+from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.gl import mujoco
 from sim.housegen.furniture.item import Pool
-from sim.housegen.generator import HouseConfig, generate_house
+from sim.housegen.generator import GENERATOR_VERSION, HouseConfig, generate_house
 from sim.housegen.rooms import PlanKind
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.paths import assets_dir
 from sim.plans.export import export_plans
-from sim.plans.plan import write_plan
+from sim.plans.plan import read_plan, write_plan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,18 +98,15 @@ def _exported(args: Args) -> Iterator[Exported]:
 
 def _export_named(out: Path, split: str, name: str) -> Exported:
     """Exports one house of a split."""
-    if (out / f"{name}.npz").is_file():
-        return Exported(name, "exists")
-    return _export(out, name, {"split": split}, lambda: load_split(split).load_house(name))
+    source = {"split": split, "version": load_split(split).version}
+    return _export(out, name, source, lambda: load_split(split).load_house(name))
 
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:
     """Generates the house of a seed and exports it."""
-    name = name_of(config, seed)
-    if (out / f"{name}.npz").is_file():
-        return Exported(name, "exists")
     source = {"pool": config.pool, "kind": config.kind, "area_m2": config.area_m2, "seed": seed}
-    return _export(out, name, source, lambda: house_of(config, seed))
+    source |= {"generator": GENERATOR_VERSION}
+    return _export(out, name_of(config, seed), source, lambda: house_of(config, seed))
 
 
 def name_of(config: HouseConfig, seed: int) -> str:
@@ -128,7 +125,17 @@ def house_of(config: HouseConfig, seed: int) -> House:
 
 
 def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported:
-    """Writes the plans of the house that `make` returns, the lowest storey last: it says that the house is done."""
+    """Writes the plans of the house that `make` returns, the lowest storey last: it says that the house is done.
+
+    Raises:
+        ConfigError: there is a plan of that name from another source.
+    """
+    there = out / f"{name}.npz"
+    if there.is_file():
+        known = read_plan(there).source
+        if known != source:
+            raise ConfigError(f"'{there}' is the plan of another house ({known}, not {source}); take another --out.")
+        return Exported(name, "exists")
     began_s = time.process_time()
     try:
         plans = list(export_plans(make(), source))

@@ -23,7 +23,7 @@ import tyro
 from sim import cli
 from sim.analysis.comparison import Run, read_run
 from sim.analysis.report.drawings import split_of
-from sim.datasets.demonstrations import demonstrate, write_demonstration
+from sim.datasets.demonstrations import demonstrate, read_demonstration, write_demonstration
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside
 from sim.geometry.pose import Pose
@@ -131,7 +131,13 @@ def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
     there = [line for line in wanted if trajectory_file(run.path, line["episode_id"]).is_file()]
     if not there:
         raise ConfigError(f"'{run.path}' has no trajectory of an episode that succeeded: play it with --record.")
-    todo = [line for line in there if not _file_of(run.path, line["episode_id"], args.out).exists()]
+    files = {line["episode_id"]: _file_of(run.path, line["episode_id"], args.out) for line in there}
+    known = next((file for file in files.values() if file.exists()), None)
+    if known is not None:
+        rows, cols = read_demonstration(known).depth_mm.shape[1:]
+        if (cols, rows) != (args.width_px, args.height_px):
+            raise ConfigError(f"'{known}' has images of {cols} x {rows} pixels; take another --out.")
+    todo = [line for line in there if not files[line["episode_id"]].exists()]
     for house, members in itertools.groupby(todo, key=lambda line: line["house"]):
         episodes = tuple((line["episode_id"], line["goal"]) for line in members)
         yield HouseWork(run.path, house, episodes, args.out, camera)

@@ -29,7 +29,7 @@ from sim import cli
 from sim.interface import ConfigError
 from sim.plans.plan import read_plan
 from sim.twin.potential_choices import Choices, add_choices
-from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, write_samples
+from sim.twin.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, write_samples
 from sim.twin.potentials import SampleConfig, samples_of
 from stubborn.exploration.poni_net import FILES, MAPS, PoniNet, PoniNetConfig
 from tools.timed_training import PRINT_EVERY_S, TimedTraining, stride
@@ -93,6 +93,12 @@ def make_samples(args: Args, config: SampleConfig) -> list[Path]:
     if len(set(files)) < len(files):
         raise ConfigError(
             "--plans has two folders of one name with plans of one name; give one of the folders another."
+        )
+    of_val = sum(held_back(plan) for plan in plans)
+    if of_val in (0, len(plans)):
+        raise ConfigError(
+            f"{len(plans) - of_val} plans to train on and {of_val} held back: both are needed. One house in "
+            f"{HELD_BACK} is held back; export more."
         )
     printed_s = start_s = time.monotonic()
     todo = [(plan, file) for plan, file in zip(plans, files, strict=True) if not file.exists()]

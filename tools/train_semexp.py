@@ -31,6 +31,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 
 from sim import cli
 from sim.files import write_atomically
+from sim.interface import ConfigError
 from sim.plans.plan import read_plan
 from sim.reading import Count, Number
 from sim.twin.semexp import SemExpEnv
@@ -43,9 +44,9 @@ try:
 except ImportError as error:
     raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
 
-from tools.plan_split import split_plans
+from tools.plan_split import HELD_BACK, split_plans
 from tools.semexp_policy import SemExpPolicy
-from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from tools.training_files import append_row, cut_rows, load_state, options_of, read_columns, require_options, save_state
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
@@ -54,6 +55,8 @@ SMOOTHED = 12
 PLANS_IN_MEMORY = 256
 MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
 """Options in which a continued run may differ from its start."""
+_DRAWN = ("episodes", "steps", "steps_to_first_sight")
+"""Columns of a curve that are drawn."""
 _KEYS = ("steps_to_first_sight", "gt_explored", "num_steps", "collisions")
 
 
@@ -95,12 +98,28 @@ class Args:
 
 def main(args: Args) -> int:
     """Trains; returns the exit status."""
-    plans, _ = split_plans(args.plans)
+    plans, held_back = split_plans(args.plans)
+    if not plans:
+        raise ConfigError(
+            f"No plan to train on: {len(held_back)} are held back, one house in {HELD_BACK}; export more."
+        )
+    if min(args.batch, args.envs * args.rollout) < 2:
+        raise ConfigError(
+            f"--batch and --envs x --rollout must be >= 2, got {args.batch} and {args.envs * args.rollout}."
+        )
+    for folder in args.beside:
+        _require_curve(folder / "train.csv")
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
     print(f"wrote {args.out / 'semexp.safetensors'}: tools/compare_explorers.py compares it on the plans held back")
     return 0
+
+
+def _require_curve(file: Path) -> None:
+    """Raises ConfigError where a file of curves has not the columns that are drawn."""
+    if not set(_DRAWN) <= set(read_columns(file) or _DRAWN):
+        raise ConfigError(f"--beside: '{file}' is no curve of this command.")
 
 
 class _Progress(msgspec.Struct):
@@ -225,6 +244,13 @@ class _Watch(BaseCallback):
         self.run.spent_s = time.perf_counter() - self._began_s
         return not self.run.is_over
 
+    def _on_rollout_start(self) -> None:
+        """Saves now and not at the end of the rollout before, whose goals the network had not been trained on then."""
+        now_s = time.perf_counter()
+        if now_s - self._saved_s >= self.run.args.save_s:
+            self._saved_s = now_s
+            self.run.save()
+
     def _on_rollout_end(self) -> None:
         now_s, run, logged = time.perf_counter(), self.run, self.model.logger.name_to_value
         rate = (run.steps - self._last_steps) / (now_s - self._last_s)
@@ -239,9 +265,6 @@ class _Watch(BaseCallback):
         if now_s - self._printed_s >= run.args.print_s:
             self._printed_s = now_s
             print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
-        if now_s - self._saved_s >= run.args.save_s:
-            self._saved_s = now_s
-            run.save()
 
 
 def curves(files: Sequence[Path]) -> bytes:

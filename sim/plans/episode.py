@@ -28,11 +28,13 @@ class PlanEpisode:
         """Starts the episode; without a goal, `None`, it only explores.
 
         Raises:
-            EpisodeError: no STOP for the goal succeeds anywhere in the plan.
+            EpisodeError: no STOP for the goal succeeds anywhere in the plan, or the start is off it.
         """
         self.plan: Plan = camera.plan
         if goal is not None:
             require_goal(self.plan, goal)
+        if not self.plan.frame.contains(*self.plan.frame.cell(start.x_m, start.y_m)):
+            raise EpisodeError(f"Plan '{self.plan.name}': the start ({start.x_m:g}, {start.y_m:g}) m is off the plan.")
         self.camera, self.goal, self.start, self.max_steps = camera, goal, start, max_steps
         camera.reset()
         self.robot = PlanRobot(self.plan)
@@ -116,7 +118,9 @@ class PlanEpisode:
 
 
 def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None = None) -> tuple[str, Pose]:
-    """Returns a random goal of a plan, and a start from which it can be reached, as `sim.episodes.drawing` does.
+    """Returns a random goal of a plan, and a start from which it can be reached.
+
+    The starts are those of `sim.episodes.drawing`, but for its upper limit of the distance: they may be farther away.
 
     Args:
         plan: the plan.

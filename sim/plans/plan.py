@@ -83,8 +83,8 @@ class Plan:
 
     def goals(self) -> tuple[str, ...]:
         """Returns the goal categories for which a STOP succeeds somewhere."""
-        any_m = int(np.bitwise_or.reduce(self.succeeds, axis=None))
-        return tuple(goal for number, goal in enumerate(GOAL_CATEGORIES) if any_m >> number & 1)
+        bits = int(np.bitwise_or.reduce(self.succeeds, axis=None))
+        return tuple(goal for number, goal in enumerate(GOAL_CATEGORIES) if bits >> number & 1)
 
     def success_cells(self, goal: str) -> NDArray[np.bool_]:
         """Returns the cells at whose centre a STOP for a goal succeeds."""

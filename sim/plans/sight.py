@@ -54,6 +54,10 @@ class SightConfig:
     obstacle_from: int = 2
     """A cell with at least this much evidence is an obstacle."""
 
+    def __post_init__(self) -> None:
+        if self.stride_px < 1:
+            raise ConfigError(f"SightConfig.stride_px must be >= 1, got {self.stride_px}.")
+
 
 @dataclass(frozen=True, eq=False)
 class Look:
@@ -63,8 +67,6 @@ class Look:
     """(goals,) Share of the frame that each category of `GOAL_CATEGORIES` covers."""
     goal_share: float
     """That of the goal; 0 without a goal."""
-    new_floor_cells: int
-    """Cells of the plan's floor that were never in view before."""
     target_rows: NDArray[np.int64]
     """Rows on the map of the cells that show the goal."""
     target_cols: NDArray[np.int64]
@@ -192,7 +194,7 @@ class PlanCamera:
         rows, cols = np.divmod(targets.astype(np.int64), frame.shape[1])
         touched = None if row_1 < 0 else (slice(row_0, row_1 + 1), slice(col_0, col_1 + 1))
         shares = pixels / (self._left.size * self._up.size)
-        return Look(shares, 0.0 if goal is None else float(shares[number]), new, rows, cols, touched)
+        return Look(shares, 0.0 if goal is None else float(shares[number]), rows, cols, touched)
 
     def _scratch_for(self, frame: GridFrame) -> _Scratch:
         if self._scratch is None or self._scratch.flags.shape != frame.shape:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MAX_STEPS, CameraModel, Observation, RobotModel
+from sim.interface import GOAL_CATEGORIES, MAX_STEPS, CameraModel, ConfigError, Observation, RobotModel
 from sim.plans.episode import PlanEpisode
 from sim.plans.sight import PlanCamera
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.mapping.mapper import Sighting, note_sighting
+from stubborn.mapping.mapper import MappingConfig, Sighting, note_sighting
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 
@@ -88,21 +88,6 @@ def _end_reason(episode: PlanEpisode, until_sight: bool) -> str:
     return "sight" if until_sight and episode.first_seen_step is not None else "max_steps"
 
 
-def first_sights(
-    agent: TwinAgent, camera: PlanCamera, start: Pose, *, seed: int, max_steps: int = MAX_STEPS
-) -> tuple[dict[str, int], Mapping[str, Any]]:
-    """Lets an agent explore without a goal; returns the step of first sight of each goal category, and the metrics.
-
-    One episode measures an explorer on all categories of a house: it does not depend on the goal until that is seen.
-    """
-    episode = PlanEpisode(camera, None, start, max_steps=max_steps)
-    agent.begin(episode, seed)
-    while not episode.done and len(episode.first_sights) < len(camera.plan.goals()):
-        episode.act(agent.act(observation_of(episode)))
-    _look_once_more(agent, episode)
-    return episode.first_sights, episode.metrics()
-
-
 def observation_of(episode: PlanEpisode) -> Observation:
     """Returns the pose sensors and the goal; a plan has no images."""
     pose = episode.pose
@@ -120,5 +105,13 @@ def _look_once_more(agent: TwinAgent, episode: PlanEpisode) -> None:
 
 
 def twin_config(config: AgentConfig) -> AgentConfig:
-    """Returns the configuration without what a plan has no data for: drops of the floor."""
+    """Returns the configuration without what a plan has no data for: drops of the floor.
+
+    Raises:
+        ConfigError: another setting of `mapping` is changed, which the camera of a plan (`SightConfig`) does not read.
+    """
+    default = MappingConfig(drops=config.mapping.drops, candidate_score=config.mapping.candidate_score)
+    changed = [each.name for each in fields(default) if vars(config.mapping)[each.name] != vars(default)[each.name]]
+    if changed:
+        raise ConfigError(f"The twin has a camera of its own, without the agent's mapping.{changed[0]}.")
     return replace(config, mapping=replace(config.mapping, drops=replace(config.mapping.drops, enabled=False)))

@@ -14,7 +14,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from sim.errors import ConfigError
+from sim.errors import ConfigError, EpisodeError
 from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
@@ -74,6 +74,8 @@ class TwinConfig:
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
 
     def __post_init__(self) -> None:
+        if self.actions not in ("primitive", "goal"):
+            raise ConfigError(f"TwinConfig.actions must be 'primitive' or 'goal', got {self.actions!r}.")
         if min(self.goal_steps, self.plan_every, self.max_steps) < 1:
             raise ConfigError(
                 f"TwinConfig needs goal_steps, plan_every and max_steps >= 1, got {self.goal_steps}, "
@@ -109,7 +111,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
     ## Starting state
     `reset(seed=...)` draws a plan, a goal in it and a start; `reset(options={"plan": 3, "goal": "bed", "start": pose})`
-    fixes all or some of them. The goal can be reached from the start, unless both are fixed.
+    fixes all or some of them; a start needs its plan. The goal can be reached from the start, unless both are fixed.
 
     ## Info
     The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
@@ -136,7 +138,8 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         self._read = read or functools.cache(read_plan)
         self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
         if not self.files:
-            raise ConfigError(f"No plan in '{plans}': tools/export_plans.py writes them.")
+            where = f" in '{plans}'" if isinstance(plans, Path) else ""
+            raise ConfigError(f"No plan{where}: tools/export_plans.py writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
         self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)
         self._planner = Planner(self.config.planning, visited_ground)
@@ -215,14 +218,39 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         unknown = sorted(map(str, set(options) - {"plan", "goal", "start"}))
         if unknown:
             raise ConfigError(f"reset takes the options plan, goal and start, got {', '.join(unknown)}.")
-        number = int(options.get("plan", self.np_random.integers(len(self.files))))
-        if not 0 <= number < len(self.files):
-            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {number}.")
-        plan: Plan = self.camera(number).plan
         goal, start = options.get("goal"), options.get("start")
+        if start is not None and not isinstance(start, Pose):
+            raise ConfigError(f"options['start'] must be a Pose, got {type(start).__name__}.")
+        if start is not None and "plan" not in options and len(self.files) > 1:
+            raise ConfigError("options['start'] needs options['plan']: each plan has coordinates of its own.")
+        number = int(self.np_random.integers(len(self.files)))
+        if start is None and goal is not None and "plan" not in options:
+            return self._draw_for(goal, first=number)
+        number = self._number(options.get("plan", number))
+        plan: Plan = self.camera(number).plan
         if start is None:
             return number, *draw_goal_and_start(plan, self.np_random, goal)
         return number, goal or draw_goal(plan, self.np_random, start), start
+
+    def _draw_for(self, goal: str, first: int) -> tuple[int, str, Pose]:
+        """Returns a plan from which a goal can be reached, the first that fits in a cycle over all, and a start.
+
+        Raises:
+            EpisodeError: there is none.
+        """
+        for number in (*range(first, len(self.files)), *range(first)):
+            try:
+                return number, *draw_goal_and_start(self.camera(number).plan, self.np_random, goal)
+            except EpisodeError:
+                if len(self.files) == 1:
+                    raise
+        raise EpisodeError(f"None of the {len(self.files)} plans has a '{goal}' that can be reached.")
+
+    def _number(self, given: Any) -> int:
+        """Returns the number of a plan; raises ConfigError where there is none."""
+        if not isinstance(given, (int, np.integer)) or not 0 <= given < len(self.files):
+            raise ConfigError(f"options['plan'] must be 0 to {len(self.files) - 1}, got {given!r}.")
+        return int(given)
 
     @property
     def _terminated(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,7 +11,7 @@ import pytest
 
 from sim.datasets.demonstrations import list_demonstrations, read_demonstration
 from sim.geometry.pose import Pose
-from sim.interface import Action
+from sim.interface import Action, ConfigError
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
 from tests.helpers.worlds import room, with_box
@@ -41,3 +42,5 @@ def test_an_episode_that_failed_at_its_first_action_is_left_out(
     assert len(read_demonstration(file).actions) == 2
     assert "wrote 1 episodes with 2 frames" in (printed := capsys.readouterr().out)
     assert "1 without an action were left out" in printed
+    with pytest.raises(ConfigError, match=r"e2.npz' has images of 16 x 12 pixels; take another --out"):
+        render_demonstrations.main(replace(args, width_px=32, height_px=24))

@@ -6,6 +6,7 @@ import csv
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -119,13 +120,15 @@ def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path
     ("explorer", "message"),
     [
         ("corner", "there is no 'corner'. There is: corners, "),
-        ("semexp:colour=red", "semexp:colour=red: there is no field 'colour'. There is: weights, "),
+        ("semexp:colour=red", "semexp:colour=red: There is no field 'colour'. The configuration has: weights, "),
         (
             "informed-tour:potentials.colour=red",
-            "there is no field 'colour'. There is: weights, alpha, goal, semantics",
+            "There is no field 'potentials.colour'. 'potentials' has: weights, alpha, goal, semantics",
         ),
-        ("tour:turn_m.colour=red", "there is no field 'colour'. There is: no fields"),
+        ("tour:turn_m.colour=red", "'turn_m'"),
         ("semexp:goal=red", "--explorers semexp:goal=red"),
+        ("semexp:goal_radius_m=nan", "a finite number"),
+        ("random-goals:goal_steps=5", "random-goals has no fields"),
     ],
 )
 def test_unknown_explorers_and_fields_are_refused(explorer: str, message: str):
@@ -136,3 +139,45 @@ def test_unknown_explorers_and_fields_are_refused(explorer: str, message: str):
 def test_fields_of_explorers_are_set():
     config = compare_explorers.explorer_config("semexp:semantics=none,sampled=false,goal_steps=10", Path("w"))
     assert config == SemExpConfig(weights="w", semantics="none", sampled=False, goal_steps=10)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"batch": 1}, "must be >= 2, got 1 and 1024"),
+        ({"envs": 1, "rollout": 1}, "must be >= 2, got 256 and 1"),
+        ({"beside": (Path("other"),)}, r"--beside: 'other/train.csv' is no curve of this command"),
+    ],
+)
+def test_options_that_would_fail_later_are_refused(
+    plans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: dict[str, Any], message: str
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "train.csv").write_text("step,loss\n1,0.5\n")
+    with pytest.raises(ConfigError, match=message):
+        train_semexp.main(train_semexp.Args(plans=(plans,), out=tmp_path / "out", minutes=0.01, **options))
+
+
+def test_plans_that_are_all_held_back_are_refused(plans: Path, tmp_path: Path):
+    (tmp_path / "plans").mkdir()
+    for file in split_plans([plans])[1]:
+        (tmp_path / "plans" / file.name).write_bytes(file.read_bytes())
+    with pytest.raises(ConfigError, match=r"No plan to train on: \d+ are held back, one house in 10"):
+        train_semexp.main(train_semexp.Args(plans=(tmp_path / "plans",), out=tmp_path / "out", minutes=0.01))
+
+
+def test_a_state_counts_goals_only_after_the_update_with_them(
+    plans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    saved, save = [], train_semexp.Run.save
+
+    def watched(run: train_semexp.Run) -> None:
+        saved.append((run.goals, len(run.policy.optimizer.state)))
+        save(run)
+
+    monkeypatch.setattr(train_semexp.Run, "save", watched)
+    train_semexp.main(options(plans, tmp_path / "run", save_s=0.0))
+    trained = dict(reversed(saved))  # of the first state with so many goals
+    assert trained[0] == 0
+    assert trained[8] > 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import gymnasium
@@ -17,10 +18,12 @@ from sim.interface import Action
 from sim.plans.episode import PlanEpisode
 from sim.plans.export import export_plans
 from sim.plans.plan import read_plan, write_plan
-from sim.plans.sight import PlanCamera
+from sim.plans.sight import PlanCamera, SightConfig
 from sim.twin.agent import TwinAgent, play, twin_config
 from sim.twin.env import LAYERS, TwinConfig, TwinEnv
+from stubborn.agent import AgentConfig
 from stubborn.agents import SPECS
+from stubborn.mapping.mapper import MappingConfig
 from tests.helpers.worlds import room, with_box
 
 
@@ -128,10 +131,24 @@ def test_a_start_is_drawn_for_the_goal_and_a_goal_for_the_start(tmp_path):
             info = env.reset(seed=seed, options={"goal": goal})[1]
             assert (info["goal"], info["shortest_path"] >= 1.95) == (goal, True)
         assert env.reset(seed=seed, options={"start": Pose(1.9, 0.8, 0.0)})[1]["goal"] == "sofa"  # the bed is in reach
+    write_plan(tmp_path / "bare.npz", replace(plan, name="bare", succeeds=np.zeros_like(plan.succeeds)))
+    both = TwinEnv(tmp_path)
+    for seed in range(4):
+        assert both.reset(seed=seed, options={"goal": "bed"})[1]["house"] == plan.name
+    with pytest.raises(EpisodeError, match="None of the 2 plans has a 'chair'"):
+        both.reset(options={"goal": "chair"})
+    with pytest.raises(ConfigError, match=r"options\['start'\] needs options\['plan'\]"):
+        both.reset(options={"start": Pose(1.9, 0.8, 0.0)})
+    with pytest.raises(ConfigError, match="must be a Pose, got tuple"):
+        both.reset(options={"plan": 0, "start": (1.9, 0.8, 0.0)})
+    with pytest.raises(ConfigError, match="must be 0 to 1, got 'bare'"):
+        both.reset(options={"plan": "bare"})
     with pytest.raises(EpisodeError, match=r"has no goal 'chair'\. It has: sofa, bed"):
         env.reset(options={"goal": "chair"})
     with pytest.raises(EpisodeError, match=r"no path to a goal begins at \(90, 0\)"):
         env.reset(options={"start": Pose(90.0, 0.0, 0.0)})
+    with pytest.raises(EpisodeError, match=r"the start \(90, 0\) m is off the plan"):
+        env.reset(options={"start": Pose(90.0, 0.0, 0.0), "goal": "bed"})
 
 
 def test_what_reset_makes_is_refused_before_it(plans):
@@ -152,3 +169,13 @@ def test_errors_say_what_there_is(plans):
         TwinEnv(plans / "nowhere")
     with pytest.raises(EpisodeError, match=r"has no goal 'sofa'\. It has: bed"):
         PlanEpisode(PlanCamera(read_plan(plans / "flat.npz")), "sofa", START["start"])
+
+
+def test_options_that_a_plan_cannot_follow_are_refused():
+    with pytest.raises(ConfigError, match=r"TwinConfig\.actions must be 'primitive' or 'goal', got 'goals'"):
+        TwinConfig(actions="goals")  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match="stride_px must be >= 1, got 0"):
+        SightConfig(stride_px=0)
+    with pytest.raises(ConfigError, match=r"without the agent's mapping\.eye_level_halfwidth_m"):
+        twin_config(AgentConfig(mapping=MappingConfig(eye_level_halfwidth_m=0.5)))
+    assert twin_config(AgentConfig(mapping=MappingConfig(candidate_score=0.3))).mapping.candidate_score == 0.3

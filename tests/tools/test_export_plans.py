@@ -1,0 +1,28 @@
+"""Plans of generated houses: what exists is kept, and what other options made is not taken for it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from sim.interface import ConfigError
+from sim.plans.plan import read_plan
+from tools import export_plans
+
+
+def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    args = export_plans.Args(out=tmp_path, kind="studio", area_m2=52.0)
+    assert export_plans.main(args) == 0
+    (file,) = tmp_path.glob("*.npz")
+    assert read_plan(file).source["area_m2"] == 52.0
+    written = file.stat().st_mtime_ns
+    capsys.readouterr()
+    assert export_plans.main(args) == 0
+    assert "train_studio_000000: exists" in capsys.readouterr().out
+    assert file.stat().st_mtime_ns == written
+    with pytest.raises(ConfigError, match=r"is the plan of another house .*take another --out"):
+        export_plans.main(replace(args, area_m2=55.0))
