@@ -38,11 +38,11 @@ class VerificationConfig:
     """naive-bayes (the paper's), logistic, threshold or none."""
     parameters: Path | None = None
     """File of fitted parameters; None takes those shipped for the kind of segmentation."""
-    least_probability: float = 0.5
-    """A candidate is accepted when it is true with a higher probability than this."""
+    least_probability: float | None = None
+    """A candidate is accepted when it is true with a higher probability than this; None: that of the fit."""
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.least_probability < 1.0:
+        if self.least_probability is not None and not 0.0 <= self.least_probability < 1.0:
             raise ConfigError(f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}.")
 
 
@@ -105,7 +105,7 @@ def verifier_of(options: RunOptions, config: VerificationConfig) -> Verifier:
         ConfigError: there are no such parameters, or no such method.
     """
     verifier = verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
-    if isinstance(verifier, FittedVerifier):
+    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
         return replace(verifier, least_probability=config.least_probability)
     return verifier
 

@@ -11,10 +11,11 @@ import pytest
 from sim import cli
 from sim.analysis.report.facts import command_of
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of, record_of
+from sim.composition.run_config import configuration_of, record_of, verifier_of
 from sim.configuration import as_json, field_paths, with_fields
 from sim.run import entry
 from stubborn import exploration, target
+from stubborn.target.verification import FittedVerifier
 
 SPLIT = {"name": "val", "version": "1", "sha256": "0"}
 
@@ -68,6 +69,14 @@ def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
     assert message in complaint
     assert complaint.count("\n") == 1
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(("config", "bar"), [((), 0.8), (("verification.least_probability=0.6",), 0.6)])
+def test_the_bar_of_the_fit_holds_unless_another_one_is_set(config: tuple[str, ...], bar: float) -> None:
+    options = RunOptions(semantics="rednet", verification="logistic", config=config)
+    verifier = verifier_of(options, configuration_of(options).verification)
+    assert isinstance(verifier, FittedVerifier)
+    assert verifier.least_probability == bar
 
 
 def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
