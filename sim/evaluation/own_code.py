@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import sys
 import sysconfig
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 _OURS = tuple(Path(__file__).resolve().parents[2] / name for name in ("sim", "stubborn"))
@@ -35,7 +36,9 @@ def place_of(error: BaseException, *, below: str) -> str:
 
 
 def hash_of_own(modules: Iterable[str]) -> str:
-    """Returns 12 hex digits, a hash of modules of a user and of what they import from their own folder.
+    """Returns 12 hex digits, a hash of modules of a user and of all that they import from the same source folder.
+
+    Imports are read from the source, so that those inside of functions count too, whether they have run or not.
 
     Args:
         modules: names of imported modules; those of this project and of libraries do not count.
@@ -43,27 +46,49 @@ def hash_of_own(modules: Iterable[str]) -> str:
     Returns:
         The hash; "" where no module is the user's.
     """
-    files: dict[str, Path] = {}
+    contents: dict[str, bytes] = {}
     for name in modules:
-        file = _file_of(name)
-        if file is None or not _is_users(file):
-            continue
-        beside = (_file_of(other) for other in tuple(sys.modules))
-        files |= {str(each.relative_to(file.parent)): each for each in beside if each and _is_below(each, file.parent)}
+        file = Path(getattr(sys.modules[name], "__file__", None) or "<none>").resolve()
+        if file.suffix == ".py" and file.is_file() and _is_users(file):
+            root = file.parents[name.count(".") + (file.name == "__init__.py")]
+            _read_with_imports(file, root, contents)
     digest = hashlib.sha256()
-    for place in sorted(files):
-        digest.update(place.encode() + files[place].read_bytes())
-    return digest.hexdigest()[:12] if files else ""
+    for place in sorted(contents):
+        digest.update(place.encode() + contents[place])
+    return digest.hexdigest()[:12] if contents else ""
 
 
-def _file_of(module: str) -> Path | None:
-    """Returns the Python file of an imported module; None where it has none, such as `sys`."""
-    file = getattr(sys.modules[module], "__file__", None)
-    return Path(file).resolve() if file and str(file).endswith(".py") and Path(file).is_file() else None
+def _read_with_imports(file: Path, root: Path, contents: dict[str, bytes]) -> None:
+    """Adds a file and what it imports from below `root` to the contents, by their paths relative to it."""
+    place = str(file.relative_to(root))
+    if place in contents:
+        return
+    contents[place] = file.read_bytes()
+    for module in _imported(contents[place], file, root):
+        path = root.joinpath(*module.split("."))
+        for each in (path.with_name(f"{path.name}.py"), path / "__init__.py"):
+            if each.is_file() and _is_users(each):
+                _read_with_imports(each, root, contents)
 
 
-def _is_below(file: Path, folder: Path) -> bool:
-    return file.is_relative_to(folder) and _is_users(file)
+def _imported(source: bytes, file: Path, root: Path) -> Iterator[str]:
+    """Yields the names of modules that a source may import, with their packages; nothing where it cannot be parsed."""
+    try:
+        nodes = list(ast.walk(ast.parse(source)))
+    except (SyntaxError, ValueError):
+        return
+    package = file.relative_to(root).parent.parts
+    names: list[str] = []
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            names += [each.name for each in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            parts = (*package[: len(package) + 1 - node.level], *filter(None, [node.module])) if node.level else ()
+            base = ".".join(parts) if node.level else node.module or ""
+            names += [base, *(f"{base}.{each.name}".lstrip(".") for each in node.names)]
+    for name in filter(None, names):
+        parts = name.split(".")
+        yield from (".".join(parts[: end + 1]) for end in range(len(parts)))
 
 
 def _is_users(file: Path) -> bool:

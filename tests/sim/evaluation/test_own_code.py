@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -78,22 +80,41 @@ def test_an_agent_of_this_project_is_named_by_its_own_line(tmp_path: Path, monke
     assert "(segmentation/ground_truth.py, line" in message_of(partial(GroundTruthSegmenter().scores, {}, "bed"))
 
 
-def test_the_hash_is_of_the_agent_and_of_the_imported_modules_beside_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A package with an agent, what it imports at once, what it imports late, and what it does not import."""
+    folder = tmp_path / "hashed"
+    folder.mkdir()
+    for name, text in {
+        "__init__": "",
+        "agent": "from . import helper\n\n\ndef make():\n    import hashed.late\n",
+        "helper": "from hashed.deeper import GAIN\n",
+        "deeper": "GAIN = 1\n",
+        "late": "from sim.interface import Action\n",
+        "unrelated": "",
+    }.items():
+        (folder / f"{name}.py").write_text(text)
     monkeypatch.syspath_prepend(tmp_path)
-    agent, helper, unrelated = (tmp_path / f"hashed_{name}.py" for name in ("agent", "helper", "unrelated"))
-    agent.write_text("import hashed_helper\n")
-    helper.write_text("GAIN = 1\n")
-    importlib.import_module("hashed_agent")
-    before = hash_of_own(["hashed_agent"])
-    unrelated.write_text("GAIN = 1\n")
-    assert hash_of_own(["hashed_agent"]) == before
-    helper.write_text("GAIN = 2\n")
-    edited = hash_of_own(["hashed_agent"])
-    assert edited != before
-    agent.write_text("import hashed_helper  # edited\n")
-    assert hash_of_own(["hashed_agent"]) not in (before, edited)
+    importlib.import_module("hashed.agent")
+    yield folder
+    for name in [name for name in sys.modules if name.partition(".")[0] == "hashed"]:
+        del sys.modules[name]
+
+
+@pytest.mark.parametrize("name", ["agent", "helper", "deeper", "late", "__init__"])
+def test_an_edit_of_what_an_agent_imports_changes_its_hash(package: Path, name: str) -> None:
+    before = hash_of_own(["hashed.agent"])
+    with (package / f"{name}.py").open("a") as file:
+        file.write("# edited\n")
+    assert hash_of_own(["hashed.agent"]) != before
+
+
+def test_what_an_agent_does_not_import_has_no_part_in_its_hash(package: Path) -> None:
+    before = hash_of_own(["hashed.agent"])
+    (package / "unrelated.py").write_text("GAIN = 3\n")
+    importlib.import_module("hashed.unrelated")
+    importlib.import_module("hashed.late")
+    assert hash_of_own(["hashed.agent"]) == before
 
 
 def test_modules_of_this_project_and_of_libraries_are_not_the_users() -> None:
