@@ -48,7 +48,9 @@ def main(options: RunOptions) -> int:
     lines, summary = run_missing(options, episodes, split, console)
     display.print_results(console, lines, summary)
     failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
-    display.print_where_to_look(console, out, video=options.video, failed=next(failures, None))
+    display.print_where_to_look(
+        console, out, video=options.video, failed=next(failures, None), sharded=options.shard is not None
+    )
     return 1 if summary["errors"] else 0
 
 

@@ -62,6 +62,13 @@ def compare(first: Run, second: Run) -> ResultTable:
         f"A: {first.path}, B: {second.path}; {len(common)} episodes of both runs.",
         f"unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
+    errors = [sum(line["end_reason"] == "error" for line in lines) for lines in (a, b)]
+    if any(errors):
+        notes.append(f"Ended with an error: {errors[0]} of A, {errors[1]} of B; failures, in no other metric's means.")
+    whole = sum("error" not in (x["end_reason"], y["end_reason"]) for x, y in zip(a, b, strict=True))
+    fewer = [f"{metric.title} {metric.pairs(a, b)}" for metric in METRICS if metric.pairs(a, b) < whole]
+    if fewer:
+        notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
     if changed:
         lost = [i for i in changed if first.lines[i]["success"]]
         gained = [i for i in changed if not first.lines[i]["success"]]

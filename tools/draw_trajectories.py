@@ -70,6 +70,9 @@ def main(args: Args) -> int:
     console = display.make_console()
     runs = [read_run(path) for path in args.runs]
     wanted = _wanted(runs, args.episodes)
+    if not wanted:
+        none = "No episode failed" if len(runs) == 1 else "The runs succeed in the same episodes"
+        _print(console, f"{none}: nothing to draw. --episodes names episodes.")
     missing = [i for i in wanted if not all(_file(run, i).is_file() for run in runs)]
     if missing:
         why = "written with --record; an episode with an error has none"

@@ -22,7 +22,7 @@ import tyro
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Line, Run, read_run
-from sim.evaluation.config_fields import differing_fields, field_text
+from sim.evaluation.config_fields import differing_fields, field_text, is_same_file
 from sim.evaluation.results import NOT_COMPARED, RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.files import write_atomically
@@ -68,9 +68,11 @@ def main(args: Args) -> int:
         merged.close()
     for folder in folders:
         copy_files(folder, out)
-    missing = merged.config["episodes"] - len(merged.lines)
+    missing = max(merged.config["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
     console.print(message, highlight=False, soft_wrap=True)
+    if lacking := sorted(set(merged.config.get("only") or ()) - set(lines)):
+        console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
 
 
@@ -82,7 +84,7 @@ def sources(args: Args) -> tuple[list[Path], Path]:
     """
     if len(args.runs) == 1 and (shards := sorted(args.runs[0].glob(SHARDS))):
         return shards, args.out or args.runs[0]
-    if args.out is None:
+    if args.out is None or not args.runs:
         named = ", ".join(f"'{folder}'" for folder in args.runs) or "nothing"
         raise ConfigError(f"Give one folder that holds {SHARDS}, or several runs and --out; got {named}.")
     return list(args.runs), args.out
@@ -91,7 +93,7 @@ def sources(args: Args) -> tuple[list[Path], Path]:
 def require_same_options(first: Run, other: Run) -> None:
     """Raises ConfigError where two runs differ in an option that changes results."""
     for path, a, b in differing_fields(first.config, other.config):
-        if path.partition(".")[0] not in NOT_COMPARED:
+        if path.partition(".")[0] not in NOT_COMPARED and not is_same_file(path, first.config, other.config):
             raise ConfigError(
                 f"'{first.path}' has {path} = {field_text(a)}, '{other.path}' has {field_text(b)}: "
                 "runs with different options cannot be merged."
@@ -121,13 +123,19 @@ def without_times(line: Line) -> dict[str, Any]:
 
 
 def merged_config(runs: Sequence[Run]) -> dict[str, Any]:
-    """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes."""
+    """Returns the config of the merged run: without a shard, with the hashes of all code that ran episodes.
+
+    Where all runs name their episodes (`--only`), it names them all.
+    """
     versions = [run.config.get("versions", {}) for run in runs]
     codes = [
         code for run, of in zip(runs, versions, strict=True) for code in run.config.get("codes") or [of.get("code")]
     ]
-    episodes = max(run.recorded("episodes") for run in runs)
-    return {**runs[0].config, "shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
+    of_each = [set(run.config.get("only") or ()) for run in runs]
+    only = sorted(set.union(*of_each)) if all(of_each) else []
+    episodes = len(only) or max(run.recorded("episodes") for run in runs)
+    config = {**runs[0].config, "shard": None, "episodes": episodes, "codes": list(dict.fromkeys(codes))}
+    return config | ({"only": only} if any(of_each) else {})
 
 
 def copy_files(folder: Path, out: Path) -> None:

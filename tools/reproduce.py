@@ -51,7 +51,8 @@ from tools.agent_setup import AgentSetup, file_name
 from tools.paper_tables import PAPER_TABLES, PaperTable, table_named
 
 MAX_NAME = 120
-"""Largest number of characters that the agents take in the name of a table's file; longer ones get a checksum."""
+"""Largest number of characters of the agents in the name of a table's file, and of options in that of a run's folder;
+longer ones get a checksum."""
 SAME_IN_ALL = ("profile", "noise_config", "robot", "robot_sha256")
 """Entries of config.json in which the runs of a table must be equal, if both have them."""
 SAME_IN_TREE = ("robot", "camera", "profile", "noise", "task")
@@ -174,7 +175,7 @@ def common_episodes(
 
 
 def require_same_conditions(runs: Sequence[Run]) -> None:
-    """Raises ConfigError where two runs of a table differ in robot, camera, rendering, noise or task."""
+    """Raises ConfigError where two runs differ in robot, camera, rendering, noise, task or the shipped network."""
     for other in runs[1:]:
         for path, first, second in differing_fields(_conditions(runs[0], other), _conditions(other, runs[0])):
             raise ConfigError(
@@ -187,7 +188,16 @@ def _conditions(of: Run, other: Run) -> dict[str, Any]:
     """Returns the entries of a run's config that must be equal in all runs, if the other run has them too."""
     flat = {key: of.config[key] for key in SAME_IN_ALL if key in of.config and key in other.config}
     tree, others = of.config.get("config", {}), other.config.get("config", {})
-    return flat | {"config": {key: tree[key] for key in SAME_IN_TREE if key in tree and key in others}}
+    found = flat | {"config": {key: tree[key] for key in SAME_IN_TREE if key in tree and key in others}}
+    sums = [run.config.get("files_sha256", {}).get("weights") for run in (of, other)]
+    if None not in sums and not any(_has_own_weights(run) for run in (of, other)):
+        found |= {"files_sha256": {"weights": sums[0]}}  # each commit ships its own
+    return found
+
+
+def _has_own_weights(run: Run) -> bool:
+    """Returns whether a run's weights were named by the user."""
+    return "detector.weights" in run.config.get("settings", {}) or run.config.get("weights") is not None
 
 
 def write_table(
@@ -295,7 +305,10 @@ def _run_args(args: Args, setup: AgentSetup) -> RunOptions:
 
 
 def _folder(args: Args, setup: AgentSetup) -> Path:
-    parts = (file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args), setup.variant)
+    variant = setup.variant
+    if len(variant) > MAX_NAME:
+        variant = f"options-{zlib.crc32(variant.encode()):08x}"
+    parts = (file_name(setup.agent), setup.semantics, args.noise, _split_name(args), _seed_name(args), variant)
     return args.out / "_".join(filter(None, parts))
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.analysis.tables import ResultTable
 from sim.errors import ConfigError
-from sim.evaluation.config_fields import Difference, differing_fields, field_text
+from sim.evaluation.config_fields import Difference, differing_fields, field_text, is_same_file
 from sim.evaluation.results import WITHOUT_EFFECT, read_record, read_result_lines
 from sim.task.trajectory import read_trajectory, trajectory_file
 
@@ -75,7 +75,12 @@ def code_of(run: Run, episode_id: str) -> str:
 def config_differences(first: Run, second: Run) -> list[Difference]:
     """Returns the fields of config.json in which two runs differ, without options that change no result."""
     found = differing_fields(first.config, second.config)
-    return [difference for difference in found if difference[0].partition(".")[0] not in WITHOUT_EFFECT]
+    return [
+        difference
+        for difference in found
+        if difference[0].partition(".")[0] not in WITHOUT_EFFECT
+        and not is_same_file(difference[0], first.config, second.config)
+    ]
 
 
 def differences_table(first: Run, *others: Run) -> ResultTable:

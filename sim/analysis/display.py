@@ -127,7 +127,9 @@ def _goal(episode: Started) -> str:
     return episode.goal.replace("_", " ")
 
 
-def print_where_to_look(console: Console, out: Path, *, video: bool, failed: str | None = None) -> None:
+def print_where_to_look(
+    console: Console, out: Path, *, video: bool, failed: str | None = None, sharded: bool = False
+) -> None:
     """Prints where the results of a run are, and the commands that show them.
 
     Args:
@@ -135,13 +137,15 @@ def print_where_to_look(console: Console, out: Path, *, video: bool, failed: str
         out: folder of the run.
         video: whether its episodes were filmed.
         failed: ID of a failed episode of a split; None: there is none.
+        sharded: whether the run is a part of a larger one.
     """
     say = functools.partial(console.print, highlight=False, soft_wrap=True)
     say(f"Results are in {out}: results.jsonl has a line for each episode, summary.json the table above.")
     if video:
         say(f"Videos are in {out}/videos.")
     elif failed is not None:
-        say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER.")
+        whole = ", without --shard" if sharded else ""
+        say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER{whole}.")
     say(f"A page about this run: {cli.command('-m', 'sim.report', out)}")
     say(f"Watch an agent in the browser, or drive yourself: {cli.command('-m', 'sim.web')}")
 

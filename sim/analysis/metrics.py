@@ -31,6 +31,11 @@ class Metric:
         a, b = ([metric_value(line, self.key) for line in lines] for lines in (first, second))
         return Cell(paired_difference(a, b, houses_of(first)), self.percent, self.digits, difference=True)
 
+    def pairs(self, first: Sequence[Line], second: Sequence[Line]) -> int:
+        """Returns the number of episodes that have the number in both; they are in the same order."""
+        both = zip(first, second, strict=True)
+        return sum(all(metric_value(line, self.key) is not None for line in pair) for pair in both)
+
     def median(self, lines: Sequence[Line]) -> str:
         """Returns the median over lines as text; `-` where no line has the number."""
         known = [value for value in (metric_value(line, self.key) for line in lines) if value is not None]

@@ -27,6 +27,21 @@ def differing_fields(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Differe
     return sorted(_differences("", a, b), key=lambda difference: difference[0])
 
 
+def is_same_file(path: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
+    """Returns whether a field of two `config.json` names a file that has the same checksum in both.
+
+    The folder of a file is another one after a checkout has moved, and on other machines.
+    """
+    name = {
+        "weights": "weights",
+        "config.detector.weights": "weights",
+        "verifier": "verifier",
+        "config.verification.parameters": "verifier",
+    }.get(path, path.removeprefix("config."))
+    sums = [record.get("files_sha256", {}).get(name) for record in (first, second)]
+    return sums[0] is not None and sums[0] == sums[1]
+
+
 def field_text(value: Any) -> str:
     """Returns a value as JSON, or "(absent)"."""
     return ABSENT.value if value is ABSENT else json.dumps(value, ensure_ascii=False)

@@ -20,7 +20,7 @@ import msgspec
 
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
-from sim.evaluation.config_fields import ABSENT, differing_fields, field_text
+from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
 from sim.files import write_atomically
 from sim.reading import Count, Lines, Name, Number, convert, read_json, read_lines
 
@@ -29,6 +29,8 @@ SUMMARY_METRICS = (
     "area_seen_m2", "area_per_metre", "trapped", "collisions",
 )  # fmt: skip
 """Metrics (`metric_value`) that the summary averages."""
+OF_ERRORS = ("success", "spl", "soft_spl")
+"""Metrics in which an episode that ended with an error counts."""
 RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
 """What the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
@@ -270,23 +272,34 @@ class RunDirectory:
         existing = read_record(file)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
-            if path.partition(".")[0] not in NOT_COMPARED and not unset:
+            if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
                 raise ConfigError(
                     f"--out '{self.path}' holds a run with {path} = {field_text(before)}, this run has "
                     f"{field_text(now)}; choose another folder, or resume the run with the same options."
                 )
+        changed = {}
         if (config.get("episodes") or 0) > (existing.get("episodes") or 0):
-            _write_json(file, existing | {"episodes": config["episodes"]})
+            changed["episodes"] = config["episodes"]
+        before, now = (list(record.get("only") or ()) for record in (existing, config))
+        if before and not set(now) <= set(before):
+            changed["only"] = sorted({*before, *now})
+        elif before and not now:
+            changed["only"] = []
+        if changed:
+            _write_json(file, existing | changed)
 
 
 def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
     """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
 
+    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it was not
+    played to its end, so that it has too few steps, collisions and metres.
+
     `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
     that never showed the goal: the mean is the restricted mean time to first sight.
     """
     value = line.get("gt_explored" if metric == "never_seen" else metric)
-    if value is None:
+    if value is None or (line.get("end_reason") == "error" and metric not in OF_ERRORS):
         return None
     return 1.0 - float(value) if metric == "never_seen" else float(value)
 

@@ -105,11 +105,14 @@ def test_two_runs_are_drawn_side_by_side(played: Path, tmp_path: Path) -> None:
     assert (left[chart] == right[chart]).all()
 
 
-def test_two_runs_that_agree_leave_nothing_to_draw(played: Path, tmp_path: Path) -> None:
+def test_two_runs_that_agree_leave_nothing_to_draw(
+    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     shutil.copytree(played / "run", tmp_path / "other")
     args = draw_trajectories.Args(runs=(played / "run", tmp_path / "other"), out=tmp_path / "pictures")
     assert draw_trajectories.main(args) == 0
     assert not (tmp_path / "pictures").exists()
+    assert "The runs succeed in the same episodes: nothing to draw." in capsys.readouterr().out
 
 
 def test_no_run_is_refused() -> None:

@@ -90,6 +90,18 @@ def test_runs_with_other_options_are_never_merged(tmp_path: Path) -> None:
     assert not (tmp_path / "both").exists()
 
 
+def test_runs_of_named_episodes_become_one_of_all_these(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    first = write(tmp_path / "a", [line_of(0), line_of(1)], only=["e0", "e1"], episodes=2)
+    second = write(tmp_path / "b", [line_of(3)], only=["e3", "e4"], episodes=2)
+    assert main(Args(runs=(first, second), out=tmp_path / "both")) == 1
+    assert "3 episodes of 2 runs, 1 missing" in (told := capsys.readouterr().out)
+    assert "Missing: e4" in told
+    assert json.loads((tmp_path / "both" / "config.json").read_text())["only"] == ["e0", "e1", "e3", "e4"]
+    whole = write(tmp_path / "c", [line_of(2)], only=[], episodes=4)
+    assert main(Args(runs=(first, whole), out=tmp_path / "more")) == 1
+    assert json.loads((tmp_path / "more" / "config.json").read_text())["only"] == []
+
+
 def test_all_the_code_that_played_is_named(tmp_path: Path) -> None:
     runs = (write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], versions={"code": "0lder"}))
     main(Args(runs=runs, out=tmp_path / "both"))
@@ -102,5 +114,7 @@ def test_all_the_code_that_played_is_named(tmp_path: Path) -> None:
 def test_nothing_to_merge_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="Give one folder that holds shard_"):
         main(Args(runs=(tmp_path,)))
+    with pytest.raises(ConfigError, match="got nothing"):
+        main(Args(runs=(), out=tmp_path / "out"))
     with pytest.raises(ConfigError, match="--shard 0/2 needs --out"):
         check_options(RunOptions(shard="0/2"))

@@ -147,6 +147,23 @@ def test_a_run_with_other_options_gets_into_no_table(args: reproduce.Args, key: 
     assert (args.out / "tables" / f"{stem(args)}.md").read_bytes() == before
 
 
+@pytest.mark.parametrize(("settings", "refused"), [({}, True), ({"detector.weights": "mine"}, False)])
+def test_two_versions_of_the_shipped_network_get_into_no_table(
+    args: reproduce.Args, settings: dict[str, str], refused: bool
+) -> None:
+    reproduce.main(args)
+    runs = [read_run(args.out / name) for name in (ORACLE, MINE)]
+    runs = [
+        replace(run, config={**run.config, "files_sha256": {"weights": checksum}, "settings": settings})
+        for run, checksum in zip(runs, ("a", "b"), strict=True)
+    ]
+    if not refused:
+        reproduce.require_same_conditions(runs)
+        return
+    with pytest.raises(ConfigError, match=r"files_sha256\.weights"):
+        reproduce.require_same_conditions(runs)
+
+
 def test_tables_are_made_again_from_the_folders_without_running_anything(
     args: reproduce.Args, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -182,6 +199,12 @@ def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: re
     (args.out / "other").rename(written)
     with pytest.raises(ConfigError, match=r"with settings"):
         reproduce.main(replace(agents, minutes=0.0))
+
+
+def test_many_options_get_a_checksum_in_the_name_of_the_folder(args: reproduce.Args) -> None:
+    options = "examples.my_agent:AGENT --config agent.keep_m=0.8" + "0" * 300
+    assert reproduce.main(replace(args, episodes=1, agents=("oracle", options))) == 0
+    assert list(args.out.glob("examples.my_agent_AGENT_gt_none_tiny_options-????????/results.jsonl"))
 
 
 def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:

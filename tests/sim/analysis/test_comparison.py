@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -229,3 +230,14 @@ def test_a_run_from_before_the_time_to_first_sight_can_be_compared_and_has_no_va
     assert [cell.text() for cell in cells if isinstance(cell, Cell)] == ["-", "7 [7, 7]*", "-"]
     cells = dict(compare(newer, newer).rows)["area seen, m2"]
     assert [cell.mean_text for cell in cells if isinstance(cell, Cell)] == ["20.0", "20.0", "+0.0"]
+
+
+def test_a_comparison_names_errors_and_metrics_without_a_value(tmp_path: Path) -> None:
+    first = read_run(run_folder(tmp_path / "first", "abc", gt_explored=True, collisions=3))
+    broken = {"success": 0.0, "gt_explored": None, "end_reason": "error"}
+    lines = {**first.lines, "a": {**first.lines["a"], **broken}, "b": {**first.lines["b"], "collisions": None}}
+    notes = compare(first, replace(first, lines=lines)).notes
+    assert "Ended with an error: 0 of A, 1 of B; failures, in no other metric's means." in notes
+    (fewer,) = (note for note in notes if note.startswith("Differences of fewer"))
+    assert "collisions 1" in fewer
+    assert "success" not in fewer

@@ -103,5 +103,7 @@ def test_the_printed_commands_start_as_they_are_printed(
     report, web = re.findall(r": (\S*python -m .*)", capsys.readouterr().out)
     assert shlex.split(report)[1:] == ["-m", "sim.report", str(tmp_path / "a run")]
     assert shlex.split(web)[1:] == ["-m", "sim.web"]
+    print_where_to_look(PlainConsole(width=120), tmp_path, video=False, failed="val_0001", sharded=True)
+    assert "with --only val_0001 --video --out ANOTHER_FOLDER, without --shard." in capsys.readouterr().out
     code = [shlex.split(web)[0], "-c", "import sim"]
     assert subprocess.run(code, check=False, timeout=60).returncode == 0

@@ -129,6 +129,14 @@ def test_null_metrics_do_not_count_in_the_mean() -> None:
     assert summary["episodes"] == 2
 
 
+def test_an_episode_with_an_error_is_a_failure_and_counts_in_no_other_mean() -> None:
+    broken = line(0, end_reason="error", success=0.0, spl=0.0, soft_spl=0.0, collisions=0, steps_to_first_sight=500)
+    summary = summarise([broken, line(1, collisions=7, steps_to_first_sight=30)])
+    assert summary["success"]["mean"] == 0.5
+    assert summary["collisions"]["mean"] == 7.0
+    assert summary["steps_to_first_sight"]["mean"] == 30.0
+
+
 def test_a_summary_counts_the_causes_of_failure() -> None:
     failed = [line(n, failure=cause) for n, cause in enumerate(["explore", "trapped", "trapped", None])]
     assert summarise(failed)["failures"] == {"trapped": 2, "explore": 1}
@@ -155,6 +163,31 @@ def test_a_field_inside_the_configuration_that_differs_is_named(tmp_path: Path) 
     RunDirectory(tmp_path, CONFIG | nested).close()
     with pytest.raises(ConfigError, match=r"config\.robot\.radius_m = 0.18, this run has 0.2;"):
         RunDirectory(tmp_path, CONFIG | {"config": {"robot": {"radius_m": 0.2}, "camera": {}}})
+
+
+def test_a_run_goes_on_with_the_same_weights_in_another_folder_and_not_with_others(tmp_path: Path) -> None:
+    def config(folder: str, checksum: str) -> dict:
+        return CONFIG | {
+            "weights": f"{folder}/net",
+            "config": {"detector": {"weights": f"{folder}/net"}, "agent": {"explorer": {"weights": f"{folder}/plan"}}},
+            "files_sha256": {"weights": checksum, "agent.explorer.weights": "b"},
+        }
+
+    RunDirectory(tmp_path, config("/here", "a")).close()
+    RunDirectory(tmp_path, config("/there", "a")).close()
+    with pytest.raises(ConfigError, match="weights"):
+        RunDirectory(tmp_path, config("/there", "c"))
+
+
+def test_the_config_names_the_episodes_of_all_starts(tmp_path: Path) -> None:
+    def named(*only: str) -> list[str]:
+        RunDirectory(tmp_path, CONFIG | {"only": list(only)}).close()
+        return json.loads((tmp_path / "config.json").read_text())["only"]
+
+    assert named("e1") == ["e1"]
+    assert named("e0") == ["e0", "e1"]
+    assert named("e1") == ["e0", "e1"]
+    assert named() == []  # the first N
 
 
 def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) -> None:
