@@ -90,6 +90,8 @@ class CameraModel:
             raise ConfigError(
                 f"CameraModel needs 1 to {MAX_SIDE_PX} pixels on each side, got {self.width_px} x {self.height_px}."
             )
+        if self.height_m <= 0.0:
+            raise ConfigError(f"CameraModel.height_m must be positive, got {self.height_m}.")
         if not 0.0 < self.hfov_rad < math.pi:
             raise ConfigError(f"CameraModel.hfov_rad must lie in (0, pi), got {self.hfov_rad}.")
         if not 0.0 <= self.min_depth_m < self.max_depth_m:

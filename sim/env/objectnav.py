@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import reprlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -24,7 +25,7 @@ from sim.robot.config import RobotConfig
 from sim.robot.drive import Motion
 from sim.sensors.noise import NoiseConfig, SensorNoise, get_noise, noise_from_dict
 from sim.sensors.profiles import RenderProfile, get_profile
-from sim.sensors.sensor import Sensor, SensorContext
+from sim.sensors.sensor import DeclaredImages, Sensor, SensorContext
 from sim.sensors.standard import STANDARD_SENSORS, resolve_sensors
 from sim.task.config import TaskConfig
 
@@ -189,6 +190,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def step(self, action: int) -> tuple[dict[str, NDArray], float, bool, bool, dict[str, Any]]:
         """Carries out one action; see the class."""
         scene = self.scene
+        scene.task.require_running()
         motion = self._motion = scene.world.move(Action(action))
         observation, semantic = self._observe()
         scene.task.observe(Action(action), motion, semantic)
@@ -273,8 +275,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         needed = {name for sensor in self.sensors for name in sensor.images}
         wanted = sorted({"semantic", *needed, *self._truth, *self._noise.images})
         images = self.truth_images = self.scene.camera.render(world.data, world.camera_pose, wanted)
-        context = SensorContext(
-            images=images,
+        context = functools.partial(
+            SensorContext,
             pose=world.pose,
             start=self.episode.start,
             goal=self.episode.goal,
@@ -282,7 +284,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
             model=world.model,
             data=world.data,
         )
-        readings = {sensor.name: sensor.read(context) for sensor in self.sensors}
+        readings = {each.name: each.read(context(images=DeclaredImages(each, images))) for each in self.sensors}
         return self._noise.apply(readings, images), images["semantic"]
 
     def _info(self, collided: bool) -> dict[str, Any]:

@@ -122,7 +122,7 @@ class Split:
         for episode in self.episodes:
             if episode.episode_id == episode_id:
                 return episode
-        near = difflib.get_close_matches(episode_id, [episode.episode_id for episode in self.episodes], n=1)
+        near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
 

@@ -100,7 +100,7 @@ def read_labels(
 
 def rendered_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for visual geoms: group below 3 and not fully transparent."""
-    return (model.geom_group < RENDERED_GROUPS) & (_alpha(model) > 0.0)
+    return (model.geom_group < RENDERED_GROUPS) & (opacity(model) > 0.0)
 
 
 def collidable_geoms(model: mujoco.MjModel) -> NDArray[np.bool_]:
@@ -154,7 +154,7 @@ def names_of_geom(model: mujoco.MjModel, geom: int) -> tuple[str, ...]:
     return tuple(names) if any(names) else (*names, f"#{geom}")
 
 
-def _alpha(model: mujoco.MjModel) -> NDArray[np.float32]:
+def opacity(model: mujoco.MjModel) -> NDArray[np.float32]:
     """Returns the rendered opacity (ngeom,): that of a geom's own colour, else of its material."""
     alpha = model.geom_rgba[:, 3].copy()
     default = np.all(model.geom_rgba == np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32), axis=1)

@@ -90,6 +90,7 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
     for count, kind, elements in (
         (model.ncam, "camera", house.spec.cameras),
         (model.nu, "actuator", house.spec.actuators),
+        (model.ntendon, "tendon", house.spec.tendons),
     ):
         if count:
             raise HouseError(f"a house must not have {kind}s, but this one has {kind} {_quote(elements[0].name)}.")
@@ -106,7 +107,22 @@ def validate_house(house: House, model: mujoco.MjModel) -> Labels:
         _require_floor(model, labels, has_rules=house.rules is not None)
     except HouseError as error:
         raise HouseError(" ".join([str(error), *void_notes(model, labels)])) from None
+    _require_low_planes(model)
     return labels
+
+
+def _require_low_planes(model: mujoco.MjModel) -> None:
+    """Raises a HouseError where a plane faces up above the ground: everything below it is inside of it."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    planes = np.flatnonzero((model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE) & collidable_geoms(model))
+    for geom in planes.tolist():
+        z_m = float(data.geom_xpos[geom, 2])
+        if z_m > FLOOR_TOLERANCE_M and data.geom_xmat[geom, 8] > 0.5:
+            raise HouseError(
+                f"{describe_geom(model, geom)} is a plane at z = {z_m:.2f} m that faces up, so that all space below it "
+                "is solid; use a box for a floor above the ground."
+            )
 
 
 def _require_floor(model: mujoco.MjModel, labels: Labels, *, has_rules: bool) -> None:

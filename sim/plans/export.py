@@ -14,15 +14,15 @@ from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope
 from sim.houses.house import House
-from sim.houses.labels import Labels, collidable_geoms, geoms_of
+from sim.houses.labels import Labels
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
 from sim.plans.gap_kernels import lower_to_gap
 from sim.plans.plan import CELL_M, Plan, storey_name
 from sim.plans.surfaces import TOP_M, occupied_spans
 from sim.robot.body import PREFIX
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import STEP_HEIGHT_M, FreeSpace
-from sim.world.plan import floor_polygons, polygons_between
+from sim.world.freespace import FreeSpace, obstacle_polygons
+from sim.world.plan import floor_polygons
 from sim.world.storeys import floor_levels
 from sim.world.world import World
 
@@ -106,10 +106,8 @@ def _slack_m(
 
     At obstacles it is exact; at edges of the floor and at ground that cannot be reached it comes from the cells.
     """
-    geoms = np.flatnonzero(collidable_geoms(world.model) & ~geoms_of(world.model, PREFIX))
-    heights_m = (floor_z_m + STEP_HEIGHT_M, floor_z_m + world.robot.height_m)
     gap_m = np.full(frame.shape, _FAR_M)
-    for polygon in polygons_between(world.model, at_rest, geoms, heights_m):
+    for polygon in obstacle_polygons(world.model, at_rest, world.labels, world.robot, floor_z_m, robot_prefix=PREFIX):
         window = frame.index_of(polygon.bounds_m, _FAR_M)
         x_m, y_m = frame.axes(window)
         lower_to_gap(gap_m[window], x_m, y_m, polygon.vertices_m, polygon.normals, polygon.offsets_m)

@@ -212,6 +212,8 @@ class RobotConfig:
     def __post_init__(self) -> None:
         if self.base not in get_args(Base):
             raise ConfigError(f"RobotConfig.base must be one of {', '.join(get_args(Base))}, got '{self.base}'.")
+        if self.file is not None and self.base == "free":
+            raise ConfigError("RobotConfig.base 'free' is for our body only: one of a file is held upright (planar).")
         steps = self.drive.tick_s / self.physics.timestep_s
         if abs(steps - round(steps)) > 1e-6 or round(steps) < 1:
             raise ConfigError(

@@ -76,7 +76,7 @@ def _prepare_body(
         joint = spec.joint(wheel.joint)
         joint.limited = mujoco.mjtLimited.mjLIMITED_FALSE
         joint.armature = config.wheels.armature_kg_m2
-        joint.damping[:] = 0.0  # the motor controls the speed
+        joint.damping[:] = joint.stiffness[:] = 0.0  # the motor controls the speed
         joint.frictionloss = 0.0
         add_tyre(joint.parent, side, config.wheels.radius_m, joint.pos)
     return [geom.name for geom in geoms.hull]

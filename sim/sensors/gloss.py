@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.gl import mujoco
-from sim.houses.labels import Labels
+from sim.houses.labels import Labels, opacity
 from sim.interface import MPCAT40_ID
 
 _GLASS_CATEGORIES = tuple(MPCAT40_ID[name] for name in ("mirror", "window"))
@@ -20,7 +20,7 @@ def geom_gloss(model: mujoco.MjModel, labels: Labels) -> NDArray[np.float32]:
     """
     material = model.geom_matid
     plain = material < 0
-    transparency = 1.0 - np.where(plain, model.geom_rgba[:, 3], _of_geoms(model.mat_rgba[:, 3], material, 1.0))
+    transparency = 1.0 - opacity(model)
     reflectance = _of_geoms(model.mat_reflectance, material, 0.0)
     polish = _of_geoms(model.mat_specular * model.mat_shininess, material, 0.0)
     gloss = np.maximum.reduce([transparency, reflectance, polish])

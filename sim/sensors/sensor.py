@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.interface import CameraModel
+from sim.interface import CameraModel, ConfigError
 from sim.robot.drive import Motion
 
 
@@ -25,7 +25,7 @@ class SensorContext:
     """The true state that sensors are read from, after a reset or an action."""
 
     images: Mapping[str, NDArray]
-    """Rendered images by name, without noise; holds at least those that the sensor declares."""
+    """Rendered images by name, without noise; those that the sensor declares."""
     pose: Pose
     """Pose of the robot in the world."""
     start: Pose
@@ -38,6 +38,17 @@ class SensorContext:
     """The compiled world; read only."""
     data: mujoco.MjData
     """State of the world; read only."""
+
+
+class DeclaredImages(dict[str, NDArray]):
+    """The rendered images that a sensor declares: what else is rendered, such as the truth, is not for it."""
+
+    def __init__(self, sensor: Sensor, images: Mapping[str, NDArray]) -> None:
+        super().__init__({name: images[name] for name in sensor.images})
+        self._sensor = sensor.name
+
+    def __missing__(self, name: str) -> NDArray:
+        raise ConfigError(f"Sensor '{self._sensor}' reads the image '{name}', which it does not declare in `images`.")
 
 
 class NoiseModel(Protocol):

@@ -136,6 +136,8 @@ def resolve_sensors(given: Sequence[str | Sensor]) -> tuple[Sensor, ...]:
     Raises:
         ConfigError: an unknown name, or two different sensors with one name.
     """
+    if isinstance(given, str):
+        raise ConfigError(f"sensors must be a tuple of sensors or their names, got '{given}'.")
     resolved: dict[str, Sensor] = {}
     for each in given:
         sensor = _standard_sensor(each) if isinstance(each, str) else _checked(each)
@@ -160,6 +162,8 @@ def _checked(sensor: Sensor) -> Sensor:
             f"Sensor {type(sensor).__name__} has no {', '.join(missing)}; see `sim.sensors.sensor.Sensor` "
             "(images = () and noise = None where there are none)."
         )
+    if isinstance(sensor.images, str):
+        raise ConfigError(f"Sensor '{sensor.name}': images must be a tuple of names, got '{sensor.images}'.")
     if sensor.name in STANDARD_SENSORS and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
         raise ConfigError(f"Sensor {type(sensor).__name__} has the name of the standard sensor '{sensor.name}'.")
     return sensor

@@ -112,10 +112,8 @@ class Task:
         Raises:
             EpisodeError: the episode has not begun or is over.
         """
-        record = self._running
-        if record.end_reason is not None:
-            raise EpisodeError(f"The episode has ended ({record.end_reason}): start another before the next action.")
-        pose = self.world.pose
+        self.require_running()
+        record, pose = self._running, self.world.pose
         record.positions_m.append((pose.x_m, pose.y_m))
         record.path_length_m += motion.displacement_m
         record.collisions += motion.collided
@@ -133,6 +131,11 @@ class Task:
             self._end("stop")
         elif self.num_steps >= self.config.max_steps:
             self._end("max_steps")
+
+    def require_running(self) -> None:
+        """Raises EpisodeError where no further action is allowed: the episode has not begun, or is over."""
+        if (reason := self._running.end_reason) is not None:
+            raise EpisodeError(f"The episode has ended ({reason}): start another before the next action.")
 
     def stops_for(self, x_m: float, y_m: float) -> None:
         """Records the place in the world for which the agent is about to stop, as it states.

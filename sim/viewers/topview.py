@@ -12,6 +12,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.task.ground_truth import Target
 from sim.viewers.viewer import Colour
 from sim.world.freespace import FreeSpace
+from sim.world.storeys import LEVEL_M
 
 BLOCKED: Colour = (214, 214, 214)
 OBSTACLE: Colour = (120, 124, 132)
@@ -101,7 +102,7 @@ class TopView:
             for piece in footprint.parts:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
         start = self._env.scene.task.start
-        if start.floor_z_m == floor_z_m:
+        if abs(start.floor_z_m - floor_z_m) < LEVEL_M:
             way = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
             cv2.polylines(image, [way.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
             cv2.circle(image, way[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)

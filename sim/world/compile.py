@@ -87,7 +87,8 @@ def _set_collision_masks(spec: mujoco.MjSpec, alone: mujoco.MjModel, labels: Lab
 
 
 def _set_options(spec: mujoco.MjSpec, config: RobotConfig) -> None:
-    """Sets the same physics options for every house."""
+    """Sets the same physics options for every house; none of the file's own remains."""
+    spec.option = mujoco.MjSpec().option
     option = spec.option
     option.timestep = config.physics.timestep_s
     option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST

@@ -1,8 +1,9 @@
 """Free space of the robot on one storey, and geodesic distances in it (docs/task.md).
 
 A position is free when the robot's disc lies on floors of the house, so that no wheel can be beyond the edge of a
-stairwell, and touches no collision geom between step height and robot height. Movable objects count at their positions
-when the `FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on `frame`.
+stairwell, and touches no collision geom between step height and robot height, nor a floor that is too high to climb.
+Movable objects count at their positions when the `FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on
+`frame`.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.house import Room
 from sim.houses.labels import Labels, collidable_geoms, geoms_of
-from sim.interface import RobotModel, SuccessRule
+from sim.interface import MPCAT40_ID, RobotModel, SuccessRule
 from sim.world.plan import floor_polygons, house_extent, polygons_between, room_rectangles
 
 if TYPE_CHECKING:
@@ -34,7 +35,10 @@ CELL_M = 0.025
 MAX_CELLS = 25_000_000
 """Cells of the grid of a storey: 125 x 125 m. The largest house that ships has 2 million."""
 STEP_HEIGHT_M = 0.03
-"""Lower geoms are no obstacles: they pass under the robot, or the robot climbs them."""
+"""Lower geoms are no obstacles, except for floors: they pass under the robot."""
+CLIMB_M = 0.013
+"""A floor that is higher than this above another one is an obstacle: up to 14 mm the wheels climb it wherever they
+meet it in the course of an action, from 15 mm on only at some places."""
 NEAREST_FREE_M = 0.3
 """A position at most this far from a free cell still has a geodesic distance: the robot may have pushed an object."""
 SEAM_M = 0.06
@@ -76,9 +80,7 @@ class FreeSpace:
         robot, rule = robot or RobotModel(), rule or SuccessRule()
         self.radius_m = robot.radius_m
         self.floor_z_m = floor_z_m
-        candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
-        heights = (floor_z_m + STEP_HEIGHT_M, floor_z_m + robot.height_m)
-        self._obstacles = polygons_between(model, data, np.flatnonzero(candidates), heights)
+        self._obstacles = obstacle_polygons(model, data, labels, robot, floor_z_m, robot_prefix=robot_prefix)
         self._floors = floor_polygons(model, data, labels, floor_z_m)
         rooms = tuple(room for room in rooms if abs(room.floor_z_m - floor_z_m) < rule.same_storey_m)
         self._extent = house_extent(model, data, labels, rooms, self._floors, self._obstacles)
@@ -227,6 +229,26 @@ def connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[n
 
 def _covers(polygons: Iterable[ConvexPolygon], here: NDArray[np.float64]) -> bool:
     return any(bool(polygon.contains(here)[0]) for polygon in polygons)
+
+
+def obstacle_polygons(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    labels: Labels,
+    robot: RobotModel,
+    floor_z_m: float,
+    *,
+    robot_prefix: str = "robot/",
+) -> list[ConvexPolygon]:
+    """Returns the plan projections of the geoms that are obstacles on the storey whose floor is at `floor_z_m`."""
+    candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
+    is_floor = labels.geom_category == MPCAT40_ID["floor"]
+    top_m = floor_z_m + robot.height_m
+    return [
+        polygon
+        for geoms, bottom_m in ((candidates & ~is_floor, STEP_HEIGHT_M), (candidates & is_floor, CLIMB_M))
+        for polygon in polygons_between(model, data, np.flatnonzero(geoms), (floor_z_m + bottom_m, top_m))
+    ]
 
 
 def _frame_around(extent: list[ConvexPolygon]) -> GridFrame:

@@ -142,6 +142,10 @@ def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) 
         (False, True)
     ]
     assert steps[-1][4]["end_reason"] == "max_steps"
+    there = env.scene.world.pose
+    with pytest.raises(EpisodeError, match="has ended"):
+        env.step(Action.TURN_LEFT)
+    assert env.scene.world.pose == there
 
 
 def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_none(env: ObjectNavEnv) -> None:
@@ -242,6 +246,7 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
     [
         (lambda: ObjectNavEnv(labels="rules.json"), "labels, root and start need house"),
         (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels, root and start need house"),
+        (lambda: CameraModel(height_m=-1.0), "height_m must be positive, got -1.0"),
         (lambda: CameraModel(hfov_rad=math.nan), "hfov_rad must be a finite number"),
         (lambda: CameraModel(height_m=math.inf), "height_m must be a finite number"),
         (lambda: CameraModel(width_px=10**6), "1 to 4096 pixels"),

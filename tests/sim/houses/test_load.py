@@ -61,6 +61,16 @@ BAD = {
         '<actuator><motor name="push" joint="j"/></actuator>',
         "must not have actuators.*'push'",
     ),
+    "a tendon": (
+        FLOOR + '<geom name="wall_00" size=".1" pos="1 0 1"/><site name="a"/><site name="b" pos="1 0 0"/>',
+        '<tendon><spatial name="rope"><site site="a"/><site site="b"/></spatial></tendon>',
+        "must not have tendons.*'rope'",
+    ),
+    "an upper floor without an end": (
+        FLOOR + '<geom name="floor_01" type="plane" size="2 2 1" pos="0 0 2.7"/>',
+        "",
+        r"'floor_01' is a plane at z = 2\.70 m that faces up.*use a box",
+    ),
     "a height field": (
         FLOOR + '<geom name="floor_01" type="hfield" hfield="h"/>',
         '<asset><hfield name="h" nrow="2" ncol="2" size="1 1 1 1"/></asset>',

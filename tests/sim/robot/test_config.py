@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from sim.interface import ConfigError
-from sim.robot.config import BodyConfig, DriveConfig, PhysicsConfig, RobotConfig, WheelConfig
+from sim.robot.config import BodyConfig, DriveConfig, PhysicsConfig, RobotConfig, RobotFile, WheelConfig
 
 
 def test_agents_get_the_size_of_the_hull():
@@ -34,6 +35,10 @@ def test_agents_get_the_size_of_the_hull():
             "largest force of the motors, 35.0 N",
         ),
         (lambda: RobotConfig(body=BodyConfig(mass_kg=0.4)), "mass"),
+        (
+            lambda: RobotConfig(base="free", file=RobotFile(Path("robot.xml"), ("left", "right"))),
+            "is for our body only",
+        ),
     ],
 )
 def test_impossible_values_are_refused_by_name(build, message):

@@ -15,6 +15,7 @@ from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.robot.profile import Trapezoid
+from sim.world.freespace import CLIMB_M
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
 
@@ -223,7 +224,13 @@ def test_on_a_slippery_floor_the_wheels_slip():
     assert not motion.collided
 
 
-@pytest.mark.parametrize("rug_m", [0.005, 0.01])
+def test_a_step_higher_than_the_free_space_allows_stops_the_robot():
+    step_m = CLIMB_M + 0.002
+    house = with_box(open_floor(), "floor_01", centre_m=(1.05, 0.0, 0.5 * step_m), half_m=(0.5, 1.0, 0.5 * step_m))
+    assert sum(motion.displacement_m for motion in drive(world_with(house), *[FORWARD] * 4)) < 0.6
+
+
+@pytest.mark.parametrize("rug_m", [0.005, 0.01, CLIMB_M])
 def test_a_solid_rug_is_climbed(rug_m):
     house = with_box(open_floor(), "floor_01", centre_m=(1.0, 0.0, 0.5 * rug_m), half_m=(0.5, 1.0, 0.5 * rug_m))
     world = world_with(house)

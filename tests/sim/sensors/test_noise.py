@@ -167,12 +167,13 @@ def test_gloss_is_of_glass_mirrors_and_polish() -> None:
       <geom name="sink_00" type="box" size="1 1 1" material="chrome"/>
       <geom name="table_00" type="box" size="1 1 1" material="wood"/>
       <geom name="cabinet_00" type="box" size="1 1 1" rgba="1 1 1 0.5"/>
+      <geom name="window_00" type="box" size="1 1 1" material="wood" rgba=".8 .9 1 .2"/>
       <geom name="mirror_01" type="box" size="1 1 1"/>
       <geom name="mirror_02" type="box" size="1 1 1" material="wood"/>
     </worldbody></mujoco>"""
     model = mujoco.MjModel.from_xml_string(xml)
     gloss = geom_gloss(model, read_labels(model))
-    np.testing.assert_allclose(gloss, [0.0, 0.8, 0.81, 0.7, 0.015, 0.5, 1.0, 0.015], atol=1e-6)
+    np.testing.assert_allclose(gloss, [0.0, 0.8, 0.81, 0.7, 0.015, 0.5, 0.8, 1.0, 0.015], atol=1e-6)
 
 
 def test_the_limits_of_depth_keep_their_meaning() -> None:

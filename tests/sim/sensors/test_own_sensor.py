@@ -193,6 +193,23 @@ def test_own_sensors_and_noise_do_not_change_the_noise_of_the_others(house: Path
             np.testing.assert_array_equal(one[name], other[name])
 
 
+def test_a_sensor_gets_the_images_that_it_declares_and_no_others(house: Path) -> None:
+    class Peeking(DepthAhead):
+        def read(self, context: SensorContext) -> NDArray:
+            assert list(context.images) == ["depth"]
+            return context.images["semantic"]
+
+    with pytest.raises(ConfigError, match="Sensor 'ahead' reads the image 'semantic', which it does not declare"):
+        observations(house, [], sensors=(Peeking(),))
+
+
+def test_a_text_is_no_tuple_of_names() -> None:
+    with pytest.raises(ConfigError, match=r"sensors must be a tuple .*got 'depth'"):
+        resolve_sensors("depth")
+    with pytest.raises(ConfigError, match="images must be a tuple of names, got 'depth'"):
+        resolve_sensors((replace(DepthAhead(), images="depth"),))  # type: ignore[arg-type]
+
+
 def test_a_name_given_twice_counts_once_and_two_sensors_with_one_name_are_refused() -> None:
     names = [sensor.name for sensor in resolve_sensors(("depth", "rgb", "depth"))]
     assert names == ["depth", "rgb", *POSE_SENSORS]

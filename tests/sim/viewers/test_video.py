@@ -347,6 +347,16 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
     assert sofa[0] == pytest.approx(150, abs=8)
 
 
+def test_the_shortest_path_is_shown_where_the_floor_is_not_exactly_at_zero(tmp_path: Path) -> None:
+    house = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    house.spec.geom("floor_00").pos[2] = 0.005
+    (tmp_path / "high.xml").write_text(house.spec.to_xml())
+    env = ObjectNavEnv(house=tmp_path / "high.xml", goal="sofa", start=Pose(-1.0, 0.5, 0.0), sensors=())
+    env.reset(seed=0)
+    assert SHORTEST in {tuple(colour) for colour in TopView(env).paint(300).reshape(-1, 3).tolist()}
+    env.close()
+
+
 @pytest.mark.parametrize(("east_m", "whole"), [(10.0, True), (20.0, False)])
 def test_the_plan_shows_a_small_house_whole_and_a_goal_behind_furniture(east_m: float, whole: bool) -> None:
     furnished = with_box(room(east_m, 4), "cabinet_00", centre_m=(east_m / 2 - 0.5, 0, 0.9), half_m=(0.5, 2.0, 0.9))

@@ -295,3 +295,29 @@ def test_walls_on_four_sides_enclose_a_house_on_a_larger_floor() -> None:
     space = _space_of(FLOOR_OF_6_M + walls)
     assert space.is_free(0.0, 0.0)
     assert not space.is_free(2.5, 0.0)
+
+
+@pytest.mark.parametrize(("sill_m", "passes"), [(0.012, True), (0.015, False), (0.02, False)])
+def test_a_floor_that_wheels_do_not_climb_divides_a_room(sill_m, passes):
+    sill = with_box(room(6, 4), "floor_10", centre_m=(0, 0, 0.5 * sill_m), half_m=(0.1, 2.0, 0.5 * sill_m))
+    space = free_space(sill)
+    there = space.geodesic(point(space, 2.0, 0.0))[tuple(space.frame.to_cells((-2.0, 0.0)))]
+    assert math.isfinite(there) == passes
+
+
+def test_an_object_that_low_passes_under_the_robot():
+    space = free_space(with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01)))
+    assert space.is_free(0.0, 0.0)
+
+
+def test_a_house_may_be_far_from_the_origin():
+    def size(x_m: float) -> tuple[int, int]:
+        spec = mujoco.MjSpec()
+        spec.worldbody.add_geom(name="floor_00", type=mujoco.mjtGeom.mjGEOM_PLANE, size=(0, 0, 1))
+        house = House("far", spec)
+        for number, (x, y) in enumerate(((2.0, 0.0), (-2.0, 0.0), (0.0, 2.0), (0.0, -2.0))):
+            half = (0.05, 2.05, 1.25) if x else (2.05, 0.05, 1.25)
+            house = with_box(house, f"wall_{number:02d}", centre_m=(x_m + x, y, 1.25), half_m=half)
+        return free_space(house).free.shape
+
+    assert size(150.0) == pytest.approx(size(0.0), abs=1)

@@ -112,6 +112,15 @@ def test_the_physics_options_of_a_house_are_replaced():
     assert option.disableflags & mujoco.mjtDisableBit.mjDSBL_MULTICCD
 
 
+def test_no_option_of_the_file_remains():
+    house = room()
+    house.spec.option.tolerance, house.spec.option.ccd_iterations = 1.0, 1
+    house.spec.option.disableactuator = 1
+    option, plain = World(house).model.opt, World(room()).model.opt
+    assert (option.tolerance, option.ccd_iterations) == (plain.tolerance, plain.ccd_iterations)
+    assert option.disableactuator == 0
+
+
 @pytest.mark.filterwarnings("ignore:compiler attribute 'settotalmass'")
 @pytest.mark.parametrize("setting", ["settotalmass='50'", "discardvisual='true'", "inertiafromgeom='true'"])
 def test_the_compiler_settings_of_a_house_change_neither_the_robot_nor_the_visual_geoms(setting):
