@@ -15,15 +15,19 @@ from typing import Any
 from sim import cli
 from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record
 from sim.episodes.splits import Episode, Split
+from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory, read_result_lines
 from sim.evaluation.workers import RunnerSpec
 from sim.interface import ConfigError
 from sim.paths import code_hash
+from sim.reading import read_json
 
 BATCH = 100
 """Number of episodes that are given to the workers together: a house is loaded once per batch, and a run that is cut
 short is still balanced."""
+COMPARED = ("semantics", "detector", "split_identity")
+"""Entries of the config of a log in which it must be equal when nothing is played."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,14 +72,18 @@ def lines_of(
     """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
 
     Args:
-        args: with 0 minutes no episode is run, and the log is read whichever code made it.
+        args: with 0 minutes no episode is run, and the log is read whichever code made it, with whichever seed.
         split: the split of `args`.
         log: folder of the log.
         line_type: the fields of a line.
         runner: plays an episode and returns its line.
         nothing: what the line of an episode holds whose worker died.
+
+    Raises:
+        ConfigError: the log is of another split or of other segmentation.
     """
     if args.minutes == 0:
+        _require_log_of(log, log_config(args, split))
         lines = read_result_lines(log / "results.jsonl", line_type).values
     else:
         run = RunDirectory(log, log_config(args, split), line_type)
@@ -87,6 +95,18 @@ def lines_of(
             run.close()
     wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
     return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
+
+
+def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
+    """Raises ConfigError where a log is not of this split and segmentation."""
+    file = log / "config.json"
+    there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
+    for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):
+        if path.partition(".")[0] in COMPARED and path != "detector.weights":  # the checksum of the weights counts
+            raise ConfigError(
+                f"Log '{log}' was made with {path} = {field_text(actual)}, this command has {field_text(asked)}; "
+                "take another --log, or the options of that log."
+            )
 
 
 def log_config(args: LogOptions, split: Split) -> dict[str, Any]:

@@ -90,6 +90,11 @@ def main(args: Args) -> int:
             raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
     torch.set_num_threads(args.threads)
     file = weights_file(args.weights)
+    if args.calibrate and file.suffix != ".safetensors":
+        raise ConfigError(
+            f"--calibrate writes into the file of the weights, and '{file}' is not of this project; train with --init "
+            f"'{file}' first, which writes a .safetensors file."
+        )
     model, metadata = load_network(file)
     if args.block_px is not None:
         metadata["block_px"] = args.block_px

@@ -155,7 +155,7 @@ def plan(args: Args, split: Split) -> list[ShardTask]:
     per_shard = views_per_shard(args)
     for number, first in enumerate(range(0, args.views, per_shard)):
         count = min(per_shard, args.views - first)
-        of_train = split.name == "train" and args.house is None
+        of_train = args.split == "train" and args.house is None
         fresh = args.pool is not None or args.furniture is not None or (number >= len(houses) and of_train)
         seed = FRESH_SEEDS_FROM * (1 + args.seed) + number if fresh else None
         house = _recipe(args, seed).name if seed is not None else houses[number % len(houses)]

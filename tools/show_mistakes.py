@@ -24,13 +24,15 @@ import tyro
 from numpy.typing import NDArray
 
 from sim import cli
-from sim.analysis.comparison import read_run
+from sim.analysis.comparison import Run, read_run
 from sim.analysis.display import counted
 from sim.analysis.report.drawings import split_of
 from sim.composition.segmenters import weights_file
+from sim.configuration import with_fields
 from sim.files import write_picture
 from sim.geometry.pose import Pose
-from sim.interface import MPCAT40, ConfigError
+from sim.interface import MPCAT40, CameraModel, ConfigError
+from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.task.failures import CAUSES
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
@@ -67,8 +69,7 @@ def main(args: Args) -> int:
     run = read_run(args.run)
     if run.config.get("semantics") != "rednet":
         raise ConfigError(f"'{args.run}' was run with --semantics {run.config.get('semantics')}, not with rednet.")
-    weights = run.config.get("weights")
-    network = NetworkSegmenter.from_file(weights_file(Path(weights) if weights else None))
+    network = network_of(run)
     split = split_of(run)
     failed = [line for line in run.lines.values() if line["failure"] is not None and line["end_reason"] != "error"]
     recorded = [line for line in failed if trajectory_file(run.path, line["episode_id"]).is_file()]
@@ -91,6 +92,24 @@ def main(args: Args) -> int:
     drawn = f"{counted(len(rows), 'episode')}{of} that failed by {args.cause}, in {args.out}."
     print(f"{drawn}{_others(recorded, args.cause)}")
     return 0
+
+
+def network_of(run: Run) -> NetworkSegmenter:
+    """Returns the network of a run, with its calibration.
+
+    Raises:
+        ConfigError: the run had another robot or camera than ours, or its weights are not there any more.
+    """
+    tree = run.config.get("config", {})
+    if run.config.get("robot"):
+        raise ConfigError(f"'{run.path}' was played with another robot; views are drawn from ours.")
+    for part, ours in (("camera", CameraModel()), ("robot", RobotConfig())):
+        if with_fields(ours, tree.get(part, {})) != ours:
+            raise ConfigError(f"'{run.path}' had another {part} than ours; views are drawn with ours.")
+    detector = tree.get("detector") or {}
+    named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
+    file = weights_file(Path(named) if named else None)
+    return NetworkSegmenter.from_file(file, temperature=detector.get("temperature"))
 
 
 def _others(recorded: Sequence[Mapping[str, Any]], cause: str) -> str:

@@ -50,7 +50,7 @@ from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
 from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
 from stubborn.segmentation.unet import MobileEncoder, UNet
-from tools.training_files import append_row, cut_rows, load_state, save_state
+from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
 
 LOG_EVERY_STEPS = 20
 PRINT_EVERY_S = 10.0
@@ -60,6 +60,10 @@ NORMALISATION_VIEWS = 320
 MAX_GRADIENT_NORM = 5.0
 SAVE_EVERY_S = 60.0
 """Shortest time between two writes of the state."""
+MAY_CHANGE = (
+    "out", "steps", "hours", "stop_after_hours", "workers", "threads", "device", "precision", "evaluate_every",
+)  # fmt: skip
+"""Options in which a continued run may differ from its start."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,6 +147,8 @@ class _Progress(msgspec.Struct):
     total: ReadCount
     evaluated_step: ReadCount
     """Step of the last evaluation."""
+    options: dict[str, str] = {}
+    """See `options_of`; {} in the state of an older version."""
 
 
 class Trainer:
@@ -161,7 +167,8 @@ class Trainer:
         self.average = AveragedModel(self.model, multi_avg_fn=exponential_average(args.average), use_buffers=True)
         self.precision = _precision(args.precision, self.device)
         self.optimiser = torch.optim.AdamW(_groups(self.model, args), lr=args.rate, weight_decay=args.weight_decay)
-        shards = _all_shards(args.views)
+        shards, val_shards = _all_shards(args.views), _all_shards(args.val_views)
+        self.options = options_of(args, may_change=MAY_CHANGE, files={"views": shards, "val_views": val_shards})
         self.weights = class_weights(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         second = model.config.second
@@ -178,9 +185,9 @@ class Trainer:
         )
         repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
         self.data = ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
-        self.stored_block_px = stored_block_px(_all_shards(args.val_views))
+        self.stored_block_px = stored_block_px([*shards, *val_shards])
         self.val = Samples(
-            spread_views(_all_shards(args.val_views), args.val_count),
+            spread_views(val_shards, args.val_count),
             Sampler(camera, self.val_block_px, second=second),
         )
         self.whole: Samples | None = None
@@ -331,30 +338,33 @@ class Trainer:
 
     def _save_state(self) -> None:
         progress = {"size": self.size, "step": self.step, "spent_s": self.spent_s, "best": self.best}
-        progress |= {"total": self.total, "evaluated_step": self.evaluated_step}
+        progress |= {"total": self.total, "evaluated_step": self.evaluated_step, "options": self.options}
         save_state(self.args.out / "state.pt", self._parts(), progress)
 
     def _resume(self) -> None:
         """Loads the state of the run, if there is one, and removes the rows of the curves that are later.
 
         Raises:
-            ConfigError: the run is of another size, or its state is broken.
+            ConfigError: the run is of another size or had other options, or its state is broken.
         """
         done = load_state(
-            self.args.out / "state.pt", self._parts(), _Progress, device=self.device, check=self._require_size
+            self.args.out / "state.pt", self._parts(), _Progress, device=self.device, check=self._require_same
         )
         if done is not None:
             self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
             self.evaluated_step = done.evaluated_step
             if self.args.hours is not None:
-                self.total = max(done.total, self.step)
+                longer = int(self.step * 3600 * self.args.hours / self.spent_s) if self.spent_s else 0
+                self.total = max(longer or done.total, self.step)
             print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
         for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
             cut_rows(self.args.out / name, "step", self.step)
 
-    def _require_size(self, done: _Progress) -> None:
+    def _require_same(self, done: _Progress) -> None:
         if done.size != self.size:
             raise ConfigError(f"--out '{self.args.out}' holds a run of size '{done.size}'; take another folder.")
+        if done.options:
+            require_options(self.args.out, done.options, self.options)
 
 
 def _all_shards(folders: Sequence[Path]) -> list[Path]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import tarfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -121,20 +121,32 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
     Raises:
         ConfigError: the file is not a tar file or truncated, or a view in it is incomplete.
     """
+    for key, parts in _members(file):
+        yield _decoded(file, key, parts)
+
+
+def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
+    """Yields key and members of the views of a shard in their order; {} where its number is not among the wanted ones.
+
+    Raises:
+        ConfigError: the file is not a tar file or truncated.
+    """
     parts: dict[str, bytes] = {}
-    key = ""
+    key, number = "", -1
     try:
         with tarfile.open(file, mode="r:") as archive:  # a compressed file could expand without end
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
-                if parts and name != key:
-                    yield _decoded(file, key, parts)
-                    parts = {}
-                content = archive.extractfile(member)
-                key, parts[suffix.split(".")[0]] = name, b"" if content is None else content.read()
-            if parts:
-                yield _decoded(file, key, parts)
+                if name != key or number < 0:
+                    if number >= 0:
+                        yield key, parts
+                    key, number, parts = name, number + 1, {}
+                if wanted is None or number in wanted:
+                    content = archive.extractfile(member)
+                    parts[suffix.split(".")[0]] = b"" if content is None else content.read()
+            if number >= 0:
+                yield key, parts
     except (tarfile.TarError, OSError, EOFError, ValueError) as error:
         if isinstance(error, ConfigError):
             raise
@@ -293,18 +305,27 @@ def stored_block_px(shards: Sequence[Path]) -> int:
         note = shard.with_suffix(".json")
         shrinks.add(read_json(note, _Note, what="Note of a shard").config.shrink if note.is_file() else 1)
     if len(shrinks) > 1:
-        raise ConfigError(f"The shards in '{shards[0].parent}' were shrunk by different factors: {sorted(shrinks)}.")
+        folders = ", ".join(sorted({f"'{shard.parent}'" for shard in shards}))
+        raise ConfigError(f"The shards in {folders} were shrunk by different factors: {sorted(shrinks)}.")
     return shrinks.pop() if shrinks else 1
 
 
 def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
-    """Returns `count` views, the same number of each shard, evenly over the shard; all views when `count` is 0."""
+    """Returns `count` views, the same number of each shard, evenly over the shard; all views when `count` is 0.
+
+    With fewer views than shards each is of another shard, evenly over the shards. Other views are not decoded.
+    """
+    if 0 < count < len(shards):
+        shards = [shards[i] for i in np.linspace(0, len(shards) - 1, count).round().astype(int).tolist()]
     picked: list[LabelledView] = []
     for number, shard in enumerate(shards):
-        views = list(read_shard(shard))
-        share = len(views) if count == 0 else math.ceil((count - len(picked)) / (len(shards) - number))
-        share = min(share, len(views))
-        picked += [views[i] for i in np.linspace(0, len(views) - 1, share).round().astype(int).tolist()]
+        if count == 0:
+            picked += read_shard(shard)
+            continue
+        views = sum(1 for _ in _members(shard, frozenset()))
+        share = min(math.ceil((count - len(picked)) / (len(shards) - number)), views)
+        wanted = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
+        picked += [_decoded(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
     return picked
 
 

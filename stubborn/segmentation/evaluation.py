@@ -107,8 +107,6 @@ def evaluate(
     batches: Iterable[tuple[Tensor, Tensor, Tensor]],
     *,
     device: torch.device,
-    temperature: float = 1.0,
-    into: Int64[np.ndarray, "classes classes"] | None = None,
 ) -> tuple[Iou, Reliability]:
     """Returns the intersection over union and the reliability of a network over batches of samples.
 
@@ -116,8 +114,6 @@ def evaluate(
         model: the network.
         batches: samples without augmentation; see `stubborn.segmentation.samples.Sample`.
         device: device of the model.
-        temperature: of the softmax.
-        into: a confusion matrix to which the counts of these batches are added; see `confusion`.
     """
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
     reliability = Reliability.empty()
@@ -127,11 +123,9 @@ def evaluate(
             logits = model(rgb.to(device), depth.to(device)).float().cpu()
             truth = target.numpy()
             matrix += confusion(logits.argmax(dim=1).numpy(), truth)
-            some = (logits[:, :, 2::8, 2::8] / temperature).softmax(dim=1)
+            some = logits[:, :, 2::8, 2::8].softmax(dim=1)
             kept = truth[:, 2::8, 2::8]
             flat = some.permute(1, 0, 2, 3).reshape(CLASSES, -1).numpy()
             counts = kept.reshape(-1) >= 0
             reliability.add(flat[:, counts], kept.reshape(-1)[counts])
-    if into is not None:
-        into += matrix
     return Iou.of(matrix), reliability

@@ -555,7 +555,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "a small run has none; tests/tools/test_show_mistakes.py"
     ),
     f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
-    "--val-views views_val --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
+    "--val-views views_val_whole --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
     f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
     "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views views_small --val-views views_val --out runs/finer "
     "--hours 1": (

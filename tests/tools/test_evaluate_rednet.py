@@ -97,3 +97,11 @@ def test_views_of_one_house_and_folders_without_a_training_are_refused(tmp_path:
     with pytest.raises(ConfigError, match=r"holds no training: train\.csv is missing"):
         evaluate_rednet.main(args)
     assert not (tmp_path / "card.md").exists()
+
+
+def test_a_calibration_is_not_written_into_a_file_of_another_project(tmp_path: Path) -> None:
+    file = tmp_path / "published.pth"
+    file.write_bytes(b"weights")
+    with pytest.raises(ConfigError, match="--calibrate writes into the file of the weights"):
+        evaluate_rednet.main(Args(views=(tmp_path,), weights=file, calibrate=True))
+    assert file.read_bytes() == b"weights"

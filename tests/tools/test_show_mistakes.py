@@ -107,3 +107,20 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
     (other / "results.jsonl").write_text((played / "run" / "results.jsonl").read_text())
     with pytest.raises(ConfigError, match="--semantics gt, not with rednet"):
         show_mistakes.main(Args(run=other, out=tmp_path / "a.png"))
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"robot": "robots/mine.xml"}, "another robot"),
+        ({"config": {"camera": {"height_m": 0.5}}}, "another camera than ours"),
+        ({"config": {"robot": {"camera_forward_m": 0.1}}}, "another robot than ours"),
+        ({"settings": {"detector.weights": "gone.safetensors"}}, "gone.safetensors"),
+    ],
+)
+def test_what_another_camera_or_network_saw_is_not_drawn_with_ours(
+    played: Path, changes: dict[str, object], told: str
+) -> None:
+    run_of = read_run(played / "run")
+    with pytest.raises(ConfigError, match=told):
+        show_mistakes.network_of(replace(run_of, config={**run_of.config, **changes}))

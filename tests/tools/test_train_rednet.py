@@ -175,3 +175,31 @@ def test_a_run_of_another_size_and_too_few_views_are_refused(tmp_path: Path) -> 
         main(options(tmp_path, average=1.0))
     with pytest.raises(ConfigError, match="No shards"):
         main(options(tmp_path, views=(tmp_path / "train", tmp_path / "nothing")))
+
+
+def test_a_run_is_continued_with_its_own_options_and_for_longer_only(tmp_path: Path) -> None:
+    for name in ("train", "other"):
+        write_views(tmp_path / name, 3 + len(name) % 2)
+    write_views(tmp_path / "val", 2)
+    assert main(options(tmp_path, hours=0.0003, steps=2, evaluate_every=1000)) == 0
+    done = int(rows(tmp_path / "out/train.csv")[-1]["step"])
+    for changes, told in (
+        ({"rate": 1e-4}, "--rate = 0.002, this command has 0.0001"),
+        ({"seed": 3}, "--seed = 0, this command has 3"),
+        ({"views": (tmp_path / "train", tmp_path / "val")}, "--views = 1 files"),
+    ):
+        with pytest.raises(ConfigError, match=told):
+            main(options(tmp_path, hours=0.0003, steps=2, **changes))
+    assert main(options(tmp_path, hours=0.003, steps=2, evaluate_every=1000)) == 0
+    assert int(rows(tmp_path / "out/train.csv")[-1]["step"]) > done
+
+
+def test_views_of_different_sizes_are_refused(tmp_path: Path) -> None:
+    write_views(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    for name, shrink in (("train", 1), ("val", 2)):
+        for shard in (tmp_path / name).glob("*.tar"):
+            note = {"config": {"shrink": shrink}, "pixels": {"wall": 9, "sofa": 9}}
+            shard.with_suffix(".json").write_text(json.dumps(note))
+    with pytest.raises(ConfigError, match=r"train', '.*val' were shrunk by different factors: \[1, 2\]"):
+        main(options(tmp_path))

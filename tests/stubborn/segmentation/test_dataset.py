@@ -14,12 +14,14 @@ import torch
 from torch.utils.data import DataLoader
 
 from sim.interface import ConfigError
+from stubborn.segmentation import dataset
 from stubborn.segmentation.dataset import (
     LabelledView,
     ViewDataset,
     class_weights,
     list_shards,
     read_shard,
+    spread_views,
     stored_block_px,
     tile,
 )
@@ -127,3 +129,20 @@ def test_the_factor_of_stored_views_is_read_from_their_notes(tmp_path: Path) -> 
     shards[0].with_suffix(".json").write_text(json.dumps({"config": {"shrink": 4}}))
     with pytest.raises(ConfigError, match=r"different factors: \[2, 4\]"):
         stored_block_px(shards)
+
+
+@pytest.mark.parametrize(("count", "wanted"), [(0, 6), (2, 2), (3, 3), (5, 5), (9, 6)])
+def test_some_views_are_spread_over_all_shards_and_no_other_is_decoded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, wanted: int
+) -> None:
+    for number in range(3):
+        write_tar(tmp_path / f"views-{number}.tar", ["a", "b"])
+    shards = list_shards(tmp_path)
+    decoded: list[Path] = []
+    decode = dataset._decoded
+    monkeypatch.setattr(dataset, "_decoded", lambda file, *of: (decoded.append(file), decode(file, *of))[1])
+    assert len(spread_views(shards, count)) == len(decoded) == wanted
+    if count == 2:
+        assert decoded == [shards[0], shards[-1]]
+    elif count:
+        assert set(decoded) == set(shards)
