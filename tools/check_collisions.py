@@ -51,8 +51,8 @@ def main(args: Args) -> int:
     results = args.run / "results.jsonl"
     if not results.is_file():
         raise ConfigError(f"--run '{args.run}' has no results.jsonl.")
-    names = sorted(line["episode_id"] for line in read_result_lines(results).values)
-    names = names[: args.episodes]
+    played = [line["episode_id"] for line in read_result_lines(results).values if line["end_reason"] != "error"]
+    names = played[: args.episodes]
     below_m = CollisionConfig().failed_below_m
     counts = Counts()
     for name in names:

@@ -166,6 +166,20 @@ def _mesh_hull(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDAr
     return _hull_of_bytes(vertices.tobytes())
 
 
+def _flat_hull(vertices: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Returns vertices and edges of the convex hull of points (n, 3) that lie in a plane or on a line."""
+    from scipy.spatial import ConvexHull, QhullError  # on demand, as below
+
+    offsets = vertices - vertices.mean(axis=0)
+    in_plane = offsets @ np.linalg.svd(offsets, full_matrices=False)[2][:2].T
+    try:
+        around = ConvexHull(in_plane).vertices
+    except QhullError:  # a line
+        return vertices[[in_plane[:, 0].argmin(), in_plane[:, 0].argmax()]], np.array([[0, 1]])
+    numbers = np.arange(len(around))
+    return vertices[around], np.c_[numbers, np.roll(numbers, -1)]
+
+
 @functools.lru_cache(maxsize=1024)
 def _hull_of_bytes(points: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Computes a convex hull; results are cached by content, since meshes repeat within a house."""
@@ -174,9 +188,8 @@ def _hull_of_bytes(points: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64
     vertices = np.frombuffer(points, dtype=np.float64).reshape(-1, 3)
     try:
         hull = ConvexHull(vertices)
-    except QhullError:  # a flat mesh: any pair of vertices may be an edge
-        first, second = np.triu_indices(len(vertices), 1)
-        return vertices, np.c_[first, second]
+    except QhullError:
+        return _flat_hull(vertices)
     kept = np.sort(hull.vertices)
     triangles = np.searchsorted(kept, hull.simplices)
     edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.geometry.convex import ConvexPolygon, plan_polygon
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
+from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
 from sim.interface import MPCAT40_ID
 
@@ -99,9 +99,12 @@ def _floor_under(floors: Sequence[Floor], xy_m: NDArray[np.float64], bottom_m: f
 
 def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
     """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh."""
-    whole = plan_polygon(geom_polytope(model, data, geom, rendered=True))
-    if whole is None or not is_hollow(model, geom):
-        return [whole] if whole is not None else []
+    body = geom_polytope(model, data, geom, rendered=True)
+    whole = plan_polygon(body)
+    if whole is None:
+        return [upright_polygon(body.vertices_m[:, :2])]
+    if not is_hollow(model, geom):
+        return [whole]
     corners = mesh_triangles(model, data, geom)[..., :2]
     low = np.array(whole.bounds_m[:2])
     hull = _raster([whole.vertices_m], low, whole.bounds_m[2:])
@@ -110,6 +113,19 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
         return [whole]
     parts = (ConvexPolygon.of_corners(corner) for corner in corners)
     return [part for part in parts if part is not None]
+
+
+def upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:
+    """Returns a rectangle of `PLANE_DEPTH_M` around points (n, 2) on a line: the plan of an upright flat mesh."""
+    middle = points_m.mean(axis=0)
+    ahead = np.linalg.svd(points_m - middle, full_matrices=True)[2][0]
+    along = (points_m - middle) @ ahead
+    half = 0.5 * PLANE_DEPTH_M
+    ends = np.array([[along.min() - half, -half], [along.max() + half, -half]])
+    corners = np.concatenate([ends, ends[::-1] * (1, -1)])
+    polygon = ConvexPolygon.of_corners(middle + corners @ np.stack([ahead, (-ahead[1], ahead[0])]))
+    assert polygon is not None
+    return polygon
 
 
 def is_hollow(model: mujoco.MjModel, geom: int) -> bool:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sim.errors import EpisodeError
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
+from sim.houses.labels import rendered_geoms
 from sim.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.task.seen_floor import SeenFloor, floor_cells
 from sim.task.success import GoalRegion, Surroundings
@@ -101,8 +102,13 @@ class GroundTruth:
         return self._regions[goal, floor_z_m]
 
     def goals(self) -> tuple[str, ...]:
-        """Returns the goal categories that the house has an instance of, in the contract's order."""
-        return tuple(goal for goal in GOAL_CATEGORIES if self.world.labels.of_category(goal))
+        """Returns the goal categories of which something is rendered in the house, in the contract's order."""
+        rendered, of_category = rendered_geoms(self.world.model), self.world.labels.of_category
+        return tuple(
+            goal
+            for goal in GOAL_CATEGORIES
+            if any(rendered[list(instance.geom_ids)].any() for instance in of_category(goal))
+        )
 
     def succeeds_now(self, goal: str, x_m: float, y_m: float, floor_z_m: float) -> bool:
         """Returns whether a STOP at this place succeeds, with objects where they are now in the world."""

@@ -13,6 +13,7 @@ from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.interface import MPCAT40_ID, Action, ConfigError
 from sim.task.config import TaskConfig
+from sim.task.ground_truth import GroundTruth
 from sim.task.objectnav import Task
 from sim.world.world import World
 from tests.helpers.worlds import room, two_storeys, with_box, with_movable
@@ -265,3 +266,9 @@ def test_nothing_counts_before_an_episode_has_begun():
 def test_an_episode_needs_a_step():
     with pytest.raises(ConfigError, match="max_steps"):
         TaskConfig(max_steps=0)
+
+
+def test_what_the_camera_never_shows_is_no_goal():
+    house = with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25))
+    house = with_box(house, "sofa_00", centre_m=(-1.5, 1.0, 0.2), half_m=(0.2, 0.2, 0.2), group=3)
+    assert GroundTruth(World(house)).goals() == ("bed",)

@@ -223,6 +223,25 @@ def test_a_wall_that_is_a_mesh_hides_where_it_is_and_not_where_its_doorway_is():
     assert not there.succeeds(-0.4, 1.4)
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_picture_that_is_a_flat_mesh_is_found_from_in_front(turned):
+    spec = room(6, 4).spec
+    points = [(0.0, y, z) for y in np.linspace(-0.3, 0.3, 40) for z in (1.2, 1.4, 1.6)]
+    if turned:
+        points = [(y + 2.5, 0.3 * y + 0.5, z) for _, y, z in points]
+    faces = [face for i in range(39) for face in _quad([3 * i, 3 * i + 3, 3 * i + 5, 3 * i + 2])]
+    spec.add_mesh(
+        name="flat", uservert=np.ravel(points).tolist(), userface=np.ravel(faces).tolist(),
+        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+    )  # fmt: skip
+    _show_mesh(spec, "picture_00", "flat")
+    there = region(House("flat_picture", spec), "picture")
+    x, y = (2.5, 0.5) if turned else (0.0, 0.0)
+    assert there.succeeds(x - 0.9, y)
+    assert not there.succeeds(x - 1.4, y)
+    assert there.nearest_m(x - 0.5, y) == pytest.approx(0.219 if turned else 0.5, abs=0.01)
+
+
 def test_a_goal_counts_at_its_current_position():
     house = with_movable(room(8, 4), "stool_00", xy_m=(2.0, 0.0))
     model, data, labels = compiled(house)
