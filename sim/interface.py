@@ -118,6 +118,8 @@ class RobotModel:
     height_m: float = 0.88
     camera_forward_m: float = 0.0
     """Camera mount ahead of the wheel axis; 0 for our robot, whose camera turns on the spot."""
+    clearance_m: float = 0.03
+    """Height of the body's lower side above the floor: lower objects pass under it."""
 
     def __post_init__(self) -> None:
         require_numbers(self)

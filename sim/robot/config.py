@@ -257,5 +257,8 @@ class RobotConfig:
     def model(self) -> RobotModel:
         """The part of the configuration that agents get."""
         return RobotModel(
-            radius_m=self.body.radius_m, height_m=self.body.height_m, camera_forward_m=self.camera_forward_m
+            radius_m=self.body.radius_m,
+            height_m=self.body.height_m,
+            camera_forward_m=self.camera_forward_m,
+            clearance_m=self.body.clearance_m,
         )

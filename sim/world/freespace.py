@@ -35,7 +35,7 @@ CELL_M = 0.025
 MAX_CELLS = 25_000_000
 """Cells of the grid of a storey: 125 x 125 m. The largest house that ships has 2 million."""
 STEP_HEIGHT_M = 0.03
-"""Lower geoms are no obstacles, except for floors: they pass under the robot."""
+"""Lower geoms are no obstacles, except for floors: they pass under the robot, if its body is not lower still."""
 CLIMB_M = 0.013
 """A floor that is higher than this above another one is an obstacle: up to 14 mm the wheels climb it wherever they
 meet it in the course of an action, from 15 mm on only at some places."""
@@ -243,10 +243,10 @@ def obstacle_polygons(
     """Returns the plan projections of the geoms that are obstacles on the storey whose floor is at `floor_z_m`."""
     candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
     is_floor = labels.geom_category == MPCAT40_ID["floor"]
-    top_m = floor_z_m + robot.height_m
+    low_m, top_m = min(STEP_HEIGHT_M, robot.clearance_m), floor_z_m + robot.height_m
     return [
         polygon
-        for geoms, bottom_m in ((candidates & ~is_floor, STEP_HEIGHT_M), (candidates & is_floor, CLIMB_M))
+        for geoms, bottom_m in ((candidates & ~is_floor, low_m), (candidates & is_floor, CLIMB_M))
         for polygon in polygons_between(model, data, np.flatnonzero(geoms), (floor_z_m + bottom_m, top_m))
     ]
 

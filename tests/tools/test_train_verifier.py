@@ -157,7 +157,7 @@ def test_a_time_limit_leaves_whole_lines_and_zero_runs_nothing(split: Path, tmp_
     assert len(train_verifier.candidates_of(replace(args, minutes=0.0, seed=9), there)) == 1
     assert train_verifier.candidates_of(replace(args, minutes=0.0, log=tmp_path / "none"), there) == []
     with pytest.raises(ConfigError, match=r"was made with \S+ = .* this command has"):
-        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="noisy"), there)
+        train_verifier.candidates_of(replace(args, minutes=0.0, semantics="rednet"), there)
 
 
 def test_val_and_test_are_only_judged():

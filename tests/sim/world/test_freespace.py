@@ -14,7 +14,7 @@ from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.interface import SuccessRule
+from sim.interface import RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
@@ -305,9 +305,10 @@ def test_a_floor_that_wheels_do_not_climb_divides_a_room(sill_m, passes):
     assert math.isfinite(there) == passes
 
 
-def test_an_object_that_low_passes_under_the_robot():
-    space = free_space(with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01)))
-    assert space.is_free(0.0, 0.0)
+@pytest.mark.parametrize(("clearance_m", "free"), [(0.03, True), (0.012, False)])
+def test_an_object_that_low_passes_under_a_robot_with_clearance(clearance_m, free):
+    house = with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01))
+    assert free_space(house, robot=RobotModel(clearance_m=clearance_m)).is_free(0.0, 0.0) == free
 
 
 def test_a_house_may_be_far_from_the_origin():
