@@ -252,6 +252,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         *_PLANS,
         f"{PYTHON} tools/train_semexp.py --plans {{tmp}}/plans --minutes 0.05 --seed 0 --out {{tmp}}/semexp",
     ),
+    (
+        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 1 "
+        "--out runs/semexp_1"
+    ): Only("the command before it with another seed"),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
             f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} --episodes 1 "
