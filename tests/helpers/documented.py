@@ -215,7 +215,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/export_plans.py --split val --out runs/plans/val --workers 2": (
         f"{PYTHON} tools/export_plans.py --split val --houses 1 --workers 1 --out {{tmp}}/plans",
     ),
-    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/train --workers 2": (
+    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2": (
         f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --kind studio --houses 1 --workers 1"
         " --out {tmp}/plans",
     ),
