@@ -313,7 +313,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent cloned --semantics gt": (
         f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{_RUN} --agent cloned --semantics gt --split val --episodes 60 --workers 2": (
+    f"{_RUN} --agent cloned --semantics gt --split val --episodes 200 --workers 2": (
         f"{_RUN} --agent cloned --semantics gt --split val --episodes 1 --workers 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
