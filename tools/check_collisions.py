@@ -28,7 +28,7 @@ class Args:
     run: Path
     """Folder of a run made with --record."""
     episodes: cli.Count = 50
-    """Number of episodes, the first ones of the results."""
+    """Number of episodes, the first ones by id."""
     most: cli.Amount = 40
     """Largest number of listed actions."""
 
@@ -51,8 +51,8 @@ def main(args: Args) -> int:
     results = args.run / "results.jsonl"
     if not results.is_file():
         raise ConfigError(f"--run '{args.run}' has no results.jsonl.")
-    played = [line["episode_id"] for line in read_result_lines(results).values if line["end_reason"] != "error"]
-    names = played[: args.episodes]
+    lines = read_result_lines(results).values
+    names = sorted(line["episode_id"] for line in lines if line["end_reason"] != "error")[: args.episodes]
     below_m = CollisionConfig().failed_below_m
     counts = Counts()
     for name in names:

@@ -133,8 +133,8 @@ def _export(out: Path, name: str, source: dict[str, Any], make: Any) -> Exported
     there = out / f"{name}.npz"
     if there.is_file():
         known = read_plan(there).source
-        if known != source:
-            raise ConfigError(f"'{there}' is the plan of another house ({known}, not {source}); take another --out.")
+        if known != {key: source.get(key) for key in known}:  # older plans do not name their generator
+            raise ConfigError(f"'{there}' was made with other options ({known}, not {source}); take another --out.")
         return Exported(name, "exists")
     began_s = time.process_time()
     try:

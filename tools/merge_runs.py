@@ -23,7 +23,7 @@ from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Line, Run, read_run
 from sim.evaluation.config_fields import differing_fields, field_text, is_same_file
-from sim.evaluation.results import NOT_COMPARED, RunDirectory
+from sim.evaluation.results import NOT_COMPARED, RunDirectory, read_record
 from sim.evaluation.rollout import TIMES
 from sim.files import write_atomically
 from sim.interface import ConfigError
@@ -68,10 +68,11 @@ def main(args: Args) -> int:
         merged.close()
     for folder in folders:
         copy_files(folder, out)
-    missing = max(merged.config["episodes"] - len(merged.lines), 0)
+    stored = read_record(out / "config.json")  # the folder may hold an earlier merge of other episodes
+    missing = max(stored["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
     console.print(message, highlight=False, soft_wrap=True)
-    if lacking := sorted(set(merged.config.get("only") or ()) - set(lines)):
+    if lacking := sorted(set(stored.get("only") or ()) - {line["episode_id"] for line in merged.lines}):
         console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0
 

@@ -27,7 +27,7 @@ from sim import cli
 from sim.analysis.comparison import Run, read_run
 from sim.analysis.display import counted
 from sim.analysis.report.drawings import split_of
-from sim.composition.segmenters import weights_file
+from sim.composition.segmenters import file_sha256, weights_file
 from sim.configuration import with_fields
 from sim.files import write_picture
 from sim.geometry.pose import Pose
@@ -98,7 +98,7 @@ def network_of(run: Run) -> NetworkSegmenter:
     """Returns the network of a run, with its calibration.
 
     Raises:
-        ConfigError: the run had another robot or camera than ours, or its weights are not there any more.
+        ConfigError: the run had another robot or camera than ours, or its weights are not there any more or are others.
     """
     tree = run.config.get("config", {})
     if run.config.get("robot"):
@@ -109,6 +109,9 @@ def network_of(run: Run) -> NetworkSegmenter:
     detector = tree.get("detector") or {}
     named = run.config.get("weights") or run.config.get("settings", {}).get("detector.weights")
     file = weights_file(Path(named) if named else None)
+    checksum = run.config.get("files_sha256", {}).get("weights")
+    if checksum is not None and checksum != file_sha256(file):
+        raise ConfigError(f"'{run.path}' was played with other weights than '{file}' holds now.")
     return NetworkSegmenter.from_file(file, temperature=detector.get("temperature"))
 
 

@@ -147,6 +147,8 @@ class _Progress(msgspec.Struct):
     total: ReadCount
     evaluated_step: ReadCount
     """Step of the last evaluation."""
+    hours: float | None = None
+    """The time limit, --hours."""
     options: dict[str, str] = {}
     """See `options_of`; {} in the state of an older version."""
 
@@ -338,7 +340,8 @@ class Trainer:
 
     def _save_state(self) -> None:
         progress = {"size": self.size, "step": self.step, "spent_s": self.spent_s, "best": self.best}
-        progress |= {"total": self.total, "evaluated_step": self.evaluated_step, "options": self.options}
+        progress |= {"total": self.total, "evaluated_step": self.evaluated_step}
+        progress |= {"hours": self.args.hours, "options": self.options}
         save_state(self.args.out / "state.pt", self._parts(), progress)
 
     def _resume(self) -> None:
@@ -354,8 +357,9 @@ class Trainer:
             self.step, self.spent_s, self.best = done.step, done.spent_s, done.best
             self.evaluated_step = done.evaluated_step
             if self.args.hours is not None:
-                longer = int(self.step * 3600 * self.args.hours / self.spent_s) if self.spent_s else 0
-                self.total = max(longer or done.total, self.step)
+                longer = self.spent_s > 0 and done.hours is not None and self.args.hours > done.hours
+                total = int(self.step * 3600 * self.args.hours / self.spent_s) if longer else done.total
+                self.total = max(total, self.step)
             print(f"continues from step {self.step}, {self.spent_s / 3600:.2f} h", flush=True)
         for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
             cut_rows(self.args.out / name, "step", self.step)

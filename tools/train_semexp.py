@@ -143,6 +143,8 @@ class Run:
         self.envs = DummyVecEnv([lambda: SemExpEnv(plans, view=self.net_config.view, read=read)] * args.envs)
         self.goals = self.steps = 0
         """Long-term goals and primitive steps so far."""
+        self.trained = (0, 0)
+        """Those that the network has been trained on."""
         self.spent_s = 0.0
         args.out.mkdir(parents=True, exist_ok=True)
         self.ppo = PPO(
@@ -175,7 +177,8 @@ class Run:
 
     def save(self) -> None:
         """Writes the state and the weights; each file is replaced in one step."""
-        progress = {"goals": self.goals, "steps": self.steps, "spent_s": self.spent_s}
+        goals, steps = self.trained
+        progress = {"goals": goals, "steps": steps, "spent_s": self.spent_s}
         save_state(self.args.out / "state.pt", self._parts(), progress | {"options": self.options})
         options = {key: [str(f) for f in v] if isinstance(v, tuple) else v for key, v in asdict(self.args).items()}
         options["out"] = str(self.args.out)
@@ -205,6 +208,7 @@ class Run:
         )
         if done is not None:
             self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
+            self.trained = self.goals, self.steps
         cut_rows(self.args.out / "train.csv", "goals", self.goals)  # also of a run that never wrote a state
         if done is None:
             return False
@@ -247,6 +251,7 @@ class _Watch(BaseCallback):
     def _on_rollout_start(self) -> None:
         """Saves now and not at the end of the rollout before, whose goals the network had not been trained on then."""
         now_s = time.perf_counter()
+        self.run.trained = self.run.goals, self.run.steps
         if now_s - self._saved_s >= self.run.args.save_s:
             self._saved_s = now_s
             self.run.save()

@@ -39,7 +39,8 @@ class VerificationConfig:
     parameters: Path | None = None
     """File of fitted parameters; None takes those shipped for the kind of segmentation."""
     least_probability: float | None = None
-    """A candidate is accepted when it is true with a higher probability than this; None: that of the fit."""
+    """A candidate is accepted when it is true with a higher probability than this; None: that of the fit, which the
+    configuration of a run holds in its place."""
 
     def __post_init__(self) -> None:
         if self.least_probability is not None and not 0.0 <= self.least_probability < 1.0:
@@ -88,6 +89,7 @@ def configuration_of(options: RunOptions, spec: AgentSpec | None = None) -> RunC
         task=TaskConfig(),
     )
     tree = with_fields(tree, _settings(options))
+    tree = replace(tree, verification=_with_bar(options, tree.verification))
     missing = [name for name in _sensor_names(spec, options.semantics) if name not in tree.sensors]
     if missing:
         raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
@@ -104,10 +106,25 @@ def verifier_of(options: RunOptions, config: VerificationConfig) -> Verifier:
     Raises:
         ConfigError: there are no such parameters, or no such method.
     """
-    verifier = verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
-    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
-        return replace(verifier, least_probability=config.least_probability)
-    return verifier
+    verifier = _as_fitted(options, config)
+    bar = config.least_probability
+    return (
+        verifier
+        if bar is None or not isinstance(verifier, FittedVerifier)
+        else replace(verifier, least_probability=bar)
+    )
+
+
+def _as_fitted(options: RunOptions, config: VerificationConfig) -> Verifier:
+    return verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
+
+
+def _with_bar(options: RunOptions, config: VerificationConfig) -> VerificationConfig:
+    """Returns the configuration with the probability that a candidate needs, where none is set."""
+    if config.least_probability is not None:
+        return config
+    verifier = _as_fitted(options, config)
+    return replace(config, least_probability=getattr(verifier, "least_probability", FittedVerifier.least_probability))
 
 
 def record_of(options: RunOptions, config: RunConfig, split: dict[str, Any]) -> dict[str, Any]:

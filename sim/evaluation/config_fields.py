@@ -37,6 +37,7 @@ def is_same_file(path: str, first: Mapping[str, Any], second: Mapping[str, Any])
         "config.detector.weights": "weights",
         "verifier": "verifier",
         "config.verification.parameters": "verifier",
+        "config.robot.file.path": "robot",
     }.get(path, path.removeprefix("config."))
     sums = [record.get("files_sha256", {}).get(name) for record in (first, second)]
     return sums[0] is not None and sums[0] == sums[1]

@@ -283,6 +283,7 @@ class RunDirectory:
         before, now = (list(record.get("only") or ()) for record in (existing, config))
         if before and not set(now) <= set(before):
             changed["only"] = sorted({*before, *now})
+            changed["episodes"] = len(changed["only"])
         elif before and not now:
             changed["only"] = []
         if changed:

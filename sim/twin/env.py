@@ -238,6 +238,8 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         Raises:
             EpisodeError: there is none.
         """
+        if goal not in GOAL_CATEGORIES:
+            raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
         for number in (*range(first, len(self.files)), *range(first)):
             try:
                 return number, *draw_goal_and_start(self.camera(number).plan, self.np_random, goal)

@@ -24,5 +24,5 @@ def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
     assert export_plans.main(args) == 0
     assert "train_studio_000000: exists" in capsys.readouterr().out
     assert file.stat().st_mtime_ns == written
-    with pytest.raises(ConfigError, match=r"is the plan of another house .*take another --out"):
+    with pytest.raises(ConfigError, match=r"was made with other options .*take another --out"):
         export_plans.main(replace(args, area_m2=55.0))

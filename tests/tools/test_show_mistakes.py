@@ -116,6 +116,7 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
         ({"config": {"camera": {"height_m": 0.5}}}, "another camera than ours"),
         ({"config": {"robot": {"camera_forward_m": 0.1}}}, "another robot than ours"),
         ({"settings": {"detector.weights": "gone.safetensors"}}, "gone.safetensors"),
+        ({"files_sha256": {"weights": "0" * 64}}, "other weights"),
     ],
 )
 def test_what_another_camera_or_network_saw_is_not_drawn_with_ours(
