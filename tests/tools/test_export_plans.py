@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim.interface import ConfigError
-from sim.plans.plan import read_plan
+from sim.plans.plan import read_plan, write_plan
 from tools import export_plans
 
 
@@ -24,5 +24,8 @@ def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
     assert export_plans.main(args) == 0
     assert "train_studio_000000: exists" in capsys.readouterr().out
     assert file.stat().st_mtime_ns == written
+    plan = read_plan(file)
+    write_plan(file, replace(plan, source={key: plan.source[key] for key in ("pool", "kind", "area_m2", "seed")}))
+    assert export_plans.main(args) == 0  # of an older version, which did not name the generator
     with pytest.raises(ConfigError, match=r"was made with other options .*take another --out"):
         export_plans.main(replace(args, area_m2=55.0))

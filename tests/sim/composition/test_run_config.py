@@ -77,6 +77,15 @@ def test_the_bar_of_the_fit_holds_unless_another_one_is_set(config: tuple[str, .
     verifier = verifier_of(options, configuration_of(options).verification)
     assert isinstance(verifier, FittedVerifier)
     assert verifier.least_probability == bar
+    assert configuration_of(options).verification.least_probability == bar
+
+
+@pytest.mark.parametrize(
+    ("semantics", "method"), [("gt", "naive-bayes"), ("rednet", "naive-bayes"), ("rednet", "none")]
+)
+def test_runs_from_before_the_bar_of_the_fit_go_on(semantics: str, method: str) -> None:
+    options = RunOptions(semantics=semantics, verification=method)
+    assert configuration_of(options).verification.least_probability == 0.5
 
 
 def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:

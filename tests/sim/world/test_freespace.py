@@ -305,6 +305,16 @@ def test_a_floor_that_wheels_do_not_climb_divides_a_room(sill_m, passes):
     assert math.isfinite(there) == passes
 
 
+def test_a_raised_floor_from_wall_to_wall_is_free_and_two_of_one_height_have_no_edge():
+    plain = free_space(room(6, 4)).free.sum()
+    raised = room(6, 4)
+    for number, x_m in enumerate((-1.55, 1.55), start=10):
+        raised = with_box(raised, f"floor_{number}", centre_m=(x_m, 0, 0.01), half_m=(1.55, 2.1, 0.01))
+    space = free_space(raised)
+    assert space.free.sum() == pytest.approx(plain, rel=0.01)
+    assert math.isfinite(space.geodesic(point(space, 2.0, 0.0))[tuple(space.frame.to_cells((-2.0, 0.0)))])
+
+
 @pytest.mark.parametrize(("clearance_m", "free"), [(0.03, True), (0.012, False)])
 def test_an_object_that_low_passes_under_a_robot_with_clearance(clearance_m, free):
     house = with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01))
