@@ -480,8 +480,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} tools/reproduce.py explorers --episodes 200 --workers 2": (
         f"{PYTHON} tools/reproduce.py explorers --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py explorers --split large --episodes 300 --agents stubborn 'stubborn --explorer "
-    "informed-tour'": (
+    f"{PYTHON} tools/reproduce.py explorers --split large --episodes 300 --workers 2": (
         f"{PYTHON} tools/reproduce.py explorers --split large --episodes 1 --agents oracle random --out {{tmp}}/paper",
     ),
     f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
@@ -516,6 +515,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/generate_views.py --pool wide --views 1 --shrink 2 --profile fast --out {{tmp}}/views",
     ),
     f"{PYTHON} tools/generate_views.py --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
+    f"{PYTHON} tools/generate_views.py --split val --views 500 --out views_val_whole": (
+        f"{PYTHON} tools/generate_views.py --split val --views 1 --out {{tmp}}/views --workers 1",
+    ),
     f"{PYTHON} tools/show_views.py --views views_objects --out views.png": (
         _VIEWS,
         f"{PYTHON} tools/show_views.py --views {{tmp}}/views --out {{tmp}}/views.png",
