@@ -481,7 +481,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} tools/reproduce.py explorers --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
     ),
     f"{PYTHON} tools/reproduce.py explorers --split large --episodes 300 --workers 2": (
-        f"{PYTHON} tools/reproduce.py explorers --split large --episodes 1 --workers 1 --agents oracle random --out {{tmp}}/paper",
+        f"{PYTHON} tools/reproduce.py explorers --split large --episodes 1 --workers 1 --agents oracle random "
+        "--out {tmp}/paper",
     ),
     f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
         f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
