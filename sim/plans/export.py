@@ -21,7 +21,8 @@ from sim.plans.plan import CELL_M, Plan, storey_name
 from sim.plans.surfaces import TOP_M, occupied_spans
 from sim.robot.body import PREFIX
 from sim.task.ground_truth import GroundTruth
-from sim.world.freespace import FreeSpace, obstacle_polygons
+from sim.world.freespace import FreeSpace
+from sim.world.obstacles import obstacle_polygons
 from sim.world.plan import floor_polygons
 from sim.world.storeys import floor_levels
 from sim.world.world import World

@@ -1,10 +1,8 @@
 """Free space of the robot on one storey, and geodesic distances in it (docs/task.md).
 
 A position is free when the robot's disc lies on floors of the house, so that no wheel can be beyond the edge of a
-stairwell, and touches no collision geom between step height and robot height, nor the edge of a floor that is too high
-to climb.
-Movable objects count at their positions when the `FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on
-`frame`.
+stairwell, and touches no obstacle (`sim.world.obstacles`). Movable objects count at their positions when the
+`FreeSpace` is made. Arrays are indexed [row, col] = [y, x] on `frame`.
 """
 
 from __future__ import annotations
@@ -18,16 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import HouseError
-from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.geometry.convex import ConvexPolygon
 from sim.geometry.convex_kernels import clear_near, mark_inside
 from sim.geometry.fast_marching import distances
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
-from sim.houses.geoms import geom_polytope
 from sim.houses.house import Room
-from sim.houses.labels import Labels, collidable_geoms, geoms_of
-from sim.interface import MPCAT40_ID, RobotModel, SuccessRule
-from sim.world.plan import floor_polygons, house_extent, polygons_between, room_rectangles
+from sim.houses.labels import Labels
+from sim.interface import RobotModel, SuccessRule
+from sim.world.obstacles import obstacle_polygons
+from sim.world.plan import floor_polygons, house_extent, room_rectangles
 
 if TYPE_CHECKING:
     from sim.world.world import World
@@ -36,11 +34,6 @@ CELL_M = 0.025
 """Edge of a cell of the free space."""
 MAX_CELLS = 25_000_000
 """Cells of the grid of a storey: 125 x 125 m. The largest house that ships has 2 million."""
-STEP_HEIGHT_M = 0.03
-"""Lower geoms are no obstacles for a robot with at least this clearance: they pass under its body."""
-CLIMB_M = 0.013
-"""An edge between floors of which one is higher than this above the other is an obstacle: up to 14 mm the wheels climb
-it wherever they meet it in the course of an action, from 15 mm on only at some places."""
 NEAREST_FREE_M = 0.3
 """A position at most this far from a free cell still has a geodesic distance: the robot may have pushed an object."""
 SEAM_M = 0.06
@@ -231,64 +224,6 @@ def connected_to(free: NDArray[np.bool_], begin: NDArray[np.bool_]) -> NDArray[n
 
 def _covers(polygons: Iterable[ConvexPolygon], here: NDArray[np.float64]) -> bool:
     return any(bool(polygon.contains(here)[0]) for polygon in polygons)
-
-
-def obstacle_polygons(
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    labels: Labels,
-    robot: RobotModel,
-    floor_z_m: float,
-    *,
-    robot_prefix: str = "robot/",
-) -> list[ConvexPolygon]:
-    """Returns the plan projections of the geoms that are obstacles on the storey whose floor is at `floor_z_m`."""
-    candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
-    is_floor = labels.geom_category == MPCAT40_ID["floor"]
-    low_m, top_m = min(STEP_HEIGHT_M, robot.clearance_m), floor_z_m + robot.height_m
-    polygons = [
-        polygon
-        for geoms, bottom_m in ((candidates & ~is_floor, low_m), (candidates & is_floor, STEP_HEIGHT_M))
-        for polygon in polygons_between(model, data, np.flatnonzero(geoms), (floor_z_m + bottom_m, top_m))
-    ]
-    return polygons + _steps(model, data, np.flatnonzero(candidates & is_floor), floor_z_m)
-
-
-def _steps(
-    model: mujoco.MjModel, data: mujoco.MjData, floors: NDArray[np.intp], floor_z_m: float
-) -> list[ConvexPolygon]:
-    """Returns rectangles along the upper side of edges between floors that the wheels do not climb, a cell wide.
-
-    Only floors up to `STEP_HEIGHT_M` above the storey's floor have such edges; higher ones are obstacles as a whole.
-    """
-    bodies = [geom_polytope(model, data, int(geom)) for geom in floors]
-    tops = [float(body.vertices_m[:, 2].max()) for body in bodies]
-    near = [n for n in np.argsort(tops).tolist() if abs(tops[n] - floor_z_m) <= STEP_HEIGHT_M + 1e-6]
-    if not near or tops[near[-1]] - tops[near[0]] <= CLIMB_M:
-        return []
-    plans = [(tops[n], plan_polygon(bodies[n])) for n in near]
-    raised = [plan.bounds_m for top_m, plan in plans if plan is not None and top_m - tops[near[0]] > CLIMB_M]
-    bounds = np.array(raised)
-    x0, y0 = bounds[:, :2].min(axis=0) - 2 * CELL_M
-    cols, rows = np.ceil((bounds[:, 2:].max(axis=0) - (x0, y0)) / CELL_M).astype(int) + 2
-    grid = GridFrame(origin_xy_m=(float(x0), float(y0)), shape=(int(rows), int(cols)), cell_m=CELL_M)
-    x_m, y_m = grid.mesh()
-    centres = np.stack([np.broadcast_to(x_m, grid.shape), np.broadcast_to(y_m, grid.shape)], axis=-1).reshape(-1, 2)
-    height_m = np.full(len(centres), np.inf, np.float32)  # inf: no floor, whose edge is no step
-    for top_m, plan in plans:  # the highest comes last
-        if plan is not None:
-            height_m[plan.contains(centres)] = top_m
-    height_m = height_m.reshape(grid.shape)
-    lowest_beside_m = cv2.erode(height_m, np.ones((3, 3), np.uint8))
-    upper = np.isfinite(height_m) & (height_m - lowest_beside_m > CLIMB_M)
-    found = []
-    for row in np.flatnonzero(upper.any(axis=1)).tolist():
-        ends = np.flatnonzero(np.diff(np.concatenate([[False], upper[row], [False]]).astype(np.int8)))
-        for first, last in zip(ends[::2].tolist(), ends[1::2].tolist(), strict=True):
-            left, right = x0 + first * CELL_M, x0 + last * CELL_M
-            low, high = y0 + row * CELL_M, y0 + (row + 1) * CELL_M
-            found.append(ConvexPolygon.of_corners(np.array([[left, low], [right, low], [right, high], [left, high]])))
-    return [polygon for polygon in found if polygon is not None]
 
 
 def _frame_around(extent: list[ConvexPolygon]) -> GridFrame:

@@ -15,7 +15,7 @@ from sim.interface import FORWARD_M, TURN_RAD, Action, wrap_angle
 from sim.robot.config import Base, RobotConfig
 from sim.robot.drive import Motion
 from sim.robot.profile import Trapezoid
-from sim.world.freespace import CLIMB_M
+from sim.world.obstacles import CLIMB_M
 from sim.world.world import World
 from tests.helpers.worlds import open_floor, room, with_box, with_movable, with_post
 

@@ -315,6 +315,11 @@ def test_a_raised_floor_from_wall_to_wall_is_free_and_two_of_one_height_have_no_
     assert math.isfinite(space.geodesic(point(space, 2.0, 0.0))[tuple(space.frame.to_cells((-2.0, 0.0)))])
 
 
+def test_a_floor_without_an_end_has_no_edge():
+    sunken = with_box(room(6, 4), "floor_10", centre_m=(0, 0, -0.03), half_m=(0.5, 0.5, 0.01))  # below the plane
+    assert (free_space(sunken).free == free_space(room(6, 4)).free).all()
+
+
 @pytest.mark.parametrize(("clearance_m", "free"), [(0.03, True), (0.012, False)])
 def test_an_object_that_low_passes_under_a_robot_with_clearance(clearance_m, free):
     house = with_box(room(6, 4), "objects_00", centre_m=(0, 0, 0.01), half_m=(0.1, 2.0, 0.01))

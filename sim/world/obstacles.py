@@ -1,0 +1,110 @@
+"""What the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.geometry.convex_kernels import mark_inside
+from sim.geometry.grid import GridFrame
+from sim.gl import mujoco
+from sim.houses.geoms import UNBOUNDED_M, geom_polytope
+from sim.houses.labels import Labels, collidable_geoms, geoms_of
+from sim.interface import MPCAT40_ID, RobotModel
+from sim.world.plan import polygons_between
+
+STEP_HEIGHT_M = 0.03
+"""Lower geoms are no obstacles for a robot with at least this clearance: they pass under its body."""
+CLIMB_M = 0.013
+"""An edge between floors of which one is higher than this above the other is an obstacle: up to 14 mm the wheels climb
+it wherever they meet it in the course of an action, from 15 mm on only at some places."""
+EDGE_CELL_M = 0.025
+"""Edges between floors are found on cells of this size."""
+
+
+def obstacle_polygons(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    labels: Labels,
+    robot: RobotModel,
+    floor_z_m: float,
+    *,
+    robot_prefix: str = "robot/",
+) -> list[ConvexPolygon]:
+    """Returns the plan projections of what is an obstacle on a storey.
+
+    Args:
+        model: a compiled house or world.
+        data: its state; kinematics must be computed.
+        labels: of `model`.
+        robot: its height and clearance count.
+        floor_z_m: height of the storey's floor.
+        robot_prefix: geoms with this prefix are no obstacles.
+    """
+    candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
+    is_floor = labels.geom_category == MPCAT40_ID["floor"]
+    objects, floors = (np.flatnonzero(candidates & kind) for kind in (~is_floor, is_floor))
+    low_m, top_m = floor_z_m + min(STEP_HEIGHT_M, robot.clearance_m), floor_z_m + robot.height_m
+    return [
+        *polygons_between(model, data, objects, (low_m, top_m)),
+        *polygons_between(model, data, floors, (floor_z_m + STEP_HEIGHT_M, top_m)),
+        *_edges(_low_floors(model, data, floors, floor_z_m)),
+    ]
+
+
+def _low_floors(
+    model: mujoco.MjModel, data: mujoco.MjData, floors: NDArray[np.intp], floor_z_m: float
+) -> list[tuple[float, ConvexPolygon]]:
+    """Returns top and plan of the floors that are not obstacles as a whole, the lowest first."""
+    bodies = [geom_polytope(model, data, int(geom)) for geom in floors]
+    near = [(float(body.vertices_m[:, 2].max()), body) for body in bodies]
+    near = sorted((floor for floor in near if abs(floor[0] - floor_z_m) <= STEP_HEIGHT_M), key=lambda floor: floor[0])
+    if not near or near[-1][0] - near[0][0] <= CLIMB_M:  # no edge between them is too high
+        return []
+    plans = [(top_m, plan_polygon(body)) for top_m, body in near]
+    return [(top_m, plan) for top_m, plan in plans if plan is not None]
+
+
+def _edges(floors: list[tuple[float, ConvexPolygon]]) -> list[ConvexPolygon]:
+    """Returns rectangles along the upper side of edges that are too high, a cell wide; floors as of `_low_floors`."""
+    raised = np.array([plan.bounds_m for top_m, plan in floors if top_m - floors[0][0] > CLIMB_M]).reshape(-1, 4)
+    raised = raised[(raised[:, 2:] - raised[:, :2]).max(axis=1, initial=0.0) < UNBOUNDED_M]
+    if len(raised) == 0:
+        return []
+    corner_m = raised[:, :2].min(axis=0) - 2 * EDGE_CELL_M
+    cols, rows = np.ceil((raised[:, 2:].max(axis=0) - corner_m) / EDGE_CELL_M).astype(int) + 2
+    frame = GridFrame(origin_xy_m=(corner_m[0], corner_m[1]), shape=(int(rows), int(cols)), cell_m=EDGE_CELL_M)
+    height_m = _heights(frame, floors)
+    beside_m = cv2.erode(height_m, np.ones((3, 3), np.uint8))
+    upper = np.isfinite(height_m) & (height_m - beside_m > CLIMB_M)
+    rows_of_edges = np.flatnonzero(upper.any(axis=1)).tolist()
+    return [_rectangle(frame, row, *ends) for row in rows_of_edges for ends in _runs(upper[row])]
+
+
+def _heights(frame: GridFrame, floors: list[tuple[float, ConvexPolygon]]) -> NDArray[np.float32]:
+    """Returns the height of the highest floor (rows, cols); inf where there is none, whose edge is no step."""
+    height_m = np.full(frame.shape, np.inf, np.float32)
+    for top_m, plan in floors:
+        window = frame.index_of(plan.bounds_m)
+        x_m, y_m = frame.axes(window)
+        covered = np.zeros((len(y_m), len(x_m)), np.bool_)
+        mark_inside(covered, x_m, y_m, plan.normals, plan.offsets_m)
+        height_m[window][covered] = top_m
+    return height_m
+
+
+def _runs(cells: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Returns first and last + 1 of each run of True."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], cells, [False]]).astype(np.int8)))
+    return list(zip(ends[::2].tolist(), ends[1::2].tolist(), strict=True))
+
+
+def _rectangle(frame: GridFrame, row: int, first: int, end: int) -> ConvexPolygon:
+    """Returns the rectangle of some cells of a row."""
+    (x_m, y_m), cell_m = frame.origin_xy_m, frame.cell_m
+    left, right, low, high = x_m + first * cell_m, x_m + end * cell_m, y_m + row * cell_m, y_m + (row + 1) * cell_m
+    rectangle = ConvexPolygon.of_corners(np.array([[left, low], [right, low], [right, high], [left, high]]))
+    assert rectangle is not None  # it has at least one cell
+    return rectangle
