@@ -80,12 +80,14 @@ def main(args: Args) -> int:
     """Prints a row for each explorer as soon as it has played."""
     plans = _plans(args)
     configs = {name: explorer_config(name, args.weights) for name in args.explorers}
-    agents = {name: TwinAgent(twin_config(AgentConfig(explorer=config))) for name, config in configs.items()}
+    for config in configs.values():
+        config.make(CameraModel())  # missing weights are told before anything is played
     lines, first = [], None
     print(
         f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count {MAX_STEPS} where it is never seen"
     )
-    for name, agent in agents.items():
+    for name, config in configs.items():
+        agent = TwinAgent(twin_config(AgentConfig(explorer=config)))
         played = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]
         lines += [{"explorer": name, **line} for line in played]
         first = played if first is None else first

@@ -87,19 +87,20 @@ def _exported(args: Args) -> Iterator[Exported]:
     """Exports the houses that the options name."""
     shard = Shard.parse(args.shard) if args.shard else Shard()
     if args.split is not None:
-        names: Sequence[str] = list(load_split(args.split).houses)[: args.houses]
+        split = load_split(args.split)
+        names: Sequence[str] = list(split.houses)[: args.houses]
+        source = {"split": args.split, "version": split.version}
         return ordered_map(
-            functools.partial(_export_named, args.out, args.split), shard.select(names), workers=args.workers
+            functools.partial(_export_named, args.out, source), shard.select(names), workers=args.workers
         )
     config = HouseConfig(pool=args.pool, kind=args.kind, area_m2=args.area_m2)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     return ordered_map(functools.partial(_export_seed, args.out, config), shard.select(seeds), workers=args.workers)
 
 
-def _export_named(out: Path, split: str, name: str) -> Exported:
+def _export_named(out: Path, source: dict[str, Any], name: str) -> Exported:
     """Exports one house of a split."""
-    source = {"split": split, "version": load_split(split).version}
-    return _export(out, name, source, lambda: load_split(split).load_house(name))
+    return _export(out, name, source, lambda: load_split(source["split"]).load_house(name))
 
 
 def _export_seed(out: Path, config: HouseConfig, seed: int) -> Exported:

@@ -46,7 +46,7 @@ except ImportError as error:
 
 from tools.plan_split import HELD_BACK, split_plans
 from tools.semexp_policy import SemExpPolicy
-from tools.training_files import append_row, cut_rows, load_state, options_of, read_columns, require_options, save_state
+from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
 
 LAST_EPISODES = 300
 """A row of the curve is a mean over so many episodes."""
@@ -117,9 +117,12 @@ def main(args: Args) -> int:
 
 
 def _require_curve(file: Path) -> None:
-    """Raises ConfigError where a file of curves has not the columns that are drawn."""
-    if not set(_DRAWN) <= set(read_columns(file) or _DRAWN):
-        raise ConfigError(f"--beside: '{file}' is no curve of this command.")
+    """Raises ConfigError where a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
+    if not file.is_file():
+        return
+    with file.open(newline="", encoding="utf-8", errors="replace") as stream:
+        if not set(_DRAWN) <= set(next(csv.reader(stream), [])):
+            raise ConfigError(f"--beside: '{file}' is no curve of this command.")
 
 
 class _Progress(msgspec.Struct):

@@ -106,25 +106,19 @@ def verifier_of(options: RunOptions, config: VerificationConfig) -> Verifier:
     Raises:
         ConfigError: there are no such parameters, or no such method.
     """
-    verifier = _as_fitted(options, config)
-    bar = config.least_probability
-    return (
-        verifier
-        if bar is None or not isinstance(verifier, FittedVerifier)
-        else replace(verifier, least_probability=bar)
-    )
-
-
-def _as_fitted(options: RunOptions, config: VerificationConfig) -> Verifier:
-    return verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
+    verifier = verifier_for(options.semantics, KINDS[options.semantics].spec, config.parameters, config.method)
+    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
+        return replace(verifier, least_probability=config.least_probability)
+    return verifier
 
 
 def _with_bar(options: RunOptions, config: VerificationConfig) -> VerificationConfig:
-    """Returns the configuration with the probability that a candidate needs, where none is set."""
+    """Returns the configuration with the probability that a candidate needs; that of the fit where none is set."""
     if config.least_probability is not None:
         return config
-    verifier = _as_fitted(options, config)
-    return replace(config, least_probability=getattr(verifier, "least_probability", FittedVerifier.least_probability))
+    verifier = verifier_of(options, config)
+    fitted = verifier if isinstance(verifier, FittedVerifier) else FittedVerifier
+    return replace(config, least_probability=fitted.least_probability)
 
 
 def record_of(options: RunOptions, config: RunConfig, split: dict[str, Any]) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
+from sim.interface import MAX_STEPS, Action
 from sim.plans.motion_kernels import interpolate
 from sim.plans.plan import Plan
 from sim.plans.robot import PlanMotion, PlanRobot
@@ -24,15 +24,14 @@ MIN_DISTANCE_M = 2.0
 class PlanEpisode:
     """One episode: the robot, its camera, and the metrics so far."""
 
-    def __init__(self, camera: PlanCamera, goal: str | None, start: Pose, *, max_steps: int = MAX_STEPS) -> None:
-        """Starts the episode; without a goal, `None`, it only explores.
+    def __init__(self, camera: PlanCamera, goal: str, start: Pose, *, max_steps: int = MAX_STEPS) -> None:
+        """Starts the episode.
 
         Raises:
             EpisodeError: no STOP for the goal succeeds anywhere in the plan, or the start is off it.
         """
         self.plan: Plan = camera.plan
-        if goal is not None:
-            require_goal(self.plan, goal)
+        require_goal(self.plan, goal)
         if not self.plan.frame.contains(*self.plan.frame.cell(start.x_m, start.y_m)):
             raise EpisodeError(f"Plan '{self.plan.name}': the start ({start.x_m:g}, {start.y_m:g}) m is off the plan.")
         self.camera, self.goal, self.start, self.max_steps = camera, goal, start, max_steps
@@ -44,8 +43,6 @@ class PlanEpisode:
         self.collisions = 0
         self.first_seen_step: int | None = None
         """Number of actions before the first frame that showed the goal; None: no frame did so."""
-        self.first_sights: dict[str, int] = {}
-        """The same for each goal category of the plan that was seen."""
         self.success = False
         self.stopped = False
         self.shortest_path_m = self.distance_m()
@@ -61,9 +58,7 @@ class PlanEpisode:
         return self.stopped or self.num_steps >= self.max_steps
 
     def distance_m(self) -> float:
-        """Returns the geodesic distance to the nearest place where a STOP succeeds; inf: no path, or no goal."""
-        if self.goal is None:
-            return math.inf
+        """Returns the geodesic distance to the nearest place where a STOP succeeds; inf: no path."""
         pose, frame = self.robot.pose, self.plan.frame
         row, col = frame.cell(pose.x_m, pose.y_m)
         field = self.plan.distance_m(self.goal)
@@ -75,10 +70,8 @@ class PlanEpisode:
 
     def see(self, look: Look) -> None:
         """Counts the frame from the present pose."""
-        for number in np.flatnonzero(look.shares >= EXPLORED_SHARE).tolist():
-            self.first_sights.setdefault(GOAL_CATEGORIES[number], self.num_steps)
-        if self.goal is not None and self.first_seen_step is None:
-            self.first_seen_step = self.first_sights.get(self.goal)
+        if self.first_seen_step is None and look.goal_share >= EXPLORED_SHARE:
+            self.first_seen_step = self.num_steps
 
     def act(self, action: Action) -> PlanMotion:
         """Carries out an action.
@@ -95,7 +88,7 @@ class PlanEpisode:
         if action is Action.STOP:
             self.stopped = True
             row, col = self.plan.frame.cell(self.robot.pose.x_m, self.robot.pose.y_m)
-            self.success = self.goal is not None and bool(self.plan.success_cells(self.goal)[row, col])
+            self.success = bool(self.plan.success_cells(self.goal)[row, col])
         return motion
 
     def metrics(self) -> Mapping[str, Any]:

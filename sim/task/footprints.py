@@ -102,7 +102,7 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
     body = geom_polytope(model, data, geom, rendered=True)
     whole = plan_polygon(body)
     if whole is None:
-        return [upright_polygon(body.vertices_m[:, :2])]
+        return [_upright_polygon(body.vertices_m[:, :2])]
     if not is_hollow(model, geom):
         return [whole]
     corners = mesh_triangles(model, data, geom)[..., :2]
@@ -115,7 +115,7 @@ def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> li
     return [part for part in parts if part is not None]
 
 
-def upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:
+def _upright_polygon(points_m: NDArray[np.float64]) -> ConvexPolygon:
     """Returns a rectangle of `PLANE_DEPTH_M` around points (n, 2) on a line: the plan of an upright flat mesh."""
     middle = points_m.mean(axis=0)
     ahead = np.linalg.svd(points_m - middle, full_matrices=True)[2][0]

@@ -30,7 +30,7 @@ class TwinAgent(StubbornAgent):
     def begin(self, episode: PlanEpisode, seed: int) -> None:
         """Starts an episode."""
         self._episode = episode
-        self.reset(episode.goal or GOAL_CATEGORIES[0], seed)
+        self.reset(episode.goal, seed)
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the look from the present pose into the map, and returns the target points in it."""
@@ -94,7 +94,7 @@ def observation_of(episode: PlanEpisode) -> Observation:
     return {
         "gps": np.array([pose.x_m, pose.y_m], np.float32),
         "compass": np.array([pose.yaw_rad], np.float32),
-        "objectgoal": np.array([GOAL_CATEGORIES.index(episode.goal or GOAL_CATEGORIES[0])], np.int64),
+        "objectgoal": np.array([GOAL_CATEGORIES.index(episode.goal)], np.int64),
     }
 
 

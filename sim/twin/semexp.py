@@ -134,7 +134,7 @@ class SemExpEnv(TwinEnv):
         self._head_for(self.given.place_xy_m(int(action)))
 
     def _observe(self) -> dict[str, NDArray]:
-        self._given = given = observe(self.navmap, self._pose, self.episode.goal or GOAL_CATEGORIES[0], self.view)
+        self._given = given = observe(self.navmap, self._pose, self.episode.goal, self.view)
         return {
             "near": given.near.geometry.astype(np.float32),
             "near_goals": given.near.goals.astype(np.float32),

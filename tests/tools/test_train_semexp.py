@@ -154,7 +154,7 @@ def test_options_that_would_fail_later_are_refused(
 ):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "train.csv").write_text("step,loss\n1,0.5\n")
+    (tmp_path / "other" / "train.csv").write_text("step,loss,note\n1,0.5,begun\n")
     with pytest.raises(ConfigError, match=message):
         train_semexp.main(train_semexp.Args(plans=(plans,), out=tmp_path / "out", minutes=0.01, **options))
 
