@@ -198,7 +198,7 @@ class SegmenterSpec:
     needs_verification: bool = True
     """False: its scores are the truth, so that an agent need not verify a candidate before it stops."""
     kind: str = "rednet"
-    """Name of the fitted parameters that describe its errors best (`stubborn/target/fusions/<kind>.json`)."""
+    """Name of the fitted parameters that describe its errors best (`stubborn/detection/fusions/<kind>.json`)."""
 
 
 class Segmenter(Protocol):
@@ -286,7 +286,7 @@ AgentFactory = Callable[..., Agent]
 | robot | `RobotModel` | the robot that the agent drives |
 | success | `SuccessRule` | when a STOP counts |
 | segmenter | `Segmenter` | source of the scores |
-| verifier | `stubborn.target.verification.Verifier` | judges candidates of the goal |
+| verifier | `stubborn.detection.verification.Verifier` | judges candidates of the goal |
 | config | type of `AgentSpec.config` | the agent's configuration |
 | truth | `sim.env.objectnav.ObjectNavEnv` | only with `uses_ground_truth`: the running environment |
 | max_steps | int | only where the factory has a parameter of this name: actions of an episode |

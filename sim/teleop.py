@@ -29,7 +29,7 @@ from sim.evaluation.rollout import episode_seed, play_episode, record_episode
 from sim.viewers.terminal import Terminal
 from sim.viewers.video import VideoRecorder
 from sim.viewers.viewer import VIEWER_IMAGES
-from stubborn.draw import AgentMapPainter
+from stubborn.drawing.map_painter import AgentMapPainter
 
 
 @dataclass(frozen=True, kw_only=True)

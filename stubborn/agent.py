@@ -26,21 +26,21 @@ from sim.interface import (
     SuccessRule,
     wrap_angle,
 )
+from stubborn.detection.approach import Approach
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.seeker import Seeker, TargetSeeker
+from stubborn.detection.verification import AcceptAll, Verifier
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import Explorer, ExplorerConfig, Ground, ReadsSemantics, run_explorer
-from stubborn.grid_kernels import MAX_REACH
+from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import ObjectLayers
-from stubborn.navmap import NavMap
 from stubborn.planning.avoidance import CollisionAvoidance, collision_policies
 from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
-from stubborn.target.approach import Approach
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.seeker import Seeker, TargetSeeker
-from stubborn.target.verification import AcceptAll, Verifier
 
 _TREAD_M = 0.10
 """Half the width of the ground ahead that must not be missing for a forward."""

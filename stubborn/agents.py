@@ -14,7 +14,8 @@ from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.cloned import ClonedConfig, cloned_agent
 from stubborn.baselines.random import RandomConfig, random_agent
 from stubborn.baselines.single_frame import latest_frame_agent, single_frame_agent
-from stubborn.draw import make_painter
+from stubborn.detection.verification import Verifier
+from stubborn.drawing.map_painter import make_painter
 from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
@@ -23,7 +24,6 @@ from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.plus import PlusConfig, plus_agent
-from stubborn.target.verification import Verifier
 
 NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
 """None of the paper's measures against collisions."""
@@ -144,7 +144,7 @@ def make(
         camera: camera of the observations.
         robot: the robot that the agent drives.
         segmenter: source of the scores.
-        verifier: judges candidates (`stubborn.target.verification`); None accepts all.
+        verifier: judges candidates (`stubborn.detection.verification`); None accepts all.
         success: when a STOP counts.
         max_steps: actions of an episode, for agents that take more risk near its end.
         options: fields of `SPECS[name].config`. `explorer` also takes a name of `EXPLORERS`.

@@ -7,14 +7,14 @@ from typing import Any
 
 from sim.interface import MAX_STEPS, CameraModel, RobotModel, Segmenter, SuccessRule
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.distances import StopDistances
+from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
+from stubborn.detection.verification import Verifier
+from stubborn.detection.viewpoints import ViewpointFinder
 from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.tour import INFORMED_TOUR
 from stubborn.planning.avoidance import collision_policies
 from stubborn.planning.planner import Planner
-from stubborn.target.distances import StopDistances
-from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
-from stubborn.target.verification import Verifier
-from stubborn.target.viewpoints import ViewpointFinder
 
 
 @dataclass(frozen=True, kw_only=True)

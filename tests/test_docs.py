@@ -23,15 +23,15 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.interface import CameraModel, RobotModel
 from stubborn import agent
+from stubborn.detection import distances
 from stubborn.exploration import corners
 from stubborn.exploration.explorer import Ground, run_explorer
 from stubborn.mapping import collision_marks, mapper
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning import planner
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target import distances
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample

@@ -47,8 +47,8 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
     assert shipped
     for file in shipped:
         assert f"sim/assets/{file.relative_to(ROOT / 'assets')}" in packed
-    for file in (ROOT / "stubborn/target/verifiers").glob("*.json"):
-        assert f"stubborn/target/verifiers/{file.name}" in packed
+    for file in (ROOT / "stubborn/detection/verifiers").glob("*.json"):
+        assert f"stubborn/detection/verifiers/{file.name}" in packed
     assert "stubborn/segmentation/weights/rednet.safetensors" in packed
     for file in (ROOT / "sim/analysis/report/page").iterdir():
         assert f"sim/analysis/report/page/{file.name}" in packed

@@ -34,22 +34,13 @@ ROOMS = (
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
 AGENT_ROOMS = (
-    (
-        "stubborn.raster",
-        "stubborn.network_files",
-        "stubborn.navmap",
-        "stubborn.canvas",
-        "stubborn.surface_kernels",
-        "stubborn.track_kernels",
-        "stubborn.frame_kernels",
-        "stubborn.grid_kernels",
-    ),
+    ("stubborn.network_files", "stubborn.kernels"),
     ("stubborn.mapping", "stubborn.segmentation"),
     ("stubborn.planning",),
     ("stubborn.exploration",),
-    ("stubborn.target",),
+    ("stubborn.detection",),
     ("stubborn.agent",),
-    ("stubborn.draw", "stubborn.baselines", "stubborn.plus"),
+    ("stubborn.drawing", "stubborn.baselines", "stubborn.plus"),
     ("stubborn.agents",),
 )
 """The rooms of `stubborn`, lowest first."""

@@ -25,6 +25,6 @@ def test_a_wrong_array_is_refused_under_pytest(sources: np.ndarray, passable: np
 
 
 def test_users_need_no_beartype() -> None:
-    code = "import sys, sim.geometry.fast_marching, stubborn.target.verification; print('beartype' in sys.modules)"
+    code = "import sys, sim.geometry.fast_marching, stubborn.detection.verification; print('beartype' in sys.modules)"
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "False"

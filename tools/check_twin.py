@@ -46,7 +46,7 @@ from sim.twin.agent import TwinAgent, play, twin_config
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.agents import SPECS
 from stubborn.baselines.single_frame import single_frame_agent
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 MEASURES = ("area_seen_m2", "steps_to_first_sight")
 PLAYABLE = (StubbornAgent, single_frame_agent)

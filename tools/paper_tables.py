@@ -31,7 +31,7 @@ from sim.evaluation.results import metric_value
 from sim.interface import GOAL_CATEGORIES
 from sim.task.failures import CAUSES
 from stubborn import agents
-from stubborn.target.verification import ACCEPT_ALL, METHODS
+from stubborn.detection.verification import ACCEPT_ALL, METHODS
 from tools.agent_setup import GROUND_TRUTH, AgentSetup
 
 Lines = Mapping[AgentSetup, Sequence[Line]]

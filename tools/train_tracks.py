@@ -9,7 +9,7 @@ categories count, not only those of the episode's goal: an episode gives about a
 
 The log has one line and one file (tracks/<episode>.npz) per episode. The same command continues it, and more episodes
 extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
-`stubborn.target.fusion_fit` fits the parameters and judges them on houses left out.
+`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
 
 The houses should hold furniture that the network was not trained on, else the fit trusts it too much: see
 docs/verification.md. Houses of val and test are for --judge only.
@@ -43,13 +43,13 @@ from sim.files import inside, write_atomically
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, read_npz
+from stubborn.detection.fusion import FOLDER, Fusion, read_fusion
+from stubborn.detection.fusion_fit import PLAUSIBLE, Sample, fit, judge, left_out, probabilities, samples_of
+from stubborn.detection.look import LookConfig
+from stubborn.detection.track_seeker import TrackSeeker
+from stubborn.detection.tracks import Tracks
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import STRIDE_PX
-from stubborn.target.fusion import FOLDER, Fusion, read_fusion
-from stubborn.target.fusion_fit import PLAUSIBLE, Sample, fit, judge, left_out, probabilities, samples_of
-from stubborn.target.look import LookConfig
-from stubborn.target.track_seeker import TrackSeeker
-from stubborn.target.tracks import Tracks
 from tools.episode_logs import LogOptions, check, line_of, lines_of
 
 LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
@@ -65,7 +65,7 @@ class Args(LogOptions):
     """Logs the tracks of episodes, then fits the fusion of views to them."""
 
     out: cli.OutFile | None = None
-    """File of the parameters; None: stubborn/target/fusions/<semantics>.json."""
+    """File of the parameters; None: stubborn/detection/fusions/<semantics>.json."""
 
 
 class TrackLine(msgspec.Struct):

@@ -13,7 +13,7 @@ finds the rest of an object again after such a rejection: of the true candidates
 from places within 2 m of each other only the first counts, and so for the false ones.
 
 Then each method of verification is fitted and written as JSON with the counts and its quality on houses left out
-(`stubborn.target.verifier_fit`).
+(`stubborn.detection.verifier_fit`).
 Houses of val and test are for --judge only.
 """
 
@@ -43,10 +43,10 @@ from sim.interface import Action, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, Number
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.target.classifiers import Features
-from stubborn.target.distances import TargetConfig
-from stubborn.target.verification import FOLDER, METHODS, FittedVerifier
-from stubborn.target.verifier_fit import fit, judge_by_category
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import TargetConfig
+from stubborn.detection.verification import FOLDER, METHODS, FittedVerifier
+from stubborn.detection.verifier_fit import fit, judge_by_category
 from tools.episode_logs import LogOptions, check, line_of, lines_of
 
 NEVER = 1_000_000
@@ -68,7 +68,7 @@ class Args(LogOptions):
     least_of_either: cli.Count = 20
     """A category with fewer true or fewer false candidates uses the pooled naive Bayes."""
     out: cli.OutFile | None = None
-    """File of the parameters; None: stubborn/target/verifiers/<semantics>.json."""
+    """File of the parameters; None: stubborn/detection/verifiers/<semantics>.json."""
 
 
 class CandidateLine(msgspec.Struct):

@@ -32,8 +32,9 @@ from sim.files import write_together
 from sim.interface import Agent, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, Number, read_lines
-from stubborn import agents, draw
+from stubborn import agents
 from stubborn.agent import StubbornAgent
+from stubborn.drawing import map_painter
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # needed to import tools.* when run as a file
@@ -127,7 +128,7 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
 
 def write_picture(folder: Path, env: ObjectNavEnv, agent: Agent, trial: Trial) -> None:
     """Writes the picture of a trial."""
-    belief = draw.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
+    belief = map_painter.draw_map(agent, whole=True) if isinstance(agent, StubbornAgent) else None
     path = folder / f"{trial.episode_id}_{trial.agent}.png"
     save_picture(path, draw_trial(env, trial, belief))
 

@@ -1,3 +1,1 @@
-"""Reading results: estimates with intervals, paired comparisons, tables, the HTML report.
-
-Imports evaluation, task and the rooms below them."""
+"""Reading results: estimates with intervals, paired comparisons, tables, the HTML report."""

@@ -15,8 +15,8 @@ from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.detection.verification import Verifier
 from stubborn.exploration.explorer import ExplorerConfig
-from stubborn.target.verification import Verifier
 
 if TYPE_CHECKING:  # a list of the agents needs neither MuJoCo nor OpenGL
     from sim.env.objectnav import ObjectNavEnv

@@ -10,7 +10,7 @@ from sim.evaluation.parallel import Shard
 from sim.sensors.noise import get_noise
 from sim.sensors.profiles import get_profile
 from sim.viewers import selection
-from stubborn.target.verification import verifier_for
+from stubborn.detection.verification import verifier_for
 
 
 def check_options(options: RunOptions) -> None:

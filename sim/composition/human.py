@@ -16,7 +16,7 @@ from sim.viewers.palette import colour_segmentation
 from sim.viewers.terminal import Colours, beside, fitted, half_blocks
 from sim.viewers.words import ACTION_WORDS, in_words
 from stubborn.agent import StubbornAgent
-from stubborn.draw import AgentMapPainter, describe_intention
+from stubborn.drawing.map_painter import AgentMapPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 KEYS: dict[str, Action] = {

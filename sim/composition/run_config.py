@@ -24,7 +24,7 @@ from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
 from stubborn.agent import AgentConfig
-from stubborn.target.verification import FittedVerifier, Verifier, verifier_for
+from stubborn.detection.verification import FittedVerifier, Verifier, verifier_for
 
 NOT_RECORDED = ("list_agents", "retry_errors", "config", "config_file")
 """Options that the tree itself records, or that start no run."""

@@ -1,3 +1,1 @@
-"""Labelled views for training segmentation networks, and their WebDataset shards.
-
-Imports env and the rooms below it."""
+"""Labelled views for training segmentation networks, and their WebDataset shards."""

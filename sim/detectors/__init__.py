@@ -1,3 +1,1 @@
-"""Simulated detectors that read the true labels and make the errors of a segmentation network.
-
-Imports env and the rooms below it."""
+"""Simulated detectors that read the true labels and make the errors of a segmentation network."""

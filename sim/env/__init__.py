@@ -1,3 +1,1 @@
-"""The Gymnasium environment: world, camera and task in one loop; the shortest-path oracle.
-
-Imports episodes and the rooms below it."""
+"""The Gymnasium environment: world, camera and task in one loop; the shortest-path oracle."""

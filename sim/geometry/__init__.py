@@ -1,3 +1,1 @@
-"""Plane geometry without MuJoCo: poses, grids over the floor, convex bodies.
-
-Imports `sim.errors` only."""
+"""Plane geometry without MuJoCo: poses, grids over the floor, convex bodies."""

@@ -3,8 +3,6 @@
 The order of the work: floor_plan and openings, structure (walls, doors, windows), furnishing (by means of furniture and
 placement), then mjcf writes the specification. `split_recipes` lists how each shipped house is generated; `house_list`
 reads and writes `houses.json`, the list of a split whose houses are not shipped as files.
-
-Imports world (which checks the houses), houses, geometry and the base modules of `sim`.
 """
 
 from __future__ import annotations

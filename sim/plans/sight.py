@@ -20,7 +20,7 @@ _NO_GOAL = -2
 
 
 class MapLayers(Protocol):
-    """The layers that a look changes: those of `stubborn.navmap.NavMap` with these names, on `frame`."""
+    """The layers that a look changes: those of `stubborn.mapping.navmap.NavMap` with these names, on `frame`."""
 
     frame: GridFrame
     frames_in_view: NDArray[np.uint16]

@@ -208,7 +208,7 @@ def enter_frame(
         flags: (rows, cols) of `cast_rays`.
         touched: (n,) the cells whose flags are not 0.
         count: so many of them.
-        frames_in_view: (rows, cols) layers of `stubborn.navmap.NavMap`, as the next seven.
+        frames_in_view: (rows, cols) layers of `stubborn.mapping.navmap.NavMap`, as the next seven.
         obstacle_evidence: see above.
         seen_obstacle: see above.
         seen_at_eye_level: see above.

@@ -1,3 +1,1 @@
-"""Sensors of the robot and their noise; the camera and its rendering profiles.
-
-Imports the rooms robot, houses and geometry."""
+"""Sensors of the robot and their noise; the camera and its rendering profiles."""

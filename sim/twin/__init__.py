@@ -1,4 +1,1 @@
-"""The 2-D twin of the environment: agents of `stubborn` in house plans, for training and for tests of explorers.
-
-It imports `sim.plans` and `stubborn`, and never MuJoCo.
-"""
+"""The 2-D twin of the environment: agents of `stubborn` in house plans, for training and for tests of explorers."""

@@ -25,7 +25,7 @@ from sim.plans.sight import PlanCamera, SightConfig
 from stubborn.agent import AgentConfig
 from stubborn.exploration.patches import or_of_blocks
 from stubborn.mapping.collision_marks import CollisionConfig, is_collision
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
@@ -33,7 +33,7 @@ from stubborn.planning.untrap import Untrap, UntrapConfig
 
 T = TypeVar("T")
 LAYERS = ("seen_obstacle", "in_view", "visited", "trail", "pessimistic_marks", "optimistic_marks", "target")
-"""The layers of an observation, in their order: those of `stubborn.navmap.NavMap`; `in_view` is True where
+"""The layers of an observation, in their order: those of `stubborn.mapping.navmap.NavMap`; `in_view` is True where
 `frames_in_view` is not 0, `target` where `score_max` is above 0.5."""
 _PLANNED_ON = ("seen_obstacle", "pessimistic_marks", "visited", "trail")
 """The layers that routes depend on; a plan has no drops."""

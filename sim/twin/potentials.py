@@ -32,10 +32,10 @@ from stubborn.exploration.explorer import Ground
 from stubborn.exploration.frontiers import Frontiers
 from stubborn.exploration.patches import MapPatch, patch_around
 from stubborn.mapping.collision_marks import CollisionConfig, mark_visited
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.masks import large_parts, nearest, numbered_parts
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig
-from stubborn.raster import large_parts, nearest, numbered_parts
 
 _NEAR_CELLS = 4
 """A frontier cell of the map belongs to the free cell of the plan that is nearest, at most this far away: 0.2 m."""

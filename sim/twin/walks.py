@@ -19,8 +19,8 @@ from sim.plans.plan import Plan
 from sim.plans.robot import PlanRobot
 from sim.plans.sight import PlanCamera
 from sim.task.metrics import EXPLORED_SHARE
-from stubborn.navmap import NavMap
-from stubborn.raster import connected
+from stubborn.mapping.masks import connected
+from stubborn.mapping.navmap import NavMap
 
 REACHED_S = 0.4
 """A leg has ended this near its end, in seconds at one metre a second."""

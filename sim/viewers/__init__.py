@@ -1,3 +1,1 @@
-"""Viewers of running episodes: video, window, Rerun log, terminal.
-
-Imports env and the rooms below it."""
+"""Viewers of running episodes: video, window, Rerun log, terminal."""

@@ -1,4 +1,1 @@
-"""A page in the browser: watch an agent live, drive the robot, look at finished runs (`python -m sim.web`).
-
-Imports composition and the rooms below it. Needs the extra `web`.
-"""
+"""A page in the browser: watch an agent live, drive the robot, look at finished runs (`python -m sim.web`)."""

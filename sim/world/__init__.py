@@ -1,3 +1,1 @@
-"""A house and a robot as one compiled model: motion, free space, geodesic distances, house checks.
-
-Imports the rooms houses, robot, sensors and geometry."""
+"""A house and a robot as one compiled model: motion, free space, geodesic distances, house checks."""

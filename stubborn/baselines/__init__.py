@@ -1,4 +1,1 @@
-"""Baselines that the Stubborn agent is compared with.
-
-Imports the agent and its parts.
-"""
+"""Baselines that the Stubborn agent is compared with."""

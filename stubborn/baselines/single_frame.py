@@ -6,8 +6,8 @@ from typing import Any
 
 from sim.interface import MAX_STEPS
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.verification import AcceptAll, Verifier
 from stubborn.mapping.object_layers import LatestFrame
-from stubborn.target.verification import AcceptAll, Verifier
 
 
 def single_frame_agent(

@@ -1,4 +1,1 @@
-"""Explorers: they choose where to look for the goal while there is no candidate.
-
-Imports planning.
-"""
+"""Explorers: they choose where to look for the goal while there is no candidate."""

@@ -23,7 +23,7 @@ from jaxtyping import Bool
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import FreeSpace, Goal, Planner, Route
 
 Search = Generator[Goal, Route | None, Route | None]

@@ -15,9 +15,9 @@ from sim.interface import CameraModel, ConfigError
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.places import LookAround, MapCells
+from stubborn.mapping.masks import large_parts
 from stubborn.planning.planner import Goal
 from stubborn.planning.steering import to_nearest_part
-from stubborn.raster import large_parts
 
 
 @dataclass(frozen=True, kw_only=True)

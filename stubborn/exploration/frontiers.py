@@ -15,9 +15,9 @@ from jaxtyping import Bool
 from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
 from stubborn.exploration.explorer import Ground, Search
-from stubborn.navmap import CollisionLayer
+from stubborn.mapping.masks import distance_to, farther_than
+from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import FreeSpace, Goal
-from stubborn.raster import distance_to, farther_than
 
 
 def frontier_cells(

@@ -15,7 +15,7 @@ from jaxtyping import Float64
 
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 _RAYS = 72
 _STEP_M = 0.05  # a cell: longer steps would pass through thin walls

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 LAYERS = ("obstacle", "seen", "trail", "robot")
 """The channels of `MapPatch.channels` before those of the goal categories."""

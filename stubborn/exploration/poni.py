@@ -21,8 +21,8 @@ from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.frontiers import Frontiers, spend_around
 from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
+from stubborn.mapping.masks import connected, large_parts
 from stubborn.planning.planner import Goal
-from stubborn.raster import connected, large_parts
 
 if TYPE_CHECKING:
     from stubborn.exploration.poni_net import Predictor

@@ -20,7 +20,7 @@ from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.frontiers import frontier_cells
 from stubborn.exploration.patches import MapPatch, or_of_blocks, patch_around
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 GEOMETRY = ("obstacle", "seen", "trail", "frontier")
 """The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells beside one that was never seen.

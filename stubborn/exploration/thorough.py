@@ -17,9 +17,9 @@ from stubborn.exploration.corners import CornerConfig, CornerExplorer
 from stubborn.exploration.explorer import Exploration, Ground, Search
 from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.places import LookAround, MapCells, Place, UnseenArea
+from stubborn.mapping.masks import distance_to, large_parts
 from stubborn.planning.planner import FreeSpace, Goal
 from stubborn.planning.steering import to_nearest_part
-from stubborn.raster import distance_to, large_parts
 
 
 @dataclass(frozen=True, kw_only=True)

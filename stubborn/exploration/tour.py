@@ -30,9 +30,9 @@ from stubborn.exploration.glance import GlanceConfig, Glancer
 from stubborn.exploration.patches import or_of_blocks
 from stubborn.exploration.places import MapCells
 from stubborn.exploration.potentials import PotentialConfig, Potentials
-from stubborn.navmap import CollisionLayer
+from stubborn.mapping.masks import farther_than, numbered_parts
+from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
-from stubborn.raster import farther_than, numbered_parts
 
 _STAYED_M = 0.4 * FORWARD_M
 """A forward that moves the robot less has left it where it was."""

@@ -1,4 +1,1 @@
-"""Map layers from observations: obstacles, collision marks, object scores.
-
-Imports `stubborn.navmap` and `stubborn.raster`.
-"""
+"""Map layers from observations: obstacles, collision marks, object scores."""

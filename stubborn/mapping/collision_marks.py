@@ -17,7 +17,7 @@ from jaxtyping import Bool
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, Action, ConfigError
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 
 
 @dataclass(frozen=True, kw_only=True)

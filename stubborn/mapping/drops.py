@@ -18,8 +18,8 @@ from jaxtyping import Bool, Float32, Int
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.projection import Rays
-from stubborn.navmap import NavMap
 
 _EVERY_COLUMN = 2
 """Columns that are used; neighbours are 3 cm apart at `DropConfig.range_m` with the default camera and stride."""

@@ -11,12 +11,12 @@ from jaxtyping import Bool, Float32, Int, UInt32
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
-from stubborn.frame_kernels import goal_bits
+from stubborn.kernels.frames import goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 from stubborn.mapping.projection import Rays, in_range, sight_window_cells
-from stubborn.navmap import NavMap
 
 _GOAL_CHANNELS = np.array([MPCAT40_ID[goal] - 1 for goal in GOAL_CATEGORIES], np.int64)
 

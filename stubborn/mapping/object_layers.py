@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from stubborn.frame_kernels import highest_scores
-from stubborn.navmap import NavMap
+from stubborn.kernels.frames import highest_scores
+from stubborn.mapping.navmap import NavMap
 
 
 class ObjectLayers(Protocol):

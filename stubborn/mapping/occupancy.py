@@ -18,14 +18,14 @@ from jaxtyping import Bool, Float32, Int, UInt8
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, ConfigError
-from stubborn.frame_kernels import (
+from stubborn.kernels.frames import (
     cells_seen_past,
     enter_evidence,
     nearest_down_columns,
     shows_no_noise,
     smooth_surfaces,
 )
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,7 +169,7 @@ class SightLines:
         return cells_seen_past(rows, cols, *self.geometry(frame), drop_m, *range_m, margin_m)
 
     def geometry(self, frame: GridFrame) -> tuple[tuple[float, ...], tuple[float, ...], Float32[np.ndarray, "h w"]]:
-        """Returns `grid`, `sight` and `nearest_m` of `stubborn.frame_kernels.sees_past`."""
+        """Returns `grid`, `sight` and `nearest_m` of `stubborn.kernels.frames.sees_past`."""
         cos, sin = math.cos(self.pose.yaw_rad), math.sin(self.pose.yaw_rad)
         steps = [(float(ray[0]), float(ray[0] - ray[1])) for ray in (self.up, self.left)]
         grid = (*frame.origin_xy_m, frame.cell_m)

@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float32, Int32, UInt8
 from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel
-from stubborn.frame_kernels import cells_of_pixels, count_obstacle_points, ground_points
+from stubborn.kernels.frames import cells_of_pixels, count_obstacle_points, ground_points
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,1 @@
-"""Routes over the map, the next action, and the measures against collisions.
-
-Imports mapping.
-"""
+"""Routes over the map, the next action, and the measures against collisions."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool
 
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.untrap import UntrapConfig
 
 

@@ -12,10 +12,10 @@ from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import FORWARD_M, ConfigError
-from stubborn.grid_kernels import distance_within, speeds
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.kernels.grids import distance_within, speeds
+from stubborn.mapping.masks import connected, farther_than
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import ProvenGround
-from stubborn.raster import connected, farther_than
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,9 +11,9 @@ from jaxtyping import Bool, Float32, Float64
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, wrap_angle
-from stubborn.grid_kernels import bilinear, sweep
+from stubborn.kernels.grids import bilinear, sweep
+from stubborn.mapping.masks import connected
 from stubborn.planning.planner import FreeSpace, PlanningConfig, Route
-from stubborn.raster import connected
 
 
 def next_action(route: Route, pose: Pose, config: PlanningConfig) -> Action:

@@ -1,4 +1,1 @@
-"""Segmenters: from an observation to scores of the goal category.
-
-Imports nothing else of `stubborn`; PyTorch only in the network's modules.
-"""
+"""Segmenters: from an observation to scores of the goal category."""

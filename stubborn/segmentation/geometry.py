@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from sim.interface import CameraModel, ConfigError
-from stubborn.surface_kernels import fill_surface_channels
+from stubborn.kernels.surfaces import fill_surface_channels
 
 CHANNELS: tuple[str, ...] = ("inverse_depth", "valid", "height", "right", "up", "forward")
 """Order of the channels: 1/m, 1 where the depth is in the camera's range, metres above the floor, and the components

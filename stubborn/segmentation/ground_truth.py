@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import MPCAT40, MPCAT40_ID, ConfigError, Observation, Scores, SegmenterSpec
-from stubborn.frame_kernels import scores_of_category
+from stubborn.kernels.frames import scores_of_category
 
 STRIDE_PX = 4
 """Edge of the image block of one posterior."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 LAYER_OF = {
     "#": ("seen_obstacle", "seen_at_eye_level"),

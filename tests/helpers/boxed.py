@@ -6,7 +6,7 @@ import numpy as np
 
 from sim.geometry.grid import GridFrame
 from stubborn.mapping.collision_marks import CollisionConfig, mark_visited
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.ground import START
 
 FRAME = GridFrame.around_start(240, 0.05)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from stubborn.exploration.explorer import Explorer, Ground, run_explorer
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig, Route
 

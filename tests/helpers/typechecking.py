@@ -18,11 +18,9 @@ CHECKED = (
     "sim.geometry.grid",
     "stubborn.exploration",
     "stubborn.mapping",
-    "stubborn.navmap",
     "stubborn.planning",
-    "stubborn.raster",
     "stubborn.segmentation",
-    "stubborn.target",
+    "stubborn.detection",
 )
 """Modules and packages that are checked. `sim.geometry.fast_marching_kernels` is not: numba compiles its functions."""
 

@@ -39,11 +39,11 @@ from sim.robot.foreign import _read_sidecar
 from sim.task.trajectory import read_trajectory, write_trajectory
 from sim.twin.potential_files import SampleSet, write_samples
 from sim.twin.potentials import Potentials, Sample, SampleConfig
+from stubborn.detection.verification import FOLDER, FittedVerifier
 from stubborn.exploration.patches import MapPatch
 from stubborn.segmentation.checkpoints import load_network, read_checkpoint, save_network
 from stubborn.segmentation.dataset import read_shard, stored_block_px
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
-from stubborn.target.verification import FOLDER, FittedVerifier
 from tests.helpers.worlds import room
 from tests.sim.task.test_trajectory import walked
 

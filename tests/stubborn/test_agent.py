@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from sim.interface import Action, CameraModel, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
-from stubborn import agents, draw
+from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.drawing import map_painter
 from stubborn.planning.planner import PlanningConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, Trace, boxes_from_plan, run_episode
@@ -114,20 +115,20 @@ def test_the_same_house_turned_by_the_start_heading_is_still_solved():
 def test_the_picture_of_a_map_shows_robot_target_and_legend_and_changes_nothing():
     _, agent = run(APARTMENT, (1.2, 0.7, 1.9), "chair")
     before = agent.navmap.seen_obstacle.copy()
-    picture = draw.draw_map(agent, size_px=480)
+    picture = map_painter.draw_map(agent, size_px=480)
     assert picture.dtype == np.uint8
     assert picture.shape[0] == 480
     assert picture.shape[1] > 480
-    for colour in (draw.SEEN_OBSTACLE, draw.CANDIDATE, draw.TRAIL):
+    for colour in (map_painter.SEEN_OBSTACLE, map_painter.CANDIDATE, map_painter.TRAIL):
         assert (picture[:, :480] == colour).all(axis=2).any()
-    assert draw.draw_map(agent, whole=True).shape[0] == 720
+    assert map_painter.draw_map(agent, whole=True).shape[0] == 720
     np.testing.assert_array_equal(agent.navmap.seen_obstacle, before)
 
 
 def test_a_picture_can_be_drawn_before_the_first_step():
     agent = agents.make("stubborn", camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
-    assert draw.draw_map(agent).ndim == 3
+    assert map_painter.draw_map(agent).ndim == 3
 
 
 class Smeared:

@@ -22,17 +22,17 @@ from sim.interface import (
 )
 from stubborn import agents
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.classifiers import Features
+from stubborn.detection.fusion import Fusion
+from stubborn.detection.look import LookConfig
+from stubborn.detection.seeker import TargetSeeker
+from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
+from stubborn.detection.verification import AcceptAll
 from stubborn.exploration.corners import CornerConfig, CornerExplorer
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.object_layers import AllFrames, LatestFrame
 from stubborn.planning.untrap import UntrapConfig
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target.classifiers import Features
-from stubborn.target.fusion import Fusion
-from stubborn.target.look import LookConfig
-from stubborn.target.seeker import TargetSeeker
-from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
-from stubborn.target.verification import AcceptAll
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
 PLAN = """
@@ -316,8 +316,8 @@ def test_an_unknown_name_or_option_is_refused_with_what_there_is():
 
 def test_importing_the_agents_imports_neither_mujoco_nor_the_rest_of_sim():
     code = (
-        "import sys, stubborn.agents, stubborn.agent, stubborn.draw, stubborn.segmentation.ground_truth\n"
-        "import stubborn.target.verification, stubborn.exploration.frontier, stubborn.baselines.single_frame\n"
+        "import sys, stubborn.agents, stubborn.drawing.map_painter, stubborn.segmentation.ground_truth\n"
+        "import stubborn.detection.verification, stubborn.exploration.frontier, stubborn.baselines.single_frame\n"
         "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL', 'sklearn')]\n"
         "allowed = ('sim.interface', 'sim.errors', 'sim.geometry', 'sim.reading')\n"
         "ours = [m for m in sys.modules if m.startswith('sim.') and not m.startswith(allowed)]\n"

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, CameraModel
-from stubborn.frame_kernels import shows_no_noise
-from stubborn.grid_kernels import bilinear, distance_within, speeds
+from stubborn.kernels.frames import shows_no_noise
+from stubborn.kernels.grids import bilinear, distance_within, speeds
+from stubborn.mapping.masks import connected, distance_to, farther_than
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import FrameScores
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces
 from stubborn.mapping.projection import Rays, in_range, sight_window_cells
-from stubborn.navmap import NavMap
-from stubborn.raster import connected, distance_to, farther_than
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
 CAMERA = CameraModel()

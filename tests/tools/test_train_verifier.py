@@ -16,10 +16,10 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, load_split, write_split
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
+from stubborn.detection.classifiers import Features
+from stubborn.detection.seeker import TargetSeeker
+from stubborn.detection.verification import FOLDER, FittedVerifier
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target.classifiers import Features
-from stubborn.target.seeker import TargetSeeker
-from stubborn.target.verification import FOLDER, FittedVerifier
 from tests.helpers.worlds import room, with_box
 from tools import episode_logs, train_verifier
 

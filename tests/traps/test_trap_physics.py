@@ -17,7 +17,7 @@ from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.interface import FORWARD_M, Action
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.sampling import sample
 from tools.trap_report import make_agent
 from tools.trap_trial import Trial, run_trial

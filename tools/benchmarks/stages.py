@@ -19,7 +19,7 @@ from sim.interface import Action, Agent
 from sim.world.freespace import FreeSpace
 from sim.world.world import World
 from stubborn import agents
-from stubborn.target.verification import verifier_for
+from stubborn.detection.verification import verifier_for
 from tools.benchmarks.calibration import Calibrator
 
 SENSORS = ("depth", "semantic")

@@ -14,9 +14,9 @@ from sim.errors import ConfigError
 from sim.interface import POSE_SENSORS, AgentSpec, CameraModel
 from sim.run import entry
 from stubborn.agent import StubbornAgent
+from stubborn.detection.track_seeker import TrackSeeker
+from stubborn.detection.verification import AcceptAll
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target.track_seeker import TrackSeeker
-from stubborn.target.verification import AcceptAll
 from tests.helpers import agents
 from tests.helpers.worlds import room, with_box
 

@@ -14,8 +14,8 @@ from sim.composition.options import RunOptions
 from sim.composition.run_config import configuration_of, record_of, verifier_of
 from sim.configuration import as_json, field_paths, with_fields
 from sim.run import entry
-from stubborn import exploration, target
-from stubborn.target.verification import FittedVerifier
+from stubborn import detection, exploration
+from stubborn.detection.verification import FittedVerifier
 
 SPLIT = {"name": "val", "version": "1", "sha256": "0"}
 
@@ -101,7 +101,7 @@ def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
 
 def test_the_record_has_a_checksum_of_each_file_that_the_agent_reads(tmp_path: Path) -> None:
     weights = Path(str(exploration.__file__)).parent / "weights" / "poni.safetensors"
-    fusion = Path(str(target.__file__)).parent / "fusions" / "rednet.json"
+    fusion = Path(str(detection.__file__)).parent / "fusions" / "rednet.json"
     changed = tmp_path / "fusion.json"
     changed.write_bytes(fusion.read_bytes() + b"\n")
 

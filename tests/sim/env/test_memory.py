@@ -68,7 +68,7 @@ MAPS = """
 import numpy as np
 
 from sim.geometry.grid import GridFrame
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.sim.env.test_memory import resident_mb
 
 frame = GridFrame.around_start(1440, 0.05)

@@ -44,7 +44,7 @@ def test_kernels_bring_numba_when_they_are_called_and_not_when_they_are_imported
     code = """
 import sys
 import numpy as np
-from stubborn.grid_kernels import distance_within
+from stubborn.kernels.grids import distance_within
 print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0], "numba" in sys.modules)
 """
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout

@@ -5,7 +5,7 @@ import pytest
 import skfmm
 
 from sim.geometry.fast_marching import distances, travel_times
-from stubborn.raster import connected, distance_to
+from stubborn.mapping.masks import connected, distance_to
 
 CELL_M = 0.05
 

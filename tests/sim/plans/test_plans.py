@@ -23,7 +23,7 @@ from sim.robot.config import RobotConfig
 from sim.task.metrics import goal_share
 from stubborn.mapping.collision_marks import square_ahead
 from stubborn.mapping.mapper import Mapper, MappingConfig
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.worlds import room, two_storeys, with_box
 
 MAP = GridFrame.around_start(480, 0.05)

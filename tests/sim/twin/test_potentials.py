@@ -21,8 +21,8 @@ from sim.twin.potential_files import SYMMETRIES, Batch, SampleSet, held_back, wr
 from sim.twin.potentials import Sample, SampleConfig, Truth, area_potential, sample_of, samples_of
 from sim.twin.walks import explore, reachable
 from stubborn.exploration.patches import LAYERS
-from stubborn.navmap import NavMap
-from stubborn.raster import distance_to
+from stubborn.mapping.masks import distance_to
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.asciimap import mask_of
 from tests.helpers.ground import ground
 from tests.helpers.worlds import room, with_box

@@ -12,7 +12,7 @@ from sim.plans.plan import Plan
 from sim.plans.sight import PlanCamera
 from sim.task.metrics import EXPLORED_SHARE
 from sim.twin.walks import search
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.worlds import room, with_box
 
 

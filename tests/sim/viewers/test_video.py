@@ -43,7 +43,7 @@ from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, perceive
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.viewers.words import Outcome, explain_end
 from sim.world.world import World
-from stubborn.draw import AgentMapPainter
+from stubborn.drawing.map_painter import AgentMapPainter
 from tests.helpers import browser
 from tests.helpers.worlds import room, with_box
 

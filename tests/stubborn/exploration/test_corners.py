@@ -9,7 +9,7 @@ from sim.interface import Action, CameraModel, ConfigError
 from stubborn.exploration.corners import CornerConfig, CornerExplorer, corner_xy_m
 from stubborn.exploration.explorer import Explorer
 from stubborn.exploration.thorough import ThoroughConfig
-from stubborn.navmap import CollisionLayer
+from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.steering import next_action
 from tests.helpers.boxed import FRAME, all_seen, box_in, close_quarter, empty
 from tests.helpers.ground import PLANNER, START, ground, route_of

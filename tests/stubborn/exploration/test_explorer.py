@@ -7,9 +7,9 @@ import numpy as np
 from sim.interface import Action, CameraModel, RobotModel
 from stubborn.agent import AgentConfig, StubbornAgent
 from stubborn.exploration.explorer import Exploration, Ground, run_explorer
-from stubborn.navmap import CollisionLayer
+from stubborn.mapping.masks import distance_to
+from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
-from stubborn.raster import distance_to
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.boxed import all_seen, box_in, empty
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode

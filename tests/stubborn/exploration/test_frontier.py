@@ -8,7 +8,7 @@ from stubborn import agents
 from stubborn.agent import StubbornAgent
 from stubborn.exploration.frontier import FrontierConfig, FrontierExplorer
 from stubborn.exploration.frontiers import frontier_cells
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.asciimap import grid_of
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode

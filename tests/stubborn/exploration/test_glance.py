@@ -8,7 +8,7 @@ from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, CameraModel, ConfigError, wrap_angle
 from stubborn.exploration.glance import GlanceConfig, Glancer
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 FRAME = GridFrame.around_start(240, 0.05)
 START = Pose(0.0, 0.0, 0.0)

@@ -11,7 +11,7 @@ from stubborn.exploration.corners import CornerExplorer
 from stubborn.exploration.explorer import Explorer
 from stubborn.exploration.patches import patch_around
 from stubborn.mapping.mapper import Mapper, MappingConfig
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, run_episode
 

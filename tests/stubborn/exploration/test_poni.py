@@ -15,7 +15,7 @@ from sim.interface import GOAL_CATEGORIES, ConfigError
 from stubborn.exploration.patches import LAYERS, patch_around
 from stubborn.exploration.poni import PoniConfig, PoniExplorer
 from stubborn.exploration.poni_net import FILES, MAPS, SHIPPED, PoniNet, PoniNetConfig, Predictor
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from stubborn.network_files import read_weights
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.ground import ground, route_of

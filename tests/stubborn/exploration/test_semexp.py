@@ -25,7 +25,7 @@ from stubborn.exploration.semexp_net import (
     as_tensors,
     scores,
 )
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.ground import ground, route_of
 

@@ -9,7 +9,7 @@ from stubborn.exploration.corners import CornerConfig
 from stubborn.exploration.explorer import run_explorer
 from stubborn.exploration.glance import GlanceConfig
 from stubborn.exploration.thorough import ThoroughConfig, ThoroughExplorer
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.boxed import FRAME, all_seen, box_in, close_quarter, empty
 from tests.helpers.ground import ground, route_of
 

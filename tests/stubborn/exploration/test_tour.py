@@ -24,7 +24,7 @@ from stubborn.exploration.tour import (
     _Stop,
     first_of_best_order,
 )
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
 from tests.helpers.ground import ground, route_of

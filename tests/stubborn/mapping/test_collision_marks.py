@@ -17,7 +17,7 @@ from stubborn.mapping.collision_marks import (
     mark_visited,
     square_ahead,
 )
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import no_ground, visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig
 

@@ -10,7 +10,7 @@ from sim.geometry.pose import Pose
 from sim.interface import CameraModel, RobotModel
 from stubborn.mapping.drops import DropConfig
 from stubborn.mapping.mapper import Mapper, MappingConfig
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 
 CAMERA = CameraModel()
 FRAME = GridFrame.around_start(400, 0.05)

@@ -7,7 +7,7 @@ from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError, RobotModel, Scores
 from stubborn.mapping.mapper import Mapper, MappingConfig, note_sighting
-from stubborn.navmap import NavMap
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel()

@@ -9,9 +9,9 @@ from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import CameraModel, RobotModel, Scores
 from stubborn.mapping.mapper import Mapper, MappingConfig
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.object_layers import LatestFrame
 from stubborn.mapping.occupancy import OccupancyConfig
-from stubborn.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel(width_px=160, height_px=120)

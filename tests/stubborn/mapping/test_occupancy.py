@@ -9,8 +9,8 @@ from sim.interface import CameraModel, ConfigError, RobotModel, Scores
 from sim.sensors.depth_noise import NoisyDepth
 from sim.sensors.noise import get_noise
 from stubborn.mapping.mapper import Mapper, MappingConfig
+from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.occupancy import OccupancyConfig, Surfaces
-from stubborn.navmap import NavMap
 from tests.helpers.gridworld import Box, GridWorld
 
 CAMERA = CameraModel()

@@ -9,7 +9,7 @@ from sim.geometry.fast_marching import travel_times
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import TURN_RAD, Action, ConfigError
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Goal, Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action, short_term_turn

@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Int
 
-from stubborn.navmap import NavMap
-from stubborn.raster import numbered_parts
+from stubborn.mapping.masks import numbered_parts
+from stubborn.mapping.navmap import NavMap
 
 
 @dataclass(frozen=True)

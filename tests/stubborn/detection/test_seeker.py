@@ -6,14 +6,14 @@ import pytest
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError, SegmenterSpec, SuccessRule
+from stubborn.detection.candidates import CandidateParts
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.seeker import TargetSeeker, _seen_best, _seen_best_of_each
+from stubborn.detection.verification import AcceptAll, Verifier
 from stubborn.mapping.mapper import Sighting
-from stubborn.navmap import NavMap
-from stubborn.raster import distance_to, nearest, sight_is_clear
-from stubborn.target.candidates import CandidateParts
-from stubborn.target.classifiers import Features
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.seeker import TargetSeeker, _seen_best, _seen_best_of_each
-from stubborn.target.verification import AcceptAll, Verifier
+from stubborn.mapping.masks import distance_to, nearest, sight_is_clear
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.asciimap import map_of
 from tests.helpers.ground import BOTH_LAYERS, PLANNER, whole
 

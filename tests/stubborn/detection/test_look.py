@@ -9,13 +9,13 @@ import pytest
 
 from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, MPCAT40, ConfigError, SegmenterSpec, SuccessRule
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.evidence import Evidence, EvidenceConfig
+from stubborn.detection.fusion import Fusion
+from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.viewpoints import ViewpointFinder
+from stubborn.mapping.masks import nearest
 from stubborn.planning.planner import Route
-from stubborn.raster import nearest
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.evidence import Evidence, EvidenceConfig
-from stubborn.target.fusion import Fusion
-from stubborn.target.look import LookConfig, Verdicts, look_at
-from stubborn.target.viewpoints import ViewpointFinder
 from tests.helpers.asciimap import map_of
 from tests.helpers.ground import BOTH_LAYERS, PLANNER
 

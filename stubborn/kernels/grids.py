@@ -1,4 +1,4 @@
-"""Compiled loops over the cells of a grid, for `stubborn.raster`, `stubborn.planning` and `stubborn.mapping`.
+"""Compiled loops over the cells of a grid, for `stubborn.mapping.masks`, `stubborn.planning` and `stubborn.mapping`.
 
 They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
 """

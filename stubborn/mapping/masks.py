@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from jaxtyping import Bool, Float32, Int
 
-from stubborn.grid_kernels import distance_within
+from stubborn.kernels.grids import distance_within
 
 Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 """Rows and columns."""

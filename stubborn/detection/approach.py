@@ -9,11 +9,11 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from sim.geometry.pose import Pose
-from stubborn.navmap import NavMap
+from stubborn.detection.viewpoints import LastResort, ViewpointFinder, Viewpoints
+from stubborn.mapping.masks import nearest
+from stubborn.mapping.navmap import NavMap
 from stubborn.planning.planner import Goal, Route
 from stubborn.planning.steering import route_end
-from stubborn.raster import nearest
-from stubborn.target.viewpoints import LastResort, ViewpointFinder, Viewpoints
 
 
 @dataclass(frozen=True)

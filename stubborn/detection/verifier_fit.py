@@ -22,8 +22,8 @@ from sklearn.naive_bayes import GaussianNB
 from sklearn.preprocessing import StandardScaler
 
 from sim.interface import GOAL_CATEGORIES, ConfigError
-from stubborn.target.classifiers import INPUTS, Features
-from stubborn.target.verification import METHODS, FittedVerifier
+from stubborn.detection.classifiers import INPUTS, Features
+from stubborn.detection.verification import METHODS, FittedVerifier
 
 FOLDS = 5
 SAME_PLACE_M = 2.0
@@ -96,7 +96,7 @@ def _classifiers(
     truth: Bool[np.ndarray, " n"],
     separate: Sequence[str],
 ) -> dict[str, Any]:
-    """Returns the parameters of one method as `stubborn.target.verification` reads them.
+    """Returns the parameters of one method as `stubborn.detection.verification` reads them.
 
     Args:
         method: one of `METHODS`.

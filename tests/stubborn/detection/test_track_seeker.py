@@ -13,15 +13,15 @@ from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, MPCAT40_ID, Action, ConfigError, Observation, RobotModel, Scores, SegmenterSpec
 from stubborn import agents
 from stubborn.agent import StubbornAgent
+from stubborn.detection import track_seeker
+from stubborn.detection.approach import Approach
+from stubborn.detection.fusion import Fusion
+from stubborn.detection.look import LookConfig
+from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
+from stubborn.detection.tracks import TrackConfig, Tracks
+from stubborn.detection.viewpoints import LastResort
 from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target import track_seeker
-from stubborn.target.approach import Approach
-from stubborn.target.fusion import Fusion
-from stubborn.target.look import LookConfig
-from stubborn.target.track_seeker import TrackSeeker, TrackSeekerConfig
-from stubborn.target.tracks import TrackConfig, Tracks
-from stubborn.target.viewpoints import LastResort
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
 ROOM = boxes_from_plan(

@@ -6,7 +6,7 @@ other, and the share of surface says whether there is an object at all. Views ar
 of distance; the average is sharpened, the more the more views there are, and each category has an offset.
 
 The parameters describe the errors of one kind of segmentation. `tools/train_tracks.py` fits them to tracks in houses
-with furniture that the network has not seen, and writes `stubborn/target/fusions/<kind>.json`.
+with furniture that the network has not seen, and writes `stubborn/detection/fusions/<kind>.json`.
 """
 
 from __future__ import annotations

@@ -18,8 +18,8 @@ from jaxtyping import Bool, Float, Float32, Int
 from torch import Tensor
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
-from stubborn.target.evidence import EvidenceConfig
-from stubborn.target.fusion import IS_SURFACE, SURFACES, Fusion
+from stubborn.detection.evidence import EvidenceConfig
+from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
 
 FOLDS = 5
 LEAST_PIXELS = 40

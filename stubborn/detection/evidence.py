@@ -1,7 +1,7 @@
 """The views from which objects were seen, and the class probabilities that follow from them.
 
 Frames of one view (a sector of directions and a range of distances) err in the same way, so they are averaged. Views
-that differ are fused by `stubborn.target.fusion`.
+that differ are fused by `stubborn.detection.fusion`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float32, Float64, Int
 
 from sim.interface import ConfigError
-from stubborn.target.fusion import IS_SURFACE, Fusion
+from stubborn.detection.fusion import IS_SURFACE, Fusion
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,10 +8,10 @@ import pytest
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID
+from stubborn.detection.evidence import Evidence, EvidenceConfig
+from stubborn.detection.fusion import SURFACES, Fusion
+from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
-from stubborn.target.evidence import Evidence, EvidenceConfig
-from stubborn.target.fusion import SURFACES, Fusion
-from stubborn.target.tracks import TrackConfig, Tracks
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld
 
 WALL = Box((4.0, 4.2), (-3.0, 3.0), (0.0, 2.5))

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from sim.interface import SuccessRule
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.seeker import TargetSeeker
 from stubborn.mapping.mapper import Sighting
-from stubborn.navmap import NavMap
-from stubborn.target.classifiers import Features
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.seeker import TargetSeeker
+from stubborn.mapping.navmap import NavMap
 from tests.helpers.asciimap import map_of
 from tests.helpers.ground import BOTH_LAYERS, PLANNER
-from tests.stubborn.target.test_seeker import EXACT, RefuseAll
+from tests.stubborn.detection.test_seeker import EXACT, RefuseAll
 
 
 class ByMean:

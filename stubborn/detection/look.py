@@ -10,11 +10,11 @@ from jaxtyping import Bool, Float, Float32
 
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
-from stubborn.navmap import NavMap
-from stubborn.raster import NearestCells
-from stubborn.target.approach import Approach, approach_to
-from stubborn.target.evidence import Evidence
-from stubborn.target.viewpoints import ViewpointFinder
+from stubborn.detection.approach import Approach, approach_to
+from stubborn.detection.evidence import Evidence
+from stubborn.detection.viewpoints import ViewpointFinder
+from stubborn.mapping.masks import NearestCells
+from stubborn.mapping.navmap import NavMap
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,10 +17,10 @@ from jaxtyping import Bool, Float32, Int, Int16
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
+from stubborn.detection.evidence import Evidence, EvidenceConfig
+from stubborn.detection.fusion import Fusion
+from stubborn.kernels.tracks import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 from stubborn.mapping.projection import Rays
-from stubborn.target.evidence import Evidence, EvidenceConfig
-from stubborn.target.fusion import Fusion
-from stubborn.track_kernels import claim, label_pixels, means_by_track, overlaps_of, regions_of, voxels_of
 
 STRUCTURE = (
     "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",

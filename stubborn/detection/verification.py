@@ -1,7 +1,7 @@
 """Verification of a candidate before a STOP, from four features of its cell (paper: Verification).
 
 The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
-kind of segmentation. They are shipped as `stubborn/target/verifiers/<kind>.json`, which also holds the command that
+kind of segmentation. They are shipped as `stubborn/detection/verifiers/<kind>.json`, which also holds the command that
 fitted them (`tools/train_verifier.py`) and the quality of each method on houses left out. A category that is not in the
 file uses the pooled classifier.
 """
@@ -18,7 +18,7 @@ import msgspec
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
 from sim.reading import Number, convert, read_json
-from stubborn.target.classifiers import Classifier, Features, Logistic, NaiveBayes
+from stubborn.detection.classifiers import Classifier, Features, Logistic, NaiveBayes
 
 FOLDER = Path(__file__).parent / "verifiers"
 """Folder of the shipped parameters."""

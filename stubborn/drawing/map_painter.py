@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sim.geometry.pose import Pose
 from sim.interface import Action, Agent
 from stubborn.agent import StubbornAgent
-from stubborn.canvas import BACKGROUND, ROBOT, ROOM_FOR_TEXT_PX, Canvas, Colour
-from stubborn.navmap import NavMap
+from stubborn.drawing.canvas import BACKGROUND, ROBOT, ROOM_FOR_TEXT_PX, Canvas, Colour
+from stubborn.mapping.navmap import NavMap
 from stubborn.planning.planner import Route
 from stubborn.planning.steering import trace
 

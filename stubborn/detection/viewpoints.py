@@ -14,10 +14,10 @@ import numpy as np
 from jaxtyping import Bool, Float32
 
 from sim.geometry.pose import Pose
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.detection.distances import StopDistances
+from stubborn.mapping.masks import NearestCells, sight_is_clear
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import FreeSpace, Planner
-from stubborn.raster import NearestCells, sight_is_clear
-from stubborn.target.distances import StopDistances
 
 
 class LastResort(enum.Enum):

@@ -12,16 +12,16 @@ from jaxtyping import Bool
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import MAX_STEPS, Observation
+from stubborn.detection.approach import Approach, approach_on
+from stubborn.detection.candidates import CandidateParts
+from stubborn.detection.classifiers import Features
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.verification import RatesCandidates, Verifier
+from stubborn.detection.viewpoints import LastResort, ViewpointFinder
 from stubborn.mapping.mapper import Sighting
-from stubborn.navmap import CollisionLayer, NavMap
+from stubborn.mapping.masks import distance_to
+from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning.planner import Planner
-from stubborn.raster import distance_to
-from stubborn.target.approach import Approach, approach_on
-from stubborn.target.candidates import CandidateParts
-from stubborn.target.classifiers import Features
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.verification import RatesCandidates, Verifier
-from stubborn.target.viewpoints import LastResort, ViewpointFinder
 
 
 class Seeker(Protocol):

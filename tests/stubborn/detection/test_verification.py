@@ -10,9 +10,9 @@ from sklearn.naive_bayes import GaussianNB
 from sklearn.preprocessing import StandardScaler
 
 from sim.interface import GOAL_CATEGORIES, ConfigError, SegmenterSpec
-from stubborn.target.classifiers import Features, Logistic, NaiveBayes
-from stubborn.target.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
-from stubborn.target.verifier_fit import OPEN_SHARE, _candidates, expected_success, fit, judge_by_category
+from stubborn.detection.classifiers import Features, Logistic, NaiveBayes
+from stubborn.detection.verification import METHODS, AcceptAll, FittedVerifier, verifier_for
+from stubborn.detection.verifier_fit import OPEN_SHARE, _candidates, expected_success, fit, judge_by_category
 
 IMPERFECT = SegmenterSpec()
 TRUE = SegmenterSpec(needs_verification=False)

@@ -10,9 +10,9 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40, ConfigError, SegmenterSpec
-from stubborn.target.evidence import EvidenceConfig
-from stubborn.target.fusion import FOLDER, IS_SURFACE, SURFACES, Fusion, fusion_for, read_fusion
-from stubborn.target.fusion_fit import (
+from stubborn.detection.evidence import EvidenceConfig
+from stubborn.detection.fusion import FOLDER, IS_SURFACE, SURFACES, Fusion, fusion_for, read_fusion
+from stubborn.detection.fusion_fit import (
     PARTS,
     Sample,
     _Data,

@@ -1,4 +1,4 @@
-"""Compiled loops over the pixels of one frame, for `stubborn.target.tracks`: labels, regions, voxels, means."""
+"""Compiled loops over the pixels of one frame, for `stubborn.detection.tracks`: labels, regions, voxels, means."""
 
 from __future__ import annotations
 

@@ -22,15 +22,15 @@ from sim.interface import (
     Segmenter,
     wrap_angle,
 )
+from stubborn.detection.approach import Approach, approach_from_here, approach_on
+from stubborn.detection.distances import StopDistances, TargetConfig
+from stubborn.detection.fusion import fusion_for
+from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.tracks import TrackConfig, Tracks
+from stubborn.detection.viewpoints import LastResort, ViewpointFinder
 from stubborn.mapping.mapper import Sighting
-from stubborn.navmap import NavMap
-from stubborn.raster import nearest
-from stubborn.target.approach import Approach, approach_from_here, approach_on
-from stubborn.target.distances import StopDistances, TargetConfig
-from stubborn.target.fusion import fusion_for
-from stubborn.target.look import LookConfig, Verdicts, look_at
-from stubborn.target.tracks import TrackConfig, Tracks
-from stubborn.target.viewpoints import LastResort, ViewpointFinder
+from stubborn.mapping.masks import nearest
+from stubborn.mapping.navmap import NavMap
 
 _STAYED_M = 0.4 * FORWARD_M
 """A robot that moved less than this in a forward was stopped by something."""
@@ -65,7 +65,7 @@ class TrackSeekerConfig:
 
 
 class TrackSeeker:
-    """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.target.tracks` and `look`.
+    """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.detection.tracks` and `look`.
 
     Args:
         config: tracks and decisions.

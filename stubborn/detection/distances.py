@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sim.interface import MAX_STEPS, ConfigError, SegmenterSpec, SuccessRule
-from stubborn.navmap import CollisionLayer
+from stubborn.mapping.navmap import CollisionLayer
 
 TUNED_FOR_M = 1.0
 """The success distance that the distances of `TargetConfig` are for."""

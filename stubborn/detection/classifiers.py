@@ -1,6 +1,6 @@
 """Classifiers that tell true (class 1) from false (class 0) candidates by four features.
 
-`stubborn.target.verifier_fit` fits them with scikit-learn. This module evaluates them with NumPy only.
+`stubborn.detection.verifier_fit` fits them with scikit-learn. This module evaluates them with NumPy only.
 """
 
 from __future__ import annotations

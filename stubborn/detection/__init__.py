@@ -1,0 +1,1 @@
+"""Candidates of the goal: approach, verification, acceptance or rejection."""

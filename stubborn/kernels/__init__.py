@@ -1,0 +1,1 @@
+"""Compiled functions (numba) on frames, grids, surfaces and tracks of objects."""
