@@ -15,7 +15,7 @@ $(STAMP): pyproject.toml setup.py constraints.txt
 	@touch $@
 
 system-libraries:
-	@sh tools/system_libraries.sh
+	@sh tools/maintenance/system_libraries.sh
 
 run: setup
 	@echo "== five episodes, filmed: stubborn-plus looks for objects in apartments that ship with this repository"

@@ -1,8 +1,8 @@
 """Command lines from dataclasses, and the one guard of all commands: what goes wrong is one line on stderr.
 
-`run` is the entry point of every command of `sim` and `tools`. Exit status 2 is an error that the user can correct: a
-wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command takes,
-shows the traceback as well.
+`run` is the entry point of every command, those of `tools` included. Exit status 2 is an error that the user can
+correct: a wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command
+takes, shows the traceback as well.
 
 An option's range is declared with its type (`Seed`, `Count`, `Share`, ...), and is checked here; a file or folder that
 the command writes is an `OutFile` or `OutFolder`, and is refused before any work where it cannot be written.
@@ -16,8 +16,6 @@ import io
 import math
 import os
 import re
-import shlex
-import shutil
 import signal
 import sys
 import threading
@@ -31,6 +29,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 import tyro
 from msgspec import Meta
 
+from sim import invocation
 from sim.errors import ConfigError, ObjectNavError, debug, debugging
 from sim.files import require_writable
 from sim.reading import first_unprintable, printable, reason_of
@@ -74,31 +73,6 @@ def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     if not wanted or not set(wanted) <= set(there_are):
         raise ConfigError(f"{option} must be some of {','.join(there_are)}, got '{text}'.")
     return [name for name in there_are if name in wanted]
-
-
-def python() -> str:
-    """Returns the interpreter as the user would type it: `.venv/bin/python` in the folder above, `python` on the path.
-
-    Links are not followed: the interpreter of a virtual environment is one.
-    """
-    interpreter = Path(sys.executable or "python")
-    with contextlib.suppress(ValueError, OSError):  # OSError: the current folder was removed
-        return str(interpreter.relative_to(Path.cwd()))
-    found = shutil.which("python")
-    return "python" if found is not None and Path(found) == interpreter else str(interpreter)
-
-
-def command(*words: object) -> str:
-    """Returns a command of this interpreter to be copied into a shell, for example of `-m`, `sim.report`, a folder."""
-    return shlex.join([python(), *map(str, words)])
-
-
-def program() -> str:
-    """Returns the command that runs now, without its options: `.venv/bin/python -m sim.web`."""
-    spec = getattr(sys.modules["__main__"], "__spec__", None)
-    if spec is not None:
-        return command("-m", spec.name.removesuffix(".__main__"))
-    return command(sys.argv[0]) if sys.argv[0].endswith(".py") else Path(sys.argv[0]).name
 
 
 def run(
@@ -153,7 +127,7 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
     try:
         with contextlib.redirect_stderr(messages):
             options = (tyro.conf.FlagCreatePairsOff,)
-            return tyro.cli(args_type, prog=program(), args=argv, description=description, config=options)
+            return tyro.cli(args_type, prog=invocation.program(), args=argv, description=description, config=options)
     except SystemExit as stop:
         if stop.code in (0, None):
             raise

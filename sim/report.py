@@ -1,8 +1,8 @@
 """Writes the report of a run, or of several runs side by side, as one HTML page.
 
-    python -m sim.report runs/mine                         # writes runs/mine/report.html
-    python -m sim.report runs/before runs/after            # writes runs/after/report_against_before.html
-    python -m sim.report runs/may runs/june runs/july      # writes runs/july/report_of_3_runs.html
+    stubborn report runs/mine                         # writes runs/mine/report.html
+    stubborn report runs/before runs/after            # writes runs/after/report_against_before.html
+    stubborn report runs/may runs/june runs/july      # writes runs/july/report_of_3_runs.html
 
 For a run with `--record` it has a plan and a picture of each episode, with `--video` its video. No episode is run
 again; the page needs no network.
@@ -48,7 +48,7 @@ def main(args: Args) -> int:
         f"{display.counted(max(len(run.lines) for run in runs), 'episode')}; "
         "each house takes about a second, each goal in it a tenth."
     )
-    command = shlex.join(["python", "-m", "sim.report", *map(str, args.runs)])
+    command = shlex.join(["stubborn", "report", *map(str, args.runs)])
     write_atomically(out, build_page(runs, out_folder=out.parent, command=command))
     message = f"{out} ({out.stat().st_size / 1e6:.1f} MB)"
     console.print(message, highlight=False, markup=False, soft_wrap=True)

@@ -1,4 +1,4 @@
-"""Run episodes: `python -m sim.run`, or `python -m sim.run --agent oracle --episodes 100 --workers 2`."""
+"""Run episodes: `stubborn run`, or `stubborn run --agent oracle --episodes 100 --workers 2`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from sim import cli
 from sim.analysis import display
 from sim.composition.agents import SPECS
 from sim.composition.options import RunOptions
+from sim.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS
 
 Args = RunOptions
@@ -66,7 +67,7 @@ def agent_table() -> Table:
 
 def entry(argv: Sequence[str] | None = None) -> int:
     """Runs the command line; returns its exit status."""
-    return cli.run(RunOptions, main, argv, stopped="Stopped. The same command with the same --out resumes the run.")
+    return cli.run(RunOptions, main, argv, stopped=RUN_STOPPED)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Drive the robot yourself: `python -m sim.teleop`, or `python -m sim.teleop --goal sofa --out runs/mine`.
+"""Drive the robot yourself: `stubborn teleop`, or `stubborn teleop --goal sofa --out runs/mine`.
 
 You play an episode of a split, by default the first that is not in `--out` yet. It is recorded like any agent's: a
 line in `results.jsonl` (agent `human`), a trajectory file, a summary; the tools for runs read it. Quitting records
@@ -113,7 +113,7 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
 
 
 def run_options(args: Args) -> RunOptions:
-    """Returns the options with which `sim.run` would describe this run."""
+    """Returns the options with which `stubborn run` would describe this run."""
     return RunOptions(
         agent="human",
         semantics="gt",

@@ -36,7 +36,7 @@ from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
 from tests.sim.housegen import test_furniture as furniture_laws
-from tools.site_hooks import fetched_from_elsewhere
+from tools.maintenance.site_hooks import fetched_from_elsewhere
 
 DOCS = ROOT / "docs"
 CONFIGURED = (agent, collision_marks, corners, mapper, planner, distances)
@@ -73,8 +73,8 @@ FURNITURE_LAWS = [
 """Those that every style must keep."""
 NEED_MORE = {
     "rednet_semmap_mp3d_40.pth": "the published checkpoint",
-    "runs/plans": "plans that tools/export_plans.py writes",
-    "views_val": "views that tools/generate_views.py writes",
+    "runs/plans": "plans that `stubborn houses plans` writes",
+    "views_val": "views that `stubborn views` writes",
 }
 """Words of blocks that cannot run here, and what they need."""
 

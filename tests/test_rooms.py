@@ -13,7 +13,8 @@ ROOT = Path(__file__).parents[1]
 ROOMS = (
     ("sim.errors",),
     ("sim.geometry",),
-    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.cli", "sim.memory", "sim.configuration"),
+    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.memory", "sim.configuration"),
+    ("sim.invocation", "sim.cli"),
     ("sim.houses",),
     ("sim.robot",),
     ("sim.sensors",),
@@ -31,6 +32,7 @@ ROOMS = (
     ("sim.composition", "sim.twin"),
     ("sim.web",),
     ("sim.gym", "sim.run", "sim.report", "sim.teleop"),
+    ("sim.commands",),
 )
 """The rooms of `sim`, lowest first: a module imports its own room and those before it."""
 AGENT_ROOMS = (
@@ -46,7 +48,7 @@ AGENT_ROOMS = (
 """The rooms of `stubborn`, lowest first."""
 KNOWN_TO_THE_AGENT = ("sim.interface", "sim.geometry", "sim.reading")
 """Modules of `sim` that `stubborn` may import."""
-COMPOSITION_ROOTS = ("sim.composition", "sim.run", "sim.teleop", "sim.twin")
+COMPOSITION_ROOTS = ("sim.composition", "sim.commands", "sim.run", "sim.teleop", "sim.twin")
 """Modules that may import both `sim` and `stubborn`."""
 
 

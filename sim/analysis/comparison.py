@@ -51,7 +51,7 @@ def read_run(path: Path) -> Run:
     """Returns the run in a folder.
 
     Raises:
-        ConfigError: there is none, or its files do not have the format of `sim.run`.
+        ConfigError: there is none, or its files do not have the format of `stubborn run`.
     """
     config, results = path / "config.json", path / "results.jsonl"
     for file in (config, results):
@@ -97,8 +97,8 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
 def require_same_episodes(first: Run, *others: Run) -> list[str]:
     """Returns the ids of the episodes that all runs share, in the order of the first run.
 
-    Episodes drawn in one house (`sim.run --house`) have the same ids for every seed. So house, goal and shortest path
-    must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
+    Episodes drawn in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
+    path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
 
     Raises:
         ConfigError: a run is of another split than the first, shares no episode with it, or shares only ids of

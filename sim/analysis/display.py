@@ -16,7 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from sim import cli
+from sim import invocation
 from sim.errors import debug
 from sim.evaluation.results import SUMMARY_METRICS
 from sim.reading import printable
@@ -146,8 +146,8 @@ def print_where_to_look(
     elif failed is not None:
         whole = ", without --shard" if sharded else ""
         say(f"Film a failure: the same command with --only {failed} --video --out ANOTHER_FOLDER{whole}.")
-    say(f"A page about this run: {cli.command('-m', 'sim.report', out)}")
-    say(f"Watch an agent in the browser, or drive yourself: {cli.command('-m', 'sim.web')}")
+    say(f"A page about this run: {invocation.command('report', out)}")
+    say(f"Watch an agent in the browser, or drive yourself: {invocation.command('web')}")
 
 
 def describe(line: Line) -> str:

@@ -1,4 +1,4 @@
-"""A person as an agent: pictures in a terminal, keys as actions. Used by `sim.teleop`."""
+"""A person as an agent: pictures in a terminal, keys as actions. Used by `stubborn teleop`."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def _make_human(*, truth: ObjectNavEnv, cockpit: Cockpit, **_: object) -> Human:
 
 HUMAN = AgentSpec(
     make=_make_human,
-    description="a person at a terminal (python -m sim.teleop)",
+    description="a person at a terminal (stubborn teleop)",
     sensors=("rgb", "depth", "semantic"),
     uses_segmentation=False,
     uses_ground_truth=True,

@@ -1,4 +1,4 @@
-"""The options of `python -m sim.run`."""
+"""The options of `stubborn run`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RunOptions:
     verification: str = "naive-bayes"
     """How candidates are verified: naive-bayes (the paper's), logistic, threshold or none."""
     verifier: Path | None = None
-    """Parameters of verification (tools/train_verifier.py) in place of those shipped for this segmentation."""
+    """Parameters of verification (`stubborn train verifier`) in place of those shipped for this segmentation."""
     split: str = "val"
     """A shipped split, or a folder laid out like one."""
     house: Path | None = None
@@ -54,7 +54,7 @@ class RunOptions:
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     shard: str | None = None
-    """i/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see tools/merge_runs.py."""
+    """i/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see `stubborn merge`."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
     noise: str = "none"

@@ -168,7 +168,9 @@ def weights_file(weights: Path | None) -> Path:
     file = weights or SHIPPED_REDNET
     if not file.is_file():
         hint = (
-            " It ships with the package; tools/train_rednet.py makes one of your own." if file == SHIPPED_REDNET else ""
+            " It ships with the package; `stubborn train segmentation` makes one of your own."
+            if file == SHIPPED_REDNET
+            else ""
         )
         raise ConfigError(f"No weights at '{file}'.{hint}")
     return file

@@ -142,7 +142,9 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
     for folder in folders:
         files = sorted(file.resolve() for file in folder.rglob("*.npz"))
         if not files:
-            raise ConfigError(f"No demonstration in '{folder}': tools/render_demonstrations.py writes them.")
+            raise ConfigError(
+                f"No demonstration in '{folder}': `python -m tools.training.render_demonstrations` writes them."
+            )
         found += files
     return list(dict.fromkeys(found))
 

@@ -147,7 +147,7 @@ def load_split(name_or_path: str | Path) -> Split:
     if not _index_of(folder).is_file():
         raise ConfigError(
             f"Split '{folder}' has no {_index_of(folder).name}: a split is a folder of house files with its episodes "
-            "beside them (tools/make_episodes.py makes them)."
+            "beside them (`stubborn episodes` makes them)."
         )
     return _read_split(folder)
 
@@ -267,7 +267,7 @@ def _read_split(folder: Path) -> Split:
     if house_list and house_list.version != version:
         raise ConfigError(
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
-            "generate both again (tools/generate_houses.py, tools/make_episodes.py)."
+            "generate both again (`stubborn houses generate`, `stubborn episodes`)."
         )
     sums = dict(house_list.sha256 if house_list else _file_sums(houses))
     labels = labels_of(folder)

@@ -19,7 +19,7 @@ from sim.reading import read_json, reason_of
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
-HINT = "A scene from elsewhere needs --labels: tools/label_house.py proposes the rules."
+HINT = "A scene from elsewhere needs --labels: `stubborn label` proposes the rules."
 _NOT_CONVEX = {
     int(mujoco.mjtGeom.mjGEOM_HFIELD): "height field",
     int(mujoco.mjtGeom.mjGEOM_SDF): "signed distance field",

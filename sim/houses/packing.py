@@ -1,6 +1,6 @@
 """Packs a scene from elsewhere into one folder: one MJCF file without includes, its meshes and its textures.
 
-The result needs no `--root` and can be moved, as a split can (tools/make_episodes.py `--house`).
+The result needs no `--root` and can be moved, as a split can (`stubborn episodes` `--house`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Proposes label rules for a scene from elsewhere, from the names and the sizes of its geoms (tools/label_house.py).
+"""Proposes label rules for a scene from elsewhere, from the names and the sizes of its geoms (`stubborn label`).
 
 A rule is proposed for each name with a word of `WORDS` in it (`Couch.001`, `wall_left_visual`, `hingecabinet`), unless
 an enclosing body already has that category: a sofa with a named leg stays one instance. Visible geoms without such a

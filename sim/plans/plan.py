@@ -158,7 +158,7 @@ def read_plan(path: Path) -> Plan:
     Raises:
         HouseError: there is no such file, or it is no plan of this format.
     """
-    what = "house plan (tools/export_plans.py writes them)"
+    what = "house plan (`stubborn houses plans` writes them)"
     arrays = read_npz(path, (*_ARRAYS, "categories", "about"), what=what, most_bytes=MAX_FILE_BYTES, error=HouseError)
     try:
         about = parse_json(str(arrays.pop("about")), _About, where="its header 'about'", error=HouseError)

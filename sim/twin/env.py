@@ -117,7 +117,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
     The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
 
     Args:
-        plans: plan files (tools/export_plans.py), or a folder of them.
+        plans: plan files (`stubborn houses plans`), or a folder of them.
         config: all other options.
         read: returns the plan in a file. Environments that share a cached one hold each plan in memory once.
 
@@ -139,7 +139,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
         if not self.files:
             where = f" in '{plans}'" if isinstance(plans, Path) else ""
-            raise ConfigError(f"No plan{where}: tools/export_plans.py writes them.")
+            raise ConfigError(f"No plan{where}: `stubborn houses plans` writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
         self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)
         self._planner = Planner(self.config.planning, visited_ground)

@@ -203,7 +203,7 @@ class _Header(msgspec.Struct):
 
 def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
     """Returns the configuration and the arrays of a file; without samples it has no `masks`."""
-    what = "file of samples (tools/train_poni.py writes them)"
+    what = "file of samples (`stubborn train poni` writes them)"
     arrays = read_npz(file, what=what, most_bytes=MAX_FILE_BYTES)
     try:
         if "header" not in arrays:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import ConfigError
+from sim.invocation import program
 
 Colours = Literal["true", "256"]
 HALF_BLOCK = "\u2580"
@@ -83,7 +84,7 @@ class Terminal:
         """
         self._keys, self._screen = keys or sys.stdin, screen or sys.stdout
         if not (self._keys.isatty() and self._screen.isatty()):
-            raise ConfigError("sim.teleop needs a terminal: standard input and output must not be a file or a pipe.")
+            raise ConfigError(f"{program()} needs a terminal: standard input and output must not be a file or a pipe.")
         self.colours: Colours = colours_of(os.environ)
 
     def __enter__(self) -> Terminal:

@@ -1,4 +1,4 @@
-"""Writes one MP4 per episode: `python -m sim.run --video` writes `<out>/videos/<episode_id>.mp4`.
+"""Writes one MP4 per episode: `stubborn run --video` writes `<out>/videos/<episode_id>.mp4`.
 
 The codec is H.264, which browsers, desktop players and slides show, encoded by x264 through PyAV; a PyAV whose FFmpeg
 lacks x264 writes VP9. PyAV's wheel (36 MB) bundles an FFmpeg with x264 and x265, which are GPL; nothing of it is

@@ -1,1 +1,1 @@
-"""A page in the browser: watch an agent live, drive the robot, look at finished runs (`python -m sim.web`)."""
+"""A page in the browser: watch an agent live, drive the robot, look at finished runs (`stubborn web`)."""

@@ -1,4 +1,4 @@
-"""Watch an agent, or drive the robot, in the browser: `python -m sim.web`, then open the address that it prints.
+"""Watch an agent, or drive the robot, in the browser: `stubborn web`, then open the address that it prints.
 
 On a machine without a display, forward the port: `ssh -L 8008:127.0.0.1:8008 MACHINE`, and open
 http://127.0.0.1:8008 on your own.
@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sim import cli
+from sim import cli, invocation
 from sim.analysis import display
 from sim.errors import ConfigError
 
@@ -42,7 +42,7 @@ def main(args: Args) -> int:
     """Serves the page until it is interrupted; returns the exit status."""
     missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
     if missing:
-        raise ConfigError(f"sim.web needs {', '.join(missing)}: pip install -e '.[web]'.")
+        raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
     if not 0 <= args.port <= 65535:
         raise ConfigError(f"--port must lie between 0 and 65535, got {args.port}.")
     if args.weights is not None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from sim import cli
+from sim import invocation
 from sim.composition.agents import SPECS
 from sim.composition.segmenters import KINDS
 from sim.episodes.splits import load_split, shipped_splits
@@ -54,7 +54,7 @@ class Choices:
             "agents": {name: spec.description for name, spec in SPECS.items()},
             "uses_segmentation": {name: spec.uses_segmentation for name, spec in SPECS.items()},
             "semantics": {name: kind.description for name, kind in KINDS.items()},
-            "run_command": cli.command("-m", "sim.run", "--video"),
+            "run_command": invocation.command("run", "--video"),
         }
 
     def wish(self, message: dict[str, Any]) -> Wish:
@@ -147,7 +147,7 @@ class Runs:
         """
         file = self._run(name) / REPORT
         if not self._inside(file):
-            raise ConfigError(f"Run '{name}' has no report; {cli.command('-m', 'sim.report', file.parent)} makes it.")
+            raise ConfigError(f"Run '{name}' has no report; {invocation.command('report', file.parent)} makes it.")
         return file
 
     def _newest(self) -> list[Path]:

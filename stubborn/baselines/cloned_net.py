@@ -94,5 +94,5 @@ class ClonedNet(nn.Module):
         return self.action(hidden), after
 
 
-FILES = Family("cloned", NetConfig, ClonedNet, "tools/train_cloned.py")
+FILES = Family("cloned", NetConfig, ClonedNet, "`stubborn train cloned`")
 """Reads and writes files of weights."""

@@ -31,7 +31,7 @@ class EvidenceConfig:
     full_pixels: int = 40
     """A frame with fewer pixels of the object counts in proportion."""
     fusion: Path | None = None
-    """File of `tools/train_tracks.py`; None: the shipped parameters of the kind of segmentation."""
+    """File of `stubborn train fusion`; None: the shipped parameters of the kind of segmentation."""
 
     def __post_init__(self) -> None:
         if self.sectors < 1 or self.full_pixels < 1:

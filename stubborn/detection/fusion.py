@@ -5,7 +5,7 @@ is behind the object), and which object the rest is. They are separated: the obj
 other, and the share of surface says whether there is an object at all. Views are averaged with a weight for each range
 of distance; the average is sharpened, the more the more views there are, and each category has an offset.
 
-The parameters describe the errors of one kind of segmentation. `tools/train_tracks.py` fits them to tracks in houses
+The parameters describe the errors of one kind of segmentation. `stubborn train fusion` fits them to tracks in houses
 with furniture that the network has not seen, and writes `stubborn/detection/fusions/<kind>.json`.
 """
 
@@ -106,13 +106,13 @@ class _Parameters(msgspec.Struct):
 
 
 class _File(msgspec.Struct):
-    """A file of `tools/train_tracks.py`."""
+    """A file of `stubborn train fusion`."""
 
     fusion: _Parameters
 
 
 def read_fusion(file: Path) -> Fusion:
-    """Returns the parameters in a file that `tools/train_tracks.py` wrote.
+    """Returns the parameters in a file that `stubborn train fusion` wrote.
 
     Raises:
         ConfigError: the file is missing or holds something else.

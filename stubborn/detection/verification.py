@@ -2,7 +2,7 @@
 
 The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
 kind of segmentation. They are shipped as `stubborn/detection/verifiers/<kind>.json`, which also holds the command that
-fitted them (`tools/train_verifier.py`) and the quality of each method on houses left out. A category that is not in the
+fitted them (`stubborn train verifier`) and the quality of each method on houses left out. A category that is not in the
 file uses the pooled classifier.
 """
 
@@ -117,7 +117,7 @@ class FittedVerifier:
 
     @classmethod
     def read(cls, file: Path, method: str = "naive-bayes") -> FittedVerifier:
-        """Returns the verifier in a file that `tools/train_verifier.py` wrote.
+        """Returns the verifier in a file that `stubborn train verifier` wrote.
 
         Raises:
             ConfigError: there is no such method, or the file is missing or holds something else.
@@ -137,7 +137,7 @@ class FittedVerifier:
             own = {name: make(each) for name, each in content.categories.items()}
             return cls(own, make(content.pooled), content.least_probability)
         except ConfigError as error:
-            raise ConfigError(f"{where} is not what tools/train_verifier.py writes: {error}") from None
+            raise ConfigError(f"{where} is not what `stubborn train verifier` writes: {error}") from None
 
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""

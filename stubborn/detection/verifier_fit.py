@@ -55,7 +55,7 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
     """Returns the counts of candidates and, for each method, its parameters and its quality on episodes left out.
 
     Args:
-        lines: lines of the log of `tools/train_verifier.py`; those of failed episodes (0 steps) are left out.
+        lines: lines of the log of `stubborn train verifier`; those of failed episodes (0 steps) are left out.
         least_of_either: a category with fewer true or fewer false candidates uses the pooled naive Bayes.
 
     Raises:

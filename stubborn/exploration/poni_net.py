@@ -115,5 +115,5 @@ def _conv(channels_in: int, channels_out: int, size: int, *, stride: int = 1) ->
     )
 
 
-FILES = Family("poni", PoniNetConfig, PoniNet, "tools/train_poni.py")
+FILES = Family("poni", PoniNetConfig, PoniNet, "`stubborn train poni`")
 """Reads and writes files of weights."""

@@ -3,7 +3,7 @@
 Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
 Learning", CVPR, arXiv:2201.10029. A network (`stubborn.exploration.poni_net`) predicts two potentials at each frontier
 of a partial semantic map: the share of the unexplored floor that the frontier leads to, and for each goal category how
-near its objects are. It was trained on house plans alone (tools/train_poni.py).
+near its objects are. It was trained on house plans alone (`stubborn train poni`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class PotentialConfig:
     """The network, the weights of its two potentials, and the controls."""
 
     weights: str | None = None
-    """File of the network's weights (tools/train_poni.py); None: those that ship."""
+    """File of the network's weights (`stubborn train poni`); None: those that ship."""
     alpha: float = 0.5
     """Weight of the area potential; the object potential of the goal has the rest."""
     goal: GoalKind = "true"

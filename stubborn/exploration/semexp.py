@@ -2,7 +2,7 @@
 
 Reference: Chaplot, Gandhi, Gupta, Salakhutdinov (2020), "Object Goal Navigation using Goal-Oriented Semantic
 Exploration", NeurIPS, arXiv 2007.00643. The policy is a small network of our own, trained in house plans by
-tools/train_semexp.py (docs/learned_exploration.md says what differs). The two controls of Luo et al. (2022, Section
+`stubborn train semexp` (docs/learned_exploration.md says what differs). The two controls of Luo et al. (2022, Section
 "Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong goal given to the policy.
 """
 

@@ -203,5 +203,5 @@ def scores(net: SemExpNet, given: PolicyInput) -> Float[np.ndarray, " goals"]:
         return net(*as_tensors(given))[0][0].numpy()
 
 
-FILES = Family("semexp", NetConfig, SemExpNet, "tools/train_semexp.py", half=False)
+FILES = Family("semexp", NetConfig, SemExpNet, "`stubborn train semexp`", half=False)
 """Reads and writes files of weights."""

@@ -111,7 +111,7 @@ def list_shards(folder: Path) -> list[Path]:
     """
     shards = sorted(folder.glob("*.tar"))
     if not shards:
-        raise ConfigError(f"No shards (*.tar) in '{folder}'. tools/generate_views.py makes them.")
+        raise ConfigError(f"No shards (*.tar) in '{folder}'. `stubborn views` makes them.")
     return shards
 
 
@@ -150,7 +150,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
     except (tarfile.TarError, OSError, EOFError, ValueError) as error:
         if isinstance(error, ConfigError):
             raise
-        raise ConfigError(f"Shard '{file}' is broken: {error}. tools/generate_views.py makes it again.") from None
+        raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
 
 
 def _require_small_file(file: Path, member: tarfile.TarInfo) -> None:
@@ -258,9 +258,7 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     for shard in shards:
         note = shard.with_suffix(".json")
         if not note.is_file():
-            raise ConfigError(
-                f"Shard '{shard}' has no note '{note.name}' beside it; tools/generate_views.py writes it."
-            )
+            raise ConfigError(f"Shard '{shard}' has no note '{note.name}' beside it; `stubborn views` writes it.")
         content = read_json(note, _ViewNote, what="Note of a shard")
         counts += [content.views_with.get(name, 0) for name in MPCAT40]
         total += content.views

@@ -29,7 +29,7 @@ NETWORKS: Mapping[str, Architecture] = MappingProxyType(
         "lite0": UNetConfig(encoder="lite0", widths=(8, 16, 24, 48, 96), decoder=(16, 32, 48, 80)),
     }
 )
-"""Networks by the name that `--size` of tools/train_rednet.py takes."""
+"""Networks by the name that `--size` of `stubborn train segmentation` takes."""
 
 
 def build_network(config: Architecture) -> Network:

@@ -1,4 +1,4 @@
-"""The loss and the learning rate with which `tools/train_rednet.py` trains a RedNet."""
+"""The loss and the learning rate with which `stubborn train segmentation` trains a RedNet."""
 
 from __future__ import annotations
 

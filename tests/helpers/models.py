@@ -40,7 +40,7 @@ def obj_text(parts: Mapping[str, Sequence[Box]]) -> str:
 
 
 def write_folder(folder: Path, chairs: int = 1) -> Path:
-    """A folder with chairs, a table, and a table of them for tools/import_furniture.py."""
+    """A folder with chairs, a table, and a table of them for `stubborn import furniture`."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.mtl").write_text(MATERIALS)
     rows = ["file,category,uses,width_m,depth_m,height_m,front_deg,license,author,mount"]

@@ -174,7 +174,7 @@ def test_the_interpreter_is_named_as_one_would_type_it(tmp_path: Path, monkeypat
     assert cli.python() == "python"
 
 
-@pytest.mark.parametrize("words", ["-m sim.web", "-m sim.report", "tools/show_mistakes.py"])
+@pytest.mark.parametrize("words", ["-m sim.web", "-m sim.report", "`stubborn evaluate mistakes`"])
 def test_help_names_the_command_that_was_given(words: str) -> None:
     done = subprocess.run(
         [sys.executable, *words.split(), "--help"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=100

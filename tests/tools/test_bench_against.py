@@ -8,7 +8,7 @@ import pytest
 
 from sim.interface import ConfigError
 from tools import bench_against
-from tools.bench_against import Worker, commit_of, in_turns, unpack
+from tools.maintenance.bench_against import Worker, commit_of, in_turns, unpack
 
 pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reason="needs a git checkout")
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from sim.commands.train.segmentation import Trainer
 from sim.interface import ConfigError
-from tests.tools.test_train_rednet import rows, write_views
-from tools.compare_networks import Args, main, trained_hours
-from tools.train_rednet import Trainer
+from tests.commands.test_train_segmentation import rows, write_views
+from tools.training.compare_networks import Args, main, trained_hours
 
 
 def options(tmp_path: Path, **changes: object) -> Args:

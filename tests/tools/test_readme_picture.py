@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from sim.viewers.video import VideoWriter
-from tools.readme_picture import animation, frames_of, thinned
+from tools.maintenance.readme_picture import animation, frames_of, thinned
 
 
 def frames(count: int) -> list[NDArray[np.uint8]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
 from tests.helpers.worlds import room, with_box
-from tools.split_report import Args, main
+from tools.maintenance.split_report import Args, main
 
 
 def test_the_row_of_a_split_has_its_known_figures(tmp_path: Path, capsys) -> None:

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from sim.commands.traps.report import make_agent
+from sim.commands.traps.trial import Trial, run_trial
 from sim.env.objectnav import ObjectNavEnv
 from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
@@ -19,8 +21,6 @@ from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION
 from stubborn.mapping.navmap import NavMap
 from tests.helpers.sampling import sample
-from tools.trap_report import make_agent
-from tools.trap_trial import Trial, run_trial
 
 HEADINGS = range(len(START_TURNS_RAD))
 CASES = list(itertools.product(TRAPS, HEADINGS))

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.commands.traps.make import write_scene
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split, one_house
 from sim.errors import HouseError
@@ -19,7 +20,6 @@ from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, write_sidec
 from sim.interface import MPCAT40_ID
 from sim.paths import assets_dir
 from tests.helpers.sampling import sample
-from tools.make_traps import write_scene
 
 SHIPPED = assets_dir() / "traps"
 

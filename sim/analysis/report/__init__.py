@@ -1,1 +1,1 @@
-"""Builds the report of one run, or of two runs side by side, as one HTML page: `python -m sim.report RUN_DIR`."""
+"""Builds the report of one run, or of two runs side by side, as one HTML page: `stubborn report RUN_DIR`."""

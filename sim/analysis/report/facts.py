@@ -16,11 +16,11 @@ NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
     "start_deg", "episodes", "shard",
 )  # fmt: skip
-"""Options of `sim.run` that the command of a run names if they have a value."""
+"""Options of `stubborn run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, Any] = {
     "verification": "naive-bayes", "seed": 0, "profile": "fast", "noise": "none", "workers": 1,
 }  # fmt: skip
-"""Options of `sim.run` that the command of a run names if their value differs from this one."""
+"""Options of `stubborn run` that the command of a run names if their value differs from this one."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def facts_of(run: Run, label: str, trajectories: Trajectories, index: int) -> Ru
 
 def command_of(config: Mapping[str, Any]) -> str:
     """Returns the command of a run without `--out`."""
-    words, only = ["python", "-m", "sim.run"], config.get("only")
+    words, only = ["stubborn", "run"], config.get("only")
     for key in (*NO_DEFAULT, *DEFAULTS):
         value = config.get(key)
         if value is None or value == DEFAULTS.get(key) or (key == "split" and config.get("house")):

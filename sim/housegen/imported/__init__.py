@@ -1,4 +1,4 @@
-"""Artist-made furniture that the user has installed: read once by tools/import_furniture.py, then used in houses.
+"""Artist-made furniture that the user has installed: read once by `stubborn import furniture`, then used in houses.
 
 `sources` reads what is installed, `labels` decides which category a model has, `meshes`, `reduction` and `solids` make
 geometry of it, `library` writes and reads the folder of imported models, and `catalogue` makes styles of furniture of

@@ -153,7 +153,7 @@ def read_shape(folder: Path, model: Model) -> Shape:
         ConfigError: its file is missing or broken.
     """
     file = inside(folder / MESHES, f"{model.key}.npz", what="key of a model")
-    what = "imported model (tools/import_furniture.py makes it again)"
+    what = "imported model (`stubborn import furniture` makes it again)"
     arrays = read_npz(file, what=what, most_bytes=MAX_BYTES)
     try:
         return _shape_of(arrays)
@@ -199,18 +199,18 @@ def write_index(folder: Path, models: Sequence[Model], left_out: Sequence[tuple[
 
 
 def read_index(folder: Path) -> list[Model]:
-    """Returns the models of a folder that tools/import_furniture.py made.
+    """Returns the models of a folder that `stubborn import furniture` made.
 
     Raises:
         ConfigError: there is no such folder, or its `models.json` is broken.
     """
     file = folder / INDEX
     if not file.is_file():
-        raise ConfigError(f"'{folder}' has no {INDEX}: make it with tools/import_furniture.py.")
+        raise ConfigError(f"'{folder}' has no {INDEX}: make it with `stubborn import furniture`.")
     try:
         content = read_json(file, _Index, what="List of models")
     except ConfigError as error:
-        raise ConfigError(f"{error} Import the models again with tools/import_furniture.py.") from None
+        raise ConfigError(f"{error} Import the models again with `stubborn import furniture`.") from None
     if content.version != VERSION:
         raise ConfigError(f"'{file}' has version {content.version}, not {VERSION}: import the models again.")
     for model in content.models:

@@ -1,5 +1,5 @@
 "use strict";
-// The page of sim.web: shows the newest frame of the session, and sends commands over one websocket.
+// The page of `stubborn web`: shows the newest frame of the session, and sends commands over one websocket.
 
 const $ = (id) => document.getElementById(id);
 const figures = new Map([...document.querySelectorAll("figure")].map((figure) => [figure.dataset.name, figure]));

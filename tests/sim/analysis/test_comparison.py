@@ -19,10 +19,10 @@ from sim.analysis.comparison import (
     require_same_episodes,
 )
 from sim.analysis.tables import ONE_HOUSE_NOTE, Cell, ResultTable, to_csv, to_markdown, to_rich
+from sim.commands.compare import compare
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.evaluation.config_fields import ABSENT
 from sim.interface import ConfigError
-from tools.compare_runs import compare
 
 
 def houses(count: int) -> list[str]:

@@ -269,7 +269,7 @@ def test_committed_textures_equal_the_generated_ones():
     for texture in TEXTURES.values():
         path = assets_dir() / "textures" / materials.texture_file(texture.name)
         stored = cv2.imread(str(path))
-        assert stored is not None, f"{path} is missing: run tools/make_textures.py"
+        assert stored is not None, f"{path} is missing: run tools/maintenance/make_textures.py"
         # FFTs differ in the last bit between machines, which may move a pixel by one grey level.
         assert np.abs(stored[:, :, ::-1].astype(int) - texture.pixels()).max() <= 12
 

@@ -29,7 +29,7 @@ def test_it_is_small_and_its_card_agrees_with_it() -> None:
     for heading in (
         "mIoU, goal categories present",
         "MIT licence",
-        "python tools/train_rednet.py",
+        "stubborn train segmentation",
         "| category | IoU |",
     ):
         assert heading in card

@@ -1,0 +1,1 @@
+"""The parts of `stubborn bench`; each measures figures against a baseline of the same run."""

@@ -1,0 +1,77 @@
+"""Compares two runs of `stubborn run` on the same episodes: fields in which their configurations differ, and results.
+
+stubborn compare runs/before runs/after
+
+Differences are the second run minus the first, paired by episode, over the episodes of both runs. Their 95 % bootstrap
+intervals resample houses, then the episodes of each house. A difference is unresolved if its interval holds 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import tyro
+
+from sim import cli
+from sim.analysis import display
+from sim.analysis.comparison import Run, differences_table, read_run, require_same_episodes
+from sim.analysis.report.figures import METRICS
+from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
+from sim.evaluation.bootstrap import MIN_PAIRS
+from sim.files import write_together
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Compare two runs of the same episodes."""
+
+    first: tyro.conf.Positional[Path]
+    """Folder of a run."""
+    second: tyro.conf.Positional[Path]
+    """Folder of another run on the same episodes."""
+    out: cli.OutFolder | None = None
+    """Folder for comparison.md and comparison.csv; nothing is written if not given."""
+
+
+def main(args: Args) -> int:
+    """Reads and compares the runs and prints the tables; returns the exit status."""
+    first, second = read_run(args.first), read_run(args.second)
+    tables = [compare(first, second), differences_table(first, second)]
+    console = display.make_console()
+    for table in tables:
+        console.print(to_rich(table))
+    if args.out is not None:
+        pages = {"comparison.md": to_markdown(tables), "comparison.csv": to_csv(tables)}
+        write_together({args.out / name: text for name, text in pages.items()})
+    return 0
+
+
+def compare(first: Run, second: Run) -> ResultTable:
+    """Returns the means of two runs and their paired differences, one row per metric.
+
+    Raises:
+        ConfigError: the runs are of different splits, or share no episode.
+    """
+    common = require_same_episodes(first, second)
+    a, b = ([of.lines[i] for i in common] for of in (first, second))
+    rows = [(metric.title, [metric.cell(a), metric.cell(b), metric.difference(a, b)]) for metric in METRICS]
+    changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
+    notes = [
+        f"A: {first.path}, B: {second.path}; {len(common)} episodes of both runs.",
+        f"unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
+    ]
+    errors = [sum(line["end_reason"] == "error" for line in lines) for lines in (a, b)]
+    if any(errors):
+        notes.append(f"Ended with an error: {errors[0]} of A, {errors[1]} of B; failures, in no other metric's means.")
+    whole = sum("error" not in (x["end_reason"], y["end_reason"]) for x, y in zip(a, b, strict=True))
+    fewer = [f"{metric.title} {metric.pairs(a, b)}" for metric in METRICS if metric.pairs(a, b) < whole]
+    if fewer:
+        notes.append(f"Differences of fewer episodes, because the others have no value: {', '.join(fewer)}.")
+    if changed:
+        lost = [i for i in changed if first.lines[i]["success"]]
+        gained = [i for i in changed if not first.lines[i]["success"]]
+        notes.append(f"Only A succeeds in {len(lost)}: {' '.join(lost) or '-'}.")
+        notes.append(f"Only B succeeds in {len(gained)}: {' '.join(gained) or '-'}.")
+    title = f"B - A, paired over {len(common)} episodes"
+    return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)

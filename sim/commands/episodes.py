@@ -1,0 +1,265 @@
+"""Generates the episodes of a split, beside its house files or its list of houses, in Habitat's ObjectNav layout.
+
+    stubborn episodes --split assets/mjcf_houses/val --workers 2
+    stubborn episodes --split my_houses --episodes 100 --recipe large
+    stubborn episodes --house kitchen.xml --labels labels.json --episodes 20 --out runs/kitchen
+
+With --house, a split is made of one house: --out gets the house in one file, its meshes and textures, its label rules
+and its episodes. `stubborn run --split runs/kitchen` then needs neither the original files nor --labels.
+
+The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
+distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
+
+The order goes round the houses; the next goal of a house is the one with the fewest episodes so far, so that the first
+N episodes are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as
+reachable on the storey of the start only. A start is uniform over the free space that the recipe allows, and the robot
+has been placed there without contact. Goals are categories with an instance that can be reached; instances that cannot
+are listed in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
+"""
+
+from __future__ import annotations
+
+import collections
+import functools
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from sim import cli
+from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks
+from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
+from sim.episodes.splits import LABELS_FILE, Episode, labels_of, write_split
+from sim.errors import EpisodeError, HouseError
+from sim.evaluation.parallel import ordered_map
+from sim.files import write_together
+from sim.housegen.house_list import has_house_list, read_house_list
+from sim.housegen.split_recipes import SPLIT_VERSION
+from sim.houses.house import House
+from sim.houses.labels import read_labels
+from sim.houses.load import load_house
+from sim.houses.packing import packed
+from sim.interface import ConfigError, SuccessRule
+from sim.reading import read_bytes
+from sim.task.config import TaskConfig
+from sim.task.objectnav import Task
+from sim.world.world import World
+
+Turn = tuple[int, int, Ask]
+"""An episode to draw: its number in the split, its number in the house, and its goal."""
+
+
+@dataclass(frozen=True)
+class Args:
+    """Generate the episodes of a split, beside its houses."""
+
+    split: Path | None = None
+    """Folder of the split; its houses are its .xml files, or those in its houses.json."""
+    house: Path | None = None
+    """One MJCF file in place of a split; needs --out."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use besides those of its own folder."""
+    out: cli.OutFolder | None = None
+    """With --house: folder of the new split."""
+    episodes: cli.Count | None = None
+    """Number of episodes of all houses; by default the recipe's number for each house."""
+    recipe: str | None = None
+    """Name of the recipe (val, test, large, hazards, train); by default the one with the folder's name."""
+    seed: cli.Seed = 0
+    """Seed of starts and headings."""
+    version: str = SPLIT_VERSION
+    """Version of the split."""
+    workers: cli.Count = 1
+    """Number of processes."""
+    success: SuccessRule = field(default_factory=SuccessRule)
+    """When a STOP succeeds: distances, view points and unreachable goals depend on it."""
+
+
+def main(args: Args) -> int:
+    """Writes the episodes of the split and prints statistics.
+
+    Raises:
+        ConfigError, EpisodeError, HouseError: there are no houses, or a house cannot be used.
+    """
+    args = with_split(args)
+    files, recipe = house_files(folder_of(args)), recipe_of(args)
+    count = args.episodes if args.episodes is not None else recipe.per_house * len(files)
+    if count < 1 or args.workers < 1:
+        raise ConfigError("--episodes and --workers must be at least 1.")
+    began_s = time.perf_counter()
+    goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
+    goals: dict[str, HouseAsks] = {}
+    for house, found in zip(files, goals_found, strict=True):
+        goals[house] = found
+        instances, asked = sum(map(len, found.listed.values())), len({ask.goal for ask in found.asks})
+        print(
+            f"{house}: {len(found.listed)} goals, {asked} of them asked for, {instances} instances, "
+            f"{len(found.unreachable)} unreachable",
+            flush=True,
+        )
+    order = balanced_goals({house: found.asks for house, found in goals.items()}, count)
+    episodes = draw_episodes(args, order)
+    write_split(
+        folder_of(args),
+        episodes,
+        {house: found.listed for house, found in goals.items()},
+        version=args.version,
+        unreachable={house: found.unreachable for house, found in goals.items()},
+    )
+    _report(episodes, goals, time.perf_counter() - began_s)
+    return 0
+
+
+def folder_of(args: Args) -> Path:
+    """Returns the folder of the split; raises ConfigError where the options name none."""
+    if args.split is None:
+        raise ConfigError("make_episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
+    return args.split
+
+
+def with_split(args: Args) -> Args:
+    """Returns the options with a split: with --house, it is written to --out.
+
+    Raises:
+        ConfigError: the options contradict each other, or --out holds other files.
+        HouseError: the house cannot be used.
+    """
+    if args.house is None:
+        if any(each is not None for each in (args.labels, args.root, args.out)):
+            raise ConfigError("--labels, --root and --out need --house.")
+        return args
+    if args.split is not None or args.out is None:
+        raise ConfigError("--house needs --out FOLDER, and excludes --split.")
+    others = [file.stem for file in args.out.glob("*.xml") if file.stem != args.house.stem]
+    if others:
+        raise ConfigError(f"--out '{args.out}' holds the house '{others[0]}' already; give a folder of its own.")
+    house = load_house(args.house, labels_path=args.labels, root=args.root)
+    files = {args.out / name: content for name, content in packed(house, args.house).items()}
+    if args.labels is not None:
+        files[args.out / LABELS_FILE] = read_bytes(args.labels, what="Label rules")
+    write_together(files)
+    _require_same(house, load_house(args.out / f"{house.name}.xml", labels_path=labels_of(args.out)))
+    return replace(args, split=args.out)
+
+
+def _require_same(house: House, written: House) -> None:
+    """Raises HouseError where a house that was written as one file has other geoms or labels."""
+    first, second = house.spec.copy().compile(), written.spec.copy().compile()
+    same = first.ngeom == second.ngeom and np.allclose(first.geom_pos, second.geom_pos, atol=1e-4)
+    if same:
+        labels = [read_labels(model, rules=house.rules, ignore_prefix="") for model in (first, second)]
+        same = np.array_equal(labels[0].geom_category, labels[1].geom_category)
+    if not same:
+        raise HouseError(f"House '{house.name}' changes when MuJoCo writes it as one file; use it with --house.")
+
+
+def house_files(folder: Path) -> tuple[str, ...]:
+    """Returns the names of the houses in the folder of a split.
+
+    Raises:
+        ConfigError: there are no houses.
+    """
+    listed = has_house_list(folder)
+    names = (
+        tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
+    )
+    if not names:
+        raise ConfigError(f"There are 0 houses in '{folder}' (`stubborn houses generate` makes some).")
+    return names
+
+
+def recipe_of(args: Args) -> EpisodeRecipe:
+    """Returns the recipe that the options name.
+
+    Raises:
+        ConfigError: there is no such recipe.
+    """
+    if args.recipe is None:
+        return EPISODE_RECIPES.get(folder_of(args).resolve().name, DEFAULT_RECIPE)
+    if args.recipe not in EPISODE_RECIPES:
+        raise ConfigError(f"No recipe '{args.recipe}'. There is: {', '.join(EPISODE_RECIPES)}.")
+    return EPISODE_RECIPES[args.recipe]
+
+
+def balanced_goals(asks_of: Mapping[str, Sequence[Ask]], count: int) -> list[tuple[str, Ask]]:
+    """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
+
+    The episodes of a house take turns on its storeys.
+
+    Raises:
+        EpisodeError: a house has no goal that can be asked for.
+    """
+    for house, asks in asks_of.items():
+        if not asks:
+            raise EpisodeError(f"House '{house}' has no goal that can be reached from a start of the recipe.")
+    asked, asked_here = collections.Counter[str](), collections.Counter[tuple[str, str]]()
+    order: list[tuple[str, Ask]] = []
+    houses = sorted(asks_of)
+    for i in range(count):
+        house = houses[i % len(houses)]
+        storeys = sorted({ask.floor_z_m for ask in asks_of[house]})
+        storey = storeys[i // len(houses) % len(storeys)]
+        asks = [ask for ask in asks_of[house] if ask.floor_z_m == storey]
+        ask = min(asks, key=lambda a: (asked[a.goal], asked_here[house, a.goal], asks_of[house].index(a)))
+        asked[ask.goal] += 1
+        asked_here[house, ask.goal] += 1
+        order.append((house, ask))
+    return order
+
+
+def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]:
+    """Returns the episodes, in order; each has a random stream of its own, so that it does not depend on the others."""
+    turns: dict[str, list[Turn]] = {house: [] for house in sorted({house for house, _ in order})}
+    for i, (house, ask) in enumerate(order):
+        turns[house].append((i, len(turns[house]), ask))
+    digits = max(4, len(str(len(order) - 1)))
+    work = [(number, house, of_house) for number, (house, of_house) in enumerate(turns.items())]
+    drawn = ordered_map(functools.partial(_draw, args, digits), work, workers=args.workers)
+    episodes: dict[int, Episode] = {}
+    for house, (found, relaxed) in zip(turns, drawn, strict=True):
+        episodes |= dict(found)
+        note = f", {relaxed} of them do not meet the rule of the recipe" if relaxed else ""
+        print(f"{house}: {len(found)} episodes{note}", flush=True)
+    return [episodes[i] for i in range(len(order))]
+
+
+def _task(args: Args, house: str) -> Task:
+    folder = folder_of(args)
+    path = read_house_list(folder).fetch(house) if has_house_list(folder) else folder / f"{house}.xml"
+    loaded = load_house(path, labels_path=labels_of(folder))
+    return Task(World(loaded, rule=args.success), TaskConfig(success=args.success))
+
+
+def _find_asks(args: Args, house: str) -> HouseAsks:
+    return find_house_asks(_task(args, house), recipe_of(args))
+
+
+def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[list[tuple[int, Episode]], int]:
+    """Returns the episodes of one house, each with its number, and how many do not meet the rule of the recipe."""
+    number_of_house, house, turns = work
+    drawer = StartDrawer(_task(args, house), recipe_of(args), house=number_of_house, seed=args.seed)
+    name, episodes, relaxed = folder_of(args).resolve().name, [], 0
+    for i, number, ask in turns:
+        drawn = drawer.draw(ask, number, np.random.default_rng([args.seed, i]))
+        relaxed += not drawn.meets_rule
+        episodes.append((i, Episode(f"{name}_{i:0{digits}d}", house, ask.goal, drawn.pose, drawn.distance_m)))
+    drawer.close()
+    return episodes, relaxed
+
+
+def _report(episodes: Sequence[Episode], goals: Mapping[str, HouseAsks], took_s: float) -> None:
+    """Prints statistics of the episodes."""
+    distances = np.array([episode.shortest_path_m for episode in episodes], dtype=np.float64)
+    print(
+        f"{len(episodes)} episodes in {len(goals)} houses, made in {took_s:.1f} s, {len(goals) / took_s:.2f} houses/s"
+    )
+    print(f"geodesic distance: {distances.min():.1f} to {distances.max():.1f} m, median {np.median(distances):.1f} m")
+    asked = collections.Counter(episode.goal for episode in episodes)
+    print("episodes by goal: " + ", ".join(f"{goal} {number}" for goal, number in sorted(asked.items())))
+    for house, found in goals.items():
+        if found.unreachable:
+            print(f"{house}: cannot be reached and is no goal: {', '.join(found.unreachable)}")

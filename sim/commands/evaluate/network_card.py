@@ -1,0 +1,165 @@
+"""The model card of a network: what it is, how it was trained, and what `stubborn evaluate` measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Int64
+
+from sim.commands.evaluate.network_pictures import draw_confusion, draw_curves
+from sim.files import write_atomically
+from sim.interface import GOAL_CATEGORIES
+from stubborn.segmentation.breakdown import Breakdown
+from stubborn.segmentation.calibration import Calibration
+from stubborn.segmentation.evaluation import Iou, Reliability
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.unet import UNet
+
+ABOUT = """A {kind} ({parameters:,} parameters, {size_mb:.1f} MB) for images of {width} x {height} pixels and
+the categories of mpcat40; MIT licence.
+It was trained on views of generated houses only; the commands below name the views. It was evaluated on houses whose
+furniture styles and textures are in no train house, and its calibration on the half of them to which it was not
+fitted. The checkpoint was chosen by mIoU on views of these houses as well, so that the mIoU is slightly optimistic."""
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """The network that was evaluated."""
+
+    file: Path
+    model: Network
+    metadata: dict[str, Any]
+    threads: int
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The results of an evaluation."""
+
+    iou: Iou
+    matrix: Int64[np.ndarray, "classes classes"]
+    """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
+    breakdown: Breakdown
+    by_folder: dict[str, float]
+    """mIoU over the goal categories of each folder of views."""
+    views: int
+    before: Reliability
+    """On the houses to which the calibration was not fitted, without one."""
+    after: Reliability
+    """The same with the network's calibration."""
+    calibration: Calibration
+    frame_ms: float
+
+
+def write_card(file: Path, network: Evaluated, measured: Measured, trainings: Sequence[Path]) -> None:
+    """Writes the model card and its pictures, `<name>_confusion.png` and, of some trainings, `<name>_curves.png`.
+
+    Raises:
+        ConfigError: matplotlib is not installed, or a folder holds no training.
+    """
+    confusion, curves = (file.with_name(f"{file.stem}_{name}.png") for name in ("confusion", "curves"))
+    draw_confusion(measured.matrix, confusion)
+    pictures = [f"![Confusion matrix]({confusion.name})"]
+    if trainings:
+        draw_curves(trainings, curves)
+        pictures.append(f"![Curves of the training]({curves.name})")
+    write_atomically(file, card_text(network, measured) + "\n" + "\n\n".join(pictures) + "\n")
+
+
+def card_text(network: Evaluated, measured: Measured) -> str:
+    """Returns the text of the model card, Markdown."""
+    absent = [name for name in GOAL_CATEGORIES if name not in measured.iou.by_category]
+    stages = list(training_stages(network.metadata))
+    return "\n".join(
+        [
+            *_about(network),
+            *_summary(network, measured, stages),
+            "```sh",
+            *(_command(stage) for stage in stages),
+            "```",
+            "",
+            *_categories(measured),
+            *([f"Not in these views: {', '.join(absent)}.", ""] if absent else []),
+            *_distances_and_sizes(measured.breakdown),
+            *_reliability(measured),
+        ]
+    )
+
+
+def _about(network: Evaluated) -> Iterable[str]:
+    px = int(network.metadata.get("block_px", 1))
+    yield f"# {network.file.name}\n"
+    yield ABOUT.format(
+        kind="U-Net" if isinstance(network.model, UNet) else "RedNet",
+        parameters=sum(tensor.numel() for tensor in network.model.parameters()),
+        size_mb=network.file.stat().st_size / 1e6,
+        width=640 // px,
+        height=480 // px,
+    )
+    yield ""
+
+
+def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, Any]]) -> Iterable[str]:
+    iou = measured.iou
+    yield "| | |\n|---|---|"
+    yield f"| mIoU, goal categories present | {iou.goals:.3f} |"
+    yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
+    yield f"| mIoU, all categories present | {iou.everything:.3f} |"
+    yield f"| pixel accuracy | {iou.accuracy:.3f} |"
+    yield f"| number of views | {measured.views} |"
+    yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
+    yield from (f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages)
+    yield f"| calibration error without calibration | {measured.before.error:.3f} |"
+    yield f"| calibration error, calibrated | {measured.after.error:.3f} |"
+    yield ""
+
+
+def _categories(measured: Measured) -> Iterable[str]:
+    found = measured.breakdown.found_by_category()
+    yield "An object is a connected region of a category in a view; it is found if half of its pixels are right.\n"
+    yield "| category | IoU | objects | found |\n|---|--:|--:|--:|"
+    for name in GOAL_CATEGORIES:
+        if name in measured.iou.by_category:
+            count, share = found.get(name, (0, float("nan")))
+            yield f"| {name} | {measured.iou.by_category[name]:.3f} | {count} | {100 * share:.0f} % |"
+    yield ""
+
+
+def _distances_and_sizes(breakdown: Breakdown) -> Iterable[str]:
+    yield "| distance | mIoU | pixel accuracy |\n|---|--:|--:|"
+    for low, high, iou in breakdown.iou_by_distance():
+        yield f"| {low:g} to {high:g} m | {iou.goals:.3f} | {iou.accuracy:.3f} |"
+    yield "\nSize is the square root of an object's area in the image of 640 x 480 pixels.\n"
+    yield "| size | objects | found |\n|---|--:|--:|"
+    for low, high, count, share in breakdown.found_by_size():
+        yield f"| {low} to {high} px | {count} | {100 * share:.0f} % |"
+    yield ""
+
+
+def _reliability(measured: Measured) -> Iterable[str]:
+    yield "Share of correct pixels by the score of a goal category, before and after calibration:\n"
+    yield "| mean score | share correct | pixels | mean score | share correct | pixels |\n|---|---|---|---|---|---|"
+    for b, a in zip(measured.before.rows(), measured.after.rows(), strict=False):
+        yield f"| {b[1]:.2f} | {b[2]:.2f} | {b[0]} | {a[1]:.2f} | {a[2]:.2f} | {a[0]} |"
+    yield ""
+
+
+def training_stages(metadata: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yields the metadata of each training that led to a network, the first one first."""
+    if "started_from" in metadata:
+        yield from training_stages(metadata["started_from"])
+    yield metadata
+
+
+def _command(stage: dict[str, Any]) -> str:
+    """Returns the command of one training."""
+    options = (
+        f"--{key.replace('_', '-')} {' '.join(value) if isinstance(value, list) else value}"
+        for key, value in stage.get("options", {}).items()
+        if value
+    )
+    return " ".join(["stubborn train segmentation", *options])

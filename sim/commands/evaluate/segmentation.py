@@ -1,0 +1,223 @@
+"""Evaluates a network on labelled views: intersection over union, objects found, calibration, time per frame.
+
+    stubborn evaluate --views runs/views_val_fast runs/views_val_good
+    stubborn evaluate --weights runs/rednet/rednet.safetensors --views runs/views_val_fast \\
+        --calibrate --card stubborn/segmentation/weights/README.md
+
+With --calibrate a factor and an offset of each category's logit are fitted to the views of every second house, written
+to the file of the weights, and evaluated on the other houses; --block-px sets another resolution. --card writes the
+model card that is shipped with the weights, and beside it the confusion matrix as a picture and, with --curves, the
+learning curves of the trainings that led to the network.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Int64
+from torch import Tensor
+from torch.utils.data import DataLoader
+
+from sim import cli
+from sim.commands.evaluate.network_card import Evaluated, Measured, card_text, write_card
+from sim.composition.segmenters import weights_file
+from sim.interface import CameraModel, ConfigError
+from stubborn.segmentation.breakdown import Breakdown
+from stubborn.segmentation.calibration import Calibration, fit_calibration
+from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.dataset import LabelledView, list_shards, read_shard, spread_views, stored_block_px
+from stubborn.segmentation.evaluation import Iou, Reliability, confusion
+from stubborn.segmentation.network import NetworkSegmenter
+from stubborn.segmentation.networks import Network
+from stubborn.segmentation.preprocess import padding, shrink
+from stubborn.segmentation.rednet import CLASSES
+from stubborn.segmentation.samples import NONE, Sampler, Samples
+
+TIMED_FRAMES = 30
+BATCH = 8
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Evaluate a segmentation network on labelled views."""
+
+    views: tuple[Path, ...]
+    """Folders of shards of one size (`stubborn views`), of houses that the network was not trained on."""
+    weights: Path | None = None
+    """Weights of the network; None: the shipped ones."""
+    count: cli.Amount = 0
+    """Number of views of each folder, spread over its shards; 0: all."""
+    calibrate: bool = False
+    """Fit the calibration and write it to the file of the weights."""
+    card: cli.OutFile | None = None
+    """File of the model card to write."""
+    curves: tuple[Path, ...] = ()
+    """With --card: folders of the trainings that led to the network, first one first, for a picture of the curves."""
+    block_px: cli.Count | None = None
+    """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
+    threads: cli.Count = 1
+    """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
+
+
+@dataclass
+class Predictions:
+    """What a network predicted on the views of some folders."""
+
+    matrix: Int64[np.ndarray, "classes classes"]
+    """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
+    breakdown: Breakdown
+    by_folder: dict[str, float]
+    """mIoU over the goal categories of each folder of views."""
+    samples: dict[str, list[tuple[Tensor, Tensor]]]
+    """Logits (k, classes) and true class channels (k,) of labelled pixels, by house."""
+    views: int = 0
+
+
+def main(args: Args) -> int:
+    """Evaluates, prints and, where asked to, writes; returns the exit status."""
+    for name in ("threads", "block_px"):
+        value = getattr(args, name)
+        if value is not None and value < 1:
+            raise ConfigError(f"--{name.replace('_', '-')} must be at least 1, got {value}.")
+    torch.set_num_threads(args.threads)
+    file = weights_file(args.weights)
+    if args.calibrate and file.suffix != ".safetensors":
+        raise ConfigError(
+            f"--calibrate writes into the file of the weights, and '{file}' is not of this project; train with --init "
+            f"'{file}' first, which writes a .safetensors file."
+        )
+    model, metadata = load_network(file)
+    if args.block_px is not None:
+        metadata["block_px"] = args.block_px
+    measured = measure(args, model, metadata)
+    if args.calibrate:
+        metadata.pop("temperature", None)
+        metadata["calibration"] = measured.calibration.to_metadata()
+        save_network(file, model, metadata)
+    about = Evaluated(file, model, metadata, args.threads)
+    print(card_text(about, measured))
+    if args.card is not None:
+        write_card(args.card, about, measured, args.curves)
+    return 0
+
+
+def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
+    """Returns the results of a network on the views of some folders.
+
+    Raises:
+        ConfigError: all views are of one house, or they are stored at a lower resolution than the network needs.
+    """
+    block_px = int(metadata.get("block_px", 1))
+    seen = predict(args.views, model, block_px, args.count)
+    houses = sorted(seen.samples)
+    if len(houses) < 2:
+        raise ConfigError(
+            "--views are of one house only; calibration needs houses to fit and other houses to evaluate."
+        )
+    calibration = Calibration.from_metadata(metadata)
+    if args.calibrate:
+        calibration = fit_calibration(*_joined(seen, houses[::2]))
+    logits, truth = _joined(seen, houses[1::2])
+    before, after = Reliability.empty(), Reliability.empty()
+    for reliability, used in ((before, Calibration.of_temperature(1.0)), (after, calibration)):
+        scores = (logits * used.scale + used.offset).softmax(dim=1)
+        reliability.add(scores.T.numpy(), truth.numpy())
+    return Measured(
+        Iou.of(seen.matrix),
+        seen.matrix,
+        seen.breakdown,
+        seen.by_folder,
+        seen.views,
+        before,
+        after,
+        calibration,
+        frame_ms(model, block_px),
+    )
+
+
+def predict(folders: Sequence[Path], model: Network, block_px: int, count: int = 0) -> Predictions:
+    """Returns the predictions of a network on the views of some folders, or on `count` of each; each is computed once.
+
+    Raises:
+        ConfigError: views are stored at a lower resolution than the network needs.
+    """
+    seen = Predictions(np.zeros((CLASSES, CLASSES), np.int64), Breakdown(), {}, {})
+    model.eval()
+    for folder in folders:
+        before = seen.matrix.copy()
+        shards = list_shards(folder)
+        stored_px = stored_block_px(shards)
+        parts = [spread_views(shards, count)] if count else (list(read_shard(shard)) for shard in shards)
+        for views in parts:
+            _add_views(seen, model, views, block_px, stored_px)
+        seen.by_folder[folder.name] = Iou.of(seen.matrix - before).goals
+    return seen
+
+
+def _add_views(seen: Predictions, model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int) -> None:
+    """Adds the predictions on some views."""
+    batches = loader(model, views, block_px, stored_px)
+    with torch.inference_mode():
+        for number, (rgb, second, target) in enumerate(batches):
+            logits = model(rgb, second)
+            for view, of_view, truth in zip(views[number * BATCH :], logits, target, strict=False):
+                _add_view(seen, view, of_view, truth, block_px, stored_px)
+
+
+def _add_view(
+    seen: Predictions, view: LabelledView, logits: Tensor, truth: Tensor, block_px: int, stored_px: int
+) -> None:
+    """Adds the prediction on one view: its logits (classes, h, w) and class channels (h, w), both padded."""
+    predicted = logits.argmax(dim=0).numpy()
+    seen.matrix += confusion(predicted, truth.numpy())
+    semantic = shrink(view.semantic, block_px // stored_px)
+    rows, cols = padding(*semantic.shape).inner
+    depth_m = shrink(view.depth_m, block_px // stored_px)
+    seen.breakdown.add(predicted[rows, cols], semantic, depth_m, block_px)
+    some, kept = logits[:, 2::8, 2::8].permute(1, 2, 0).reshape(-1, CLASSES), truth[2::8, 2::8].reshape(-1)
+    pair = some[kept >= 0].clone(), kept[kept >= 0].clone()  # a clone is not an inference tensor
+    seen.samples.setdefault(view.record["house"], []).append(pair)
+    seen.views += 1
+
+
+def _joined(seen: Predictions, houses: Sequence[str]) -> tuple[Tensor, Tensor]:
+    """Returns the logits (k, classes) and the class channels (k,) of some houses."""
+    pairs = [pair for house in houses for pair in seen.samples[house]]
+    return torch.cat([logits for logits, _ in pairs]), torch.cat([truth for _, truth in pairs])
+
+
+def loader(model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int) -> DataLoader:
+    """Returns batches of views at the network's resolution.
+
+    Raises:
+        ConfigError: the views are stored at a lower resolution.
+    """
+    if block_px % stored_px:
+        raise ConfigError(
+            f"The network needs blocks of {block_px} pixels, but the views are stored in blocks of {stored_px}."
+        )
+    sampler = Sampler(CameraModel(), block_px // stored_px, NONE, second=model.config.second)
+    return DataLoader(Samples(views, sampler), batch_size=BATCH)
+
+
+def frame_ms(model: Network, block_px: int) -> float:
+    """Returns the median time of one frame in milliseconds, from 640 x 480 images to scores."""
+    segmenter = NetworkSegmenter(model, block_px=block_px)
+    rng = np.random.default_rng(0)
+    frame = {
+        "rgb": rng.integers(0, 255, (480, 640, 3), np.uint8),
+        "depth": rng.uniform(0.5, 5.0, (480, 640)).astype("f4"),
+    }
+    times_s = []
+    for _ in range(TIMED_FRAMES):
+        frame = {name: image.copy() for name, image in frame.items()}  # the result of the same arrays is kept
+        start_s = time.perf_counter()
+        segmenter.scores(frame, "chair")  # pyright: ignore[reportArgumentType] - the two images that it reads
+        times_s.append(time.perf_counter() - start_s)
+    return 1000.0 * float(np.median(times_s))

@@ -1,0 +1,1 @@
+"""Commands for houses: generate them, check them, write their plans."""

@@ -1,0 +1,131 @@
+"""`stubborn`: one command with sub-commands. The module of a sub-command is imported only when it runs."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import importlib.metadata
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sim.invocation import RUN_STOPPED, command, running
+
+
+@dataclass(frozen=True)
+class Command:
+    """A sub-command: a module with the options `Args` and the function `main`."""
+
+    module: str
+    summary: str
+    """One line of the list of commands."""
+    stopped: str = "Stopped."
+    """What Ctrl-C and SIGTERM print."""
+
+
+COMMANDS: Mapping[str, Command] = {
+    "run": Command("sim.run", "Run episodes of an agent", stopped=RUN_STOPPED),
+    "report": Command("sim.report", "Write the report of one or several runs as an HTML page"),
+    "compare": Command("sim.commands.compare", "Compare two runs of the same episodes in a table"),
+    "merge": Command("sim.commands.merge", "Merge the shards of a run into one run"),
+    "web": Command("sim.web.__main__", "Watch an agent, or drive the robot, in the browser"),
+    "teleop": Command("sim.teleop", "Drive the robot yourself in a terminal"),
+    "gallery": Command("sim.commands.gallery", "Render pictures of houses and sheets of furniture"),
+    "houses generate": Command("sim.commands.houses.generate", "Generate houses"),
+    "houses check": Command("sim.commands.houses.check", "Check houses for faults"),
+    "houses plans": Command("sim.commands.houses.plans", "Write the plans of houses for the 2-D environment"),
+    "episodes": Command("sim.commands.episodes", "Generate the episodes of a split"),
+    "traps": Command("sim.commands.traps.make", "Make the trap scenes"),
+    "traps report": Command("sim.commands.traps.report", "Report which agent escapes from which trap"),
+    "label": Command("sim.commands.label", "Propose and check label rules for a scene from elsewhere"),
+    "import furniture": Command("sim.commands.importing.furniture", "Import models of furniture for generated houses"),
+    "views": Command("sim.commands.views.generate", "Generate labelled views for training segmentation"),
+    "views show": Command("sim.commands.views.show", "Draw a sheet of views"),
+    "views unpack": Command("sim.commands.views.unpack", "Unpack views into PNG files"),
+    "train segmentation": Command("sim.commands.train.segmentation", "Train a segmentation network on views"),
+    "train verifier": Command("sim.commands.train.verifier", "Fit the verifier of a segmentation"),
+    "train fusion": Command("sim.commands.train.fusion", "Fit the fusion of views to a segmentation"),
+    "train semexp": Command("sim.commands.train.semexp", "Train the explorer `semexp` in plans"),
+    "train poni": Command("sim.commands.train.poni", "Train the explorer `poni` on plans"),
+    "train cloned": Command("sim.commands.train.cloned", "Train the agent `cloned` on demonstrations"),
+    "evaluate": Command("sim.commands.evaluate.segmentation", "Evaluate a segmentation network on views"),
+    "evaluate mistakes": Command("sim.commands.evaluate.mistakes", "Show what the network saw in failed episodes"),
+    "evaluate objects": Command("sim.commands.evaluate.objects", "Draw the objects that a network misses"),
+    "reproduce": Command(
+        "sim.commands.reproduce.reproduce",
+        "Run and write the tables of the paper",
+        stopped="Stopped. The same command resumes; with --minutes 0 it only writes the table.",
+    ),
+    "bench": Command("sim.commands.bench.bench", "Measure the speed of all parts"),
+}
+"""Every sub-command, by the words that the user types. A group such as `views` may be a command itself."""
+
+
+def entry(argv: Sequence[str] | None = None) -> int:
+    """Runs the command line of `stubborn`; returns its exit status."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    name, rest = split(words)
+    if name in COMMANDS and not (name in _groups() and rest and not rest[0].startswith("-")):
+        return _run(name, rest)
+    if not words or words[0] in ("-h", "--help"):
+        print(_text_of_list())
+        return 0
+    if words == ["--version"]:
+        print(importlib.metadata.version("stubborn-objectnav"))
+        return 0
+    if name and (not rest or rest[0] in ("-h", "--help")):
+        print(_text_of_list(group=name))
+        return 0
+    return _unknown(f"{name} {rest[0]}" if name else words[0], group=name)
+
+
+def split(words: Sequence[str]) -> tuple[str, list[str]]:
+    """Returns the longest known sub-command or group at the start of a command line, and the words after it."""
+    for length in (2, 1):
+        name = " ".join(words[:length])
+        if len(words) >= length and (name in COMMANDS or name in _groups()):
+            return name, list(words[length:])
+    return "", list(words)
+
+
+def _run(name: str, words: Sequence[str]) -> int:
+    """Runs a sub-command; returns its exit status."""
+    from sim import cli  # the parser of options, which the list does not need
+
+    chosen = COMMANDS[name]
+    module = importlib.import_module(chosen.module)
+    with running(name):
+        return cli.run(module.Args, module.main, words, stopped=chosen.stopped)
+
+
+def _groups() -> set[str]:
+    """Returns the first words of the sub-commands that have two."""
+    return {name.split()[0] for name in COMMANDS if " " in name}
+
+
+def _text_of_list(group: str | None = None) -> str:
+    """Returns the list of all sub-commands, or of those of a group."""
+    listed = {name: each for name, each in COMMANDS.items() if group is None or name.split()[0] == group}
+    width = max(map(len, listed))
+    start = command()
+    head = f"usage: {start} {group or 'COMMAND'} ..."
+    rows = [f"  {name:<{width}}  {each.summary}." for name, each in listed.items()]
+    example = f"{start} {next(iter(listed))}"
+    return "\n".join([head, "", *rows, "", f"`{example} --help` lists the options of a command."])
+
+
+def _unknown(typed: str, group: str) -> int:
+    """Prints that there is no such command, with the most similar name; returns the exit status."""
+    from sim.reading import printable
+
+    known = [*COMMANDS, *_groups()]
+    if group:
+        known = [name for name in known if name.startswith(f"{group} ")]
+    similar = difflib.get_close_matches(typed, known, n=1, cutoff=0.4)
+    hint = f" Did you mean '{similar[0]}'?" if similar else ""
+    print(f"error: There is no command '{printable(typed)}'.{hint} `{command()}` lists all commands.", file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(entry())

@@ -1,0 +1,1 @@
+"""The command that runs what the tables of the paper need and writes them."""

@@ -1,0 +1,1 @@
+"""Commands that train and fit: networks, explorers, verifiers, and the fusion of views."""

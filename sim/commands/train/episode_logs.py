@@ -1,0 +1,145 @@
+"""Logs of whole episodes that are played to fit something to them: they are continued, and refused for other settings.
+
+A log is a folder with one line per episode. The same command continues it, and more episodes extend it, as long as
+split, code and detector are the same.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from sim import cli
+from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record
+from sim.episodes.splits import Episode, Split
+from sim.evaluation.config_fields import differing_fields, field_text
+from sim.evaluation.executors import make_executor
+from sim.evaluation.results import RunDirectory, read_result_lines
+from sim.evaluation.workers import RunnerSpec
+from sim.interface import ConfigError
+from sim.paths import code_hash
+from sim.reading import read_json
+
+BATCH = 100
+"""Number of episodes that are given to the workers together: a house is loaded once per batch, and a run that is cut
+short is still balanced."""
+COMPARED = ("semantics", "detector", "split_identity")
+"""Entries of the config of a log in which it must be equal when nothing is played."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogOptions:
+    """The options that commands which play for a log have in common."""
+
+    split: str
+    """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
+    semantics: str = "rednet"
+    """The kind of segmentation whose errors are learned; one of `stubborn run` that needs verification."""
+    weights: Path | None = None
+    """With --semantics rednet: weights in place of the shipped ones."""
+    episodes: cli.Count = 100
+    """Number of episodes, the first of the split."""
+    max_steps: cli.Count = 300
+    """Steps of an episode."""
+    workers: cli.Count = 1
+    """Number of processes."""
+    minutes: cli.NotNegative | None = None
+    """Time limit of the episodes; 0 runs none."""
+    judge: bool = False
+    """Fit nothing; judge the existing parameters (--out) on these episodes."""
+    seed: cli.Seed = 0
+    """Seed of the episodes."""
+    log: cli.OutFolder | None = None
+    """Folder of the log; None: a folder in runs, named after the command, --semantics and the split."""
+
+
+def check(args: LogOptions) -> None:
+    """Raises ConfigError for an exact kind of segmentation, and for a fit on val or test."""
+    check_semantics(args.semantics, args.weights)
+    if not KINDS[args.semantics].spec.needs_verification:
+        kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
+        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. There is: {', '.join(kinds)}.")
+    if args.split in ("val", "test") and not args.judge:
+        raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
+
+
+def lines_of(
+    args: LogOptions, split: Split, log: Path, line_type: type, runner: RunnerSpec, nothing: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
+
+    Args:
+        args: with 0 minutes no episode is run, and the log is read whichever code made it, with whichever seed.
+        split: the split of `args`.
+        log: folder of the log.
+        line_type: the fields of a line.
+        runner: plays an episode and returns its line.
+        nothing: what the line of an episode holds whose worker died.
+
+    Raises:
+        ConfigError: the log is of another split or of other segmentation.
+    """
+    if args.minutes == 0:
+        _require_log_of(log, log_config(args, split))
+        lines = read_result_lines(log / "results.jsonl", line_type).values
+    else:
+        run = RunDirectory(log, log_config(args, split), line_type)
+        try:
+            _play(args, split, run, runner, nothing)
+            lines = run.lines
+        finally:
+            run.discard_if_empty()
+            run.close()
+    wanted = {episode.episode_id for episode in split.episodes[: args.episodes]}
+    return sorted((line for line in lines if line["episode_id"] in wanted), key=lambda line: line["episode_id"])
+
+
+def _require_log_of(log: Path, wanted: Mapping[str, Any]) -> None:
+    """Raises ConfigError where a log is not of this split and segmentation."""
+    file = log / "config.json"
+    there = read_json(file, dict[str, Any], what="Config of a log") if file.is_file() else {}
+    for path, actual, asked in differing_fields(there, {key: wanted[key] for key in there if key in wanted}):
+        if path.partition(".")[0] in COMPARED and path != "detector.weights":  # the checksum of the weights counts
+            raise ConfigError(
+                f"Log '{log}' was made with {path} = {field_text(actual)}, this command has {field_text(asked)}; "
+                "take another --log, or the options of that log."
+            )
+
+
+def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
+    """Returns the values that all lines of a log have in common; `RunDirectory` refuses to continue with others.
+
+    The hash of the code is that of the modules without fitted parameters, since the episodes do not use them.
+    """
+    return {
+        "semantics": args.semantics,
+        "detector": detector_record(detector_config(args.semantics, args.weights)),
+        "seed": args.seed,
+        "max_steps": args.max_steps,
+        "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},
+        "code": code_hash(parameters=False),
+    }
+
+
+def line_of(episode: Episode, steps: int, **found: Any) -> dict[str, Any]:
+    """Returns a line of a log; 0 steps: the episode failed."""
+    about = {"episode_id": episode.episode_id, "goal": episode.goal, "house": episode.house}
+    return about | {"steps": steps} | found
+
+
+def _play(args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec, nothing: Mapping[str, Any]) -> None:
+    """Runs the episodes that are not in the log yet, until the time is up."""
+    done = {line["episode_id"] for line in run.lines}
+    todo = [episode for episode in split.episodes[: args.episodes] if episode.episode_id not in done]
+    print(f"{len(done)} episodes are in the log {run.path}, {len(todo)} are run now", flush=True)
+    until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
+    executor = make_executor("local", workers=args.workers)
+    for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
+        for line in executor.run(runner, batch, on_death=lambda episode: line_of(episode, 0, **nothing)):
+            run.append(line)
+            print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line['episode_id']}", flush=True)
+            if time.monotonic() > until_s:
+                return

@@ -1,0 +1,239 @@
+"""Fits how `stubborn-plus` fuses the views of an object to tracks whose true category is known.
+
+    stubborn train fusion --split runs/unseen --episodes 100
+    stubborn train fusion --split val --episodes 15 --judge
+
+The agent explores without stopping and looks at whatever may be the goal. At the end of an episode all of its tracks
+are logged: the mean posteriors of each view, and how many pixels of each true category they had. The tracks of all
+categories count, not only those of the episode's goal: an episode gives about a hundred.
+
+The log has one line and one file (tracks/<episode>.npz) per episode. The same command continues it, and more episodes
+extend it, as long as split, code and detector are the same. --minutes 0 runs no episode and fits the existing log. Then
+`stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
+
+The houses should hold furniture that the network was not trained on, else the fit trusts it too much: see
+docs/verification.md. Houses of val and test are for --judge only.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+from jaxtyping import Int
+
+from sim import cli
+from sim.commands.train.episode_logs import LogOptions, check, line_of, lines_of
+from sim.composition.segmenters import KINDS, detector_config, make_segmenter
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, Split, load_split
+from sim.errors import EpisodeError, PhysicsError
+from sim.evaluation.rollout import episode_seed
+from sim.evaluation.workers import RunnerSpec
+from sim.files import inside, write_atomically
+from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
+from sim.reading import Count as ReadCount
+from sim.reading import Name, read_npz
+from stubborn.detection.fusion import FOLDER, Fusion, read_fusion
+from stubborn.detection.fusion_fit import PLAUSIBLE, Sample, fit, judge, left_out, probabilities, samples_of
+from stubborn.detection.look import LookConfig
+from stubborn.detection.track_seeker import TrackSeeker
+from stubborn.detection.tracks import Tracks
+from stubborn.plus import PlusConfig, plus_agent
+from stubborn.segmentation.ground_truth import STRIDE_PX
+
+LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
+"""The agent accepts nothing, and looks at everything that may be the goal."""
+LEAST_VOXELS = 6
+"""Smaller tracks are no candidates of the agent's and not logged."""
+MAX_FILE_BYTES = 256 << 20
+_ARRAYS = ("counts", "track", "view", "mean", "weight")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args(LogOptions):
+    """Log the tracks of episodes, then fit the fusion of views to them."""
+
+    out: cli.OutFile | None = None
+    """File of the parameters; None: stubborn/detection/fusions/<semantics>.json."""
+
+
+class TrackLine(msgspec.Struct):
+    """A line of the log."""
+
+    episode_id: Name
+    goal: Name
+    house: Name
+    steps: ReadCount
+    tracks: ReadCount
+
+
+def main(args: Args) -> int:
+    """Runs the episodes, then fits and writes, or judges; returns the exit status."""
+    check(args)
+    split = load_split(args.split)
+    episodes = tracks_of(args, split)
+    samples = samples_of(episodes, seed=args.seed)
+    if not samples:
+        raise ConfigError("The log holds no tracks: play episodes, with --minutes more than 0 or without it.")
+    file = args.out or FOLDER / f"{args.semantics}.json"
+    about = {"episodes": len(episodes), "houses": len({str(each["house"]) for each in episodes})}
+    about["tracks"] = sum(len(each["counts"]) for each in episodes)
+    print(", ".join(f"{value} {name}" for name, value in about.items()))
+    if args.judge:
+        _print(judge(probabilities(read_fusion(file), samples), samples))
+        return 0
+    fusion = fit(samples)
+    content = {
+        "semantics": args.semantics,
+        "command": command(replace(args, episodes=len(episodes))),
+        "split": {"name": split.name, "version": split.version},
+        **about,
+        "fusion": msgspec.to_builtins(fusion),
+        "left_out": compared(samples),
+    }
+    write_atomically(file, json.dumps(content, indent=1, allow_nan=False) + "\n")
+    for name, quality in content["left_out"].items():
+        print(name)
+        _print(quality)
+    print(f"written: {file}")
+    return 0
+
+
+def compared(samples: Sequence[Sample]) -> dict[str, Any]:
+    """Returns the quality of the parameters on houses left out, beside that of plain averages on the same pairs."""
+    fitted, plain = left_out(samples), probabilities(Fusion(), samples)
+    goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])
+    among = np.maximum(fitted, plain)[:, goals] >= PLAUSIBLE
+    return {"fitted": judge(fitted, samples, among), "averages": judge(plain, samples, among)}
+
+
+def tracks_of(args: Args, split: Split) -> list[dict[str, Any]]:
+    """Returns the tracks of the first `args.episodes` episodes; those that are not in the log yet are run now."""
+    log = args.log or Path("runs") / f"tracks-{args.semantics}-{split.name}"
+    runner = RunnerSpec(f"{__name__}:{TrackRunner.__name__}", (args, log))
+    lines = lines_of(args, split, log, TrackLine, runner, {"tracks": 0})
+    return [
+        {"house": line["house"], **read_tracks(file_of(log, line["episode_id"]))} for line in lines if line["steps"]
+    ]
+
+
+def file_of(log: Path, episode_id: str) -> Path:
+    """Returns the file with the tracks of an episode."""
+    return inside(log / "tracks", f"{episode_id}.npz", what="An episode of the log")
+
+
+class TrackRunner:
+    """A runner of `sim.evaluation.workers` that logs the tracks of whole episodes."""
+
+    def __init__(self, options: tuple[Args, Path]) -> None:
+        args, self._log = options
+        self._seed = args.seed
+        spec = KINDS[args.semantics].spec
+        self._env = ObjectNavEnv(
+            split=args.split,
+            sensors=("depth", *spec.sensors),
+            truth=tuple({"semantic", *spec.truth}),
+            max_steps=args.max_steps,
+        )
+        config = PlusConfig()
+        self._agent = plus_agent(
+            camera=self._env.camera_model,
+            robot=self._env.robot_model,
+            success=self._env.success_rule,
+            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
+            config=replace(config, seeker=replace(config.seeker, look=LOOK_AT_ALL)),
+        )
+        assert isinstance(self._agent.seeker, TrackSeeker)
+        self._agent.seeker.fusion = Fusion()  # what is logged must not depend on the parameters that the fit replaces
+
+    def run(self, episode: Episode) -> dict[str, Any]:
+        """Runs one episode to its last step and writes its tracks; returns its line."""
+        seed = episode_seed(self._seed, episode.episode_id)
+        counts = np.zeros((self._agent_tracks_limit(), len(MPCAT40)), np.int64)
+        try:
+            observation, _ = self._env.reset(seed=seed, options={"episode": episode})
+            self._agent.reset(episode.goal, seed)
+            ended = False
+            while not ended:
+                action = self._agent.act(observation)
+                self._count(observation["depth"], counts)
+                if action == Action.STOP:  # cannot happen: nothing is accepted
+                    break
+                observation, _, terminated, truncated, _ = self._env.step(action)
+                ended = terminated or truncated
+        except (EpisodeError, PhysicsError):
+            return line_of(episode, 0, tracks=0)
+        content: dict[str, Any] = logged(self._tracks(), counts)
+        buffer = io.BytesIO()
+        np.savez_compressed(buffer, **content)
+        file = file_of(self._log, episode.episode_id)
+        file.parent.mkdir(exist_ok=True)
+        write_atomically(file, buffer.getvalue())
+        return line_of(episode, self._env.scene.task.num_steps, tracks=len(content["counts"]))
+
+    def close(self) -> None:
+        """Frees the renderers."""
+        self._env.close()
+
+    def _tracks(self) -> Tracks:
+        seeker = self._agent.seeker
+        assert isinstance(seeker, TrackSeeker)
+        assert seeker.tracks is not None, "the agent has acted"
+        return seeker.tracks
+
+    def _agent_tracks_limit(self) -> int:
+        return PlusConfig().seeker.tracks.most_tracks
+
+    def _count(self, depth: np.ndarray, counts: Int[np.ndarray, "tracks ids"]) -> None:
+        """Adds the true ids of the pixels of the frame to those of their tracks."""
+        truth = self._env.truth_images["semantic"][STRIDE_PX // 2 :: STRIDE_PX, STRIDE_PX // 2 :: STRIDE_PX]
+        assert self._agent.pose is not None
+        owner = self._tracks().shown(depth, self._agent.pose, truth.shape[1])
+        np.add.at(counts, (owner.astype(np.intp), truth.astype(np.intp)), 1)
+
+
+def logged(tracks: Tracks, counts: Int[np.ndarray, "tracks ids"]) -> dict[str, np.ndarray]:
+    """Returns what `samples_of` reads of an episode: the tracks, and the views of all of them one after the other."""
+    now = tracks.now()
+    merged = np.zeros_like(counts)
+    np.add.at(merged, now, counts[: len(now)])
+    kept = 1 + np.flatnonzero(tracks.sizes(np.arange(1, len(now))) >= LEAST_VOXELS)
+    mean, weight = tracks.evidence.views(kept)
+    track, view = np.nonzero(weight > 0.0)
+    return {
+        "counts": merged[kept].astype(np.int32),
+        "track": track.astype(np.int32),
+        "view": view.astype(np.int16),
+        "mean": mean[track, view].astype(np.float16),
+        "weight": weight[track, view].astype(np.float16),
+    }
+
+
+def read_tracks(file: Path) -> dict[str, np.ndarray]:
+    """Returns the tracks of an episode.
+
+    Raises:
+        ConfigError: the file is missing or broken.
+    """
+    return read_npz(file, _ARRAYS, what="file of `stubborn train fusion`", most_bytes=MAX_FILE_BYTES)
+
+
+def command(args: Args) -> str:
+    """Returns the command that gives the same parameters."""
+    weights = "" if args.weights is None else f" --weights {shlex.quote(str(args.weights))}"
+    options = f"--split {shlex.quote(args.split)} --semantics {args.semantics}{weights} --episodes {args.episodes}"
+    return f"stubborn train fusion {options} --max-steps {args.max_steps} --seed {args.seed}"
+
+
+def _print(quality: Mapping[str, Any]) -> None:
+    print("  " + ", ".join(f"{name} {value}" for name, value in quality.items() if name != "calibration"))
+    for row in quality["calibration"]:
+        print("  " + ", ".join(f"{name} {value}" for name, value in row.items()))

@@ -1,0 +1,296 @@
+"""Trains the global policy of `semexp` in house plans with PPO (needs `pip install '.[train]'`).
+
+stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 --out runs/semexp_0
+
+Plans are written by `stubborn houses plans`. Every tenth house, by a hash of its name, is held back for
+`tools.research.compare_explorers`. The same command continues a killed run, also with another --minutes or
+--goals: `state.pt`
+holds weights, optimiser and progress.
+`train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far, `start.safetensors` those at the
+start.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import io
+import time
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import numpy as np
+import torch
+from matplotlib.figure import Figure
+
+from sim import cli
+from sim.files import write_atomically
+from sim.interface import ConfigError
+from sim.plans.plan import read_plan
+from sim.reading import Count, Number
+from sim.twin.semexp import SemExpEnv
+from stubborn.exploration.semexp_net import FILES, NetConfig
+
+try:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.callbacks import BaseCallback
+    from stable_baselines3.common.vec_env import DummyVecEnv
+except ImportError as error:
+    raise SystemExit(f"error: {error}. Install it: pip install --constraint constraints.txt -e '.[train]'") from None
+
+from sim.commands.train.plan_split import HELD_BACK, split_plans
+from sim.commands.train.semexp_policy import SemExpPolicy
+from sim.commands.train.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+
+LAST_EPISODES = 300
+"""A row of the curve is a mean over so many episodes."""
+SMOOTHED = 12
+"""The thick line of a curve is a mean over one of so many parts of the training."""
+PLANS_IN_MEMORY = 256
+MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
+"""Options in which a continued run may differ from its start."""
+_DRAWN = ("episodes", "steps", "steps_to_first_sight")
+"""Columns of a curve that are drawn."""
+_KEYS = ("steps_to_first_sight", "gt_explored", "num_steps", "collisions")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Train the global policy of the explorer semexp in house plans."""
+
+    plans: tuple[Path, ...]
+    """Folders of plans (`stubborn houses plans`)."""
+    minutes: cli.Positive = 90.0
+    """Time of the training; that of earlier runs of the same folder counts."""
+    goals: cli.Count = 10_000_000
+    """Most long-term goals of the training, all environments together."""
+    seed: cli.Seed = 0
+    """Seed of the network, of its exploration and of the episodes."""
+    out: cli.OutFolder = Path("runs/semexp")
+    """Folder of the run; an existing run is continued."""
+    beside: tuple[Path, ...] = ()
+    """Folders of other runs to draw into the curve."""
+    envs: cli.Count = 8
+    """Number of environments, all in this process."""
+    rollout: cli.Count = 128
+    """Long-term goals of each environment between two updates."""
+    batch: cli.Count = 256
+    """Long-term goals in a minibatch."""
+    epochs: cli.Count = 4
+    """Passes over the goals of an update."""
+    rate: cli.Positive = 1e-3
+    """Learning rate of Adam at the start; it falls to a tenth."""
+    discount: cli.Share = 0.9
+    """Discount from one long-term goal to the next."""
+    entropy: cli.NotNegative = 0.001
+    """Weight of the entropy of the policy in the loss."""
+    print_s: cli.NotNegative = 20.0
+    """Shortest time between two printed lines."""
+    save_s: cli.NotNegative = 120.0
+    """Shortest time between two writes of the state."""
+
+
+def main(args: Args) -> int:
+    """Trains; returns the exit status."""
+    plans, held_back = split_plans(args.plans)
+    if not plans:
+        raise ConfigError(
+            f"No plan to train on: {len(held_back)} are held back, one house in {HELD_BACK}; export more."
+        )
+    if min(args.batch, args.envs * args.rollout) < 2:
+        raise ConfigError(
+            f"--batch and --envs x --rollout must be >= 2, got {args.batch} and {args.envs * args.rollout}."
+        )
+    for folder in args.beside:
+        _require_curve(folder / "train.csv")
+    torch.set_num_threads(1)  # the network is small
+    run = Run(args, plans)
+    run.train()
+    print(f"wrote {args.out / 'semexp.safetensors'}: `python -m tools.research.compare_explorers` compares it")
+    return 0
+
+
+def _require_curve(file: Path) -> None:
+    """Raises ConfigError where a file of curves lacks a column that is drawn; one that does not exist is not drawn."""
+    if not file.is_file():
+        return
+    with file.open(newline="", encoding="utf-8", errors="replace") as stream:
+        if not set(_DRAWN) <= set(next(csv.reader(stream), [])):
+            raise ConfigError(f"--beside: '{file}' is no curve of this command.")
+
+
+class _Progress(msgspec.Struct):
+    """How far a run is, as `state.pt` holds it."""
+
+    goals: Count
+    steps: Count
+    spent_s: Number
+    options: dict[str, str]
+    """See `options_of`."""
+
+
+class Run:
+    """The policy, the environments and the progress of one training."""
+
+    def __init__(self, args: Args, plans: Sequence[Path]) -> None:
+        self.args = args
+        self.options = options_of(args, may_change=MAY_CHANGE, files={"plans": plans})
+        self.net_config = NetConfig()
+        read = functools.lru_cache(PLANS_IN_MEMORY)(read_plan)
+        self.envs = DummyVecEnv([lambda: SemExpEnv(plans, view=self.net_config.view, read=read)] * args.envs)
+        self.goals = self.steps = 0
+        """Long-term goals and primitive steps so far."""
+        self.trained = (0, 0)
+        """Those that the network has been trained on."""
+        self.spent_s = 0.0
+        args.out.mkdir(parents=True, exist_ok=True)
+        self.ppo = PPO(
+            SemExpPolicy, self.envs, n_steps=args.rollout, batch_size=args.batch, n_epochs=args.epochs,
+            learning_rate=self._rate, gamma=args.discount, gae_lambda=0.8, ent_coef=args.entropy, clip_range=0.2,
+            vf_coef=0.5, max_grad_norm=0.5, seed=args.seed, device="cpu", policy_kwargs={"config": self.net_config},
+        )  # fmt: skip
+        if not self._resumed():
+            FILES.save(args.out / "start.safetensors", self.policy.net)
+        self.envs.seed(args.seed * 1_000_003 + self.goals)
+
+    @property
+    def policy(self) -> SemExpPolicy:
+        """The policy of PPO."""
+        assert isinstance(self.ppo.policy, SemExpPolicy)
+        return self.ppo.policy
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the time is up or the goals are used."""
+        return self.spent_s >= 60.0 * self.args.minutes or self.goals >= self.args.goals
+
+    def train(self) -> None:
+        """Trains until the time is up."""
+        if not self.is_over:
+            self.ppo.learn(2**62, callback=_Watch(self), reset_num_timesteps=False)
+            self.save()
+        runs = [folder / "train.csv" for folder in (self.args.out, *self.args.beside)]
+        write_atomically(self.args.out / "curve.png", curves(runs))
+
+    def save(self) -> None:
+        """Writes the state and the weights; each file is replaced in one step."""
+        goals, steps = self.trained
+        progress = {"goals": goals, "steps": steps, "spent_s": self.spent_s}
+        save_state(self.args.out / "state.pt", self._parts(), progress | {"options": self.options})
+        options = {key: [str(f) for f in v] if isinstance(v, tuple) else v for key, v in asdict(self.args).items()}
+        options["out"] = str(self.args.out)
+        card = {
+            **progress,
+            "plans": len(self.envs.get_attr("files")[0]),
+            "options": options,
+            "torch": torch.__version__,
+        }
+        FILES.save(self.args.out / "semexp.safetensors", self.policy.net, card)
+
+    def _parts(self) -> dict[str, Any]:
+        """Returns what `state.pt` holds besides the progress."""
+        return {"net": self.policy.net, "optimiser": self.policy.optimizer}
+
+    def _resumed(self) -> bool:
+        """Loads the state of the run, and returns whether there is one.
+
+        Raises:
+            ConfigError: the state is broken, or of a run with another network, other options or other plans.
+        """
+        done = load_state(
+            self.args.out / "state.pt",
+            self._parts(),
+            _Progress,
+            check=lambda found: require_options(self.args.out, found.options, self.options),
+        )
+        if done is not None:
+            self.goals, self.steps, self.spent_s = done.goals, done.steps, done.spent_s
+            self.trained = self.goals, self.steps
+        cut_rows(self.args.out / "train.csv", "goals", self.goals)  # also of a run that never wrote a state
+        if done is None:
+            return False
+        print(f"continues from {self.steps} steps, {self.spent_s / 60:.1f} minutes", flush=True)
+        return True
+
+    def _rate(self, _: float) -> float:
+        """Returns the learning rate, which falls with the time."""
+        share = min(self.spent_s / (60.0 * self.args.minutes), 1.0)
+        return self.args.rate * (1.0 - 0.9 * share)
+
+
+class _Watch(BaseCallback):
+    """Counts, writes a row of the curve for each update, prints by the clock, and stops when the time is up."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__()
+        self.run = run
+        self._episodes: deque[dict[str, float]] = deque(maxlen=LAST_EPISODES)
+        self._before = np.zeros(run.args.envs, np.int64)
+        self._returns = np.zeros(run.args.envs)
+        self._began_s = time.perf_counter() - run.spent_s
+        self._printed_s = self._saved_s = self._last_s = time.perf_counter()
+        self._last_steps = run.steps
+
+    def _on_step(self) -> bool:
+        infos, dones = self.locals["infos"], self.locals["dones"]
+        self._returns += self.locals["rewards"]
+        now = np.array([info["num_steps"] for info in infos])
+        self.run.steps += int((now - self._before).sum())
+        self.run.goals += len(infos)
+        for number in np.flatnonzero(dones):
+            ended = {key: float(infos[number][key]) for key in _KEYS}
+            self._episodes.append(ended | {"return": float(self._returns[number])})
+        self._returns[dones] = 0.0
+        self._before = np.where(dones, 0, now)
+        self.run.spent_s = time.perf_counter() - self._began_s
+        return not self.run.is_over
+
+    def _on_rollout_start(self) -> None:
+        """Saves now and not at the end of the rollout before, whose goals the network had not been trained on then."""
+        now_s = time.perf_counter()
+        self.run.trained = self.run.goals, self.run.steps
+        if now_s - self._saved_s >= self.run.args.save_s:
+            self._saved_s = now_s
+            self.run.save()
+
+    def _on_rollout_end(self) -> None:
+        now_s, run, logged = time.perf_counter(), self.run, self.model.logger.name_to_value
+        rate = (run.steps - self._last_steps) / (now_s - self._last_s)
+        self._last_s, self._last_steps = now_s, run.steps
+        row = {"minutes": round(run.spent_s / 60, 2), "goals": run.goals, "steps": run.steps}
+        row |= {"steps_per_s": round(rate), "episodes": len(self._episodes)}
+        for name in ("return", *_KEYS):
+            row[name] = round(float(np.mean([each[name] for each in self._episodes])), 4) if self._episodes else ""
+        for name in ("entropy_loss", "value_loss", "explained_variance", "approx_kl"):  # of the update before
+            row[name] = round(float(logged.get(f"train/{name}", np.nan)), 4)
+        append_row(run.args.out / "train.csv", row)
+        if now_s - self._printed_s >= run.args.print_s:
+            self._printed_s = now_s
+            print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+
+
+def curves(files: Sequence[Path]) -> bytes:
+    """Returns a PNG of training curves: mean steps to first sight over primitive steps, and its running mean."""
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    axes = figure.subplots()
+    for file in files:
+        if not file.is_file():
+            continue
+        with file.open(newline="", encoding="utf-8") as stream:
+            rows = [row for row in csv.DictReader(stream) if int(row["episodes"]) >= LAST_EPISODES // 3]
+        steps = [int(row["steps"]) / 1e6 for row in rows]
+        sights = np.array([float(row["steps_to_first_sight"]) for row in rows])
+        (line,) = axes.plot(steps, sights, linewidth=0.5, alpha=0.4)
+        width = max(len(rows) // SMOOTHED, 1)
+        smooth = [sights[max(0, i - width + 1) : i + 1].mean() for i in range(len(sights))]
+        axes.plot(steps, smooth, color=line.get_color(), label=file.parent.name)
+    axes.set(xlabel="primitive steps of the training, millions", ylabel="mean steps to first sight")
+    axes.grid(alpha=0.3)
+    axes.legend()
+    content = io.BytesIO()
+    figure.savefig(content, format="png", dpi=100)
+    return content.getvalue()

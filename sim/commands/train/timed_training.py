@@ -1,0 +1,200 @@
+"""A training that lasts for a number of minutes: its loop, learning rate, curves, best network and state."""
+
+from __future__ import annotations
+
+import math
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, ClassVar
+
+import msgspec
+import numpy as np
+import torch
+from torch import Tensor, nn
+from torch.optim.swa_utils import AveragedModel
+
+from sim.commands.train.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
+from sim.reading import Count, Number
+from stubborn.network_files import Family
+from stubborn.segmentation.training import exponential_average
+
+LOG_EVERY_STEPS = 20
+PRINT_EVERY_S = 10.0
+"""Shortest time between two lines of progress."""
+SAVE_EVERY_S = 60.0
+"""Shortest time between two writes of the state."""
+EVALUATE_EVERY = 0.05
+"""Share of the time between two evaluations."""
+AVERAGE = 0.998
+"""Decay per step of the average of the weights."""
+WARM_UP_STEPS = 100
+
+
+def stride(count: int, most: int) -> int:
+    """Returns the least step through `count` items, at least one, that takes at most `most` of them; 0: all."""
+    return max(1, -(-count // most)) if most else 1
+
+
+class Progress(msgspec.Struct):
+    """How far a run is, as `state.pt` holds it."""
+
+    step: Count
+    spent_s: Number
+    best: float
+    """Least loss of an evaluation; inf before the first."""
+    evaluated_s: Number
+    options: dict[str, str]
+    """See `options_of`."""
+
+
+class TimedTraining(ABC):
+    """Trains a network by AdamW with a cosine schedule until its minutes are over; a killed run is continued.
+
+    A subclass makes the losses of a step and evaluates the averaged network. `train.csv` and `val.csv` in the folder of
+    the run hold the curves, `<family>.safetensors` the averaged network of the best evaluation.
+
+    Args:
+        args: options with `out`, `minutes`, `rate` and `weight_decay`; they are written into the file of weights, and a
+            run is continued with the same ones only (`may_change`).
+        family: kind of the network.
+        model: the network with its initial weights.
+        max_gradient_norm: gradients are scaled down to this norm.
+        samples_per_step: samples of one step, for the rate in `train.csv`.
+        files: of the training and of the evaluation, by the option that names their folders.
+
+    Raises:
+        ConfigError: the folder holds a run with other options or files, or of another network, or a broken state.
+    """
+
+    may_change: ClassVar[frozenset[str]] = frozenset({"out", "minutes", "threads"})
+    """Options in which a continued run may differ from its start."""
+
+    def __init__(
+        self,
+        args: Any,
+        family: Family[Any, Any],
+        model: nn.Module,
+        *,
+        max_gradient_norm: float,
+        samples_per_step: int,
+        files: Mapping[str, Sequence[Path]],
+    ) -> None:
+        self.args, self.family, self.model = args, family, model
+        self.average = AveragedModel(model, multi_avg_fn=exponential_average(AVERAGE), use_buffers=True)
+        self.optimiser = torch.optim.AdamW(model.parameters(), lr=args.rate, weight_decay=args.weight_decay)
+        self.bf16 = bool(torch.cpu.get_capabilities().get("avx512_bf16"))
+        options = options_of(args, may_change=self.may_change, files=files)
+        self.progress = Progress(0, 0.0, math.inf, 0.0, options)
+        self._max_gradient_norm, self._samples_per_step = max_gradient_norm, samples_per_step
+        self.out: Path = args.out
+        self.out.mkdir(parents=True, exist_ok=True)
+        self._resume()
+
+    @abstractmethod
+    def losses(self) -> tuple[Tensor, Mapping[str, Tensor]]:
+        """Returns the loss of the next step, with its gradient, and the parts of it for `train.csv`."""
+
+    @abstractmethod
+    def evaluate(self, model: nn.Module) -> tuple[float, dict[str, Any], str]:
+        """Returns the loss of the averaged network, a row for `val.csv`, and the words to print."""
+
+    @abstractmethod
+    def about(self) -> dict[str, Any]:
+        """Returns what the file of weights tells of the data."""
+
+    def run(self) -> None:
+        """Trains until the time is up."""
+        progress, limit_s = self.progress, 60.0 * self.args.minutes
+        if progress.spent_s >= limit_s:
+            print("the time was up before: nothing to do", flush=True)
+            return
+        start_s, saved_s = time.perf_counter() - progress.spent_s, time.perf_counter()
+        printed_s = saved_s
+        parts: list[dict[str, float]] = []
+        while progress.spent_s < limit_s:
+            parts.append(self.train_once())
+            progress.spent_s = time.perf_counter() - start_s
+            if len(parts) == LOG_EVERY_STEPS:
+                told = self._log(parts)
+                parts = []
+                if time.perf_counter() - printed_s >= PRINT_EVERY_S:
+                    printed_s = time.perf_counter()
+                    minutes = f"{progress.spent_s / 60:.1f} of {self.args.minutes:g} min"
+                    print(f"step {progress.step}, {minutes}: {told}", flush=True)
+            if progress.spent_s - progress.evaluated_s > EVALUATE_EVERY * limit_s:
+                self._evaluate()
+                start_s = time.perf_counter() - progress.spent_s  # an evaluation is not training
+            if time.perf_counter() - saved_s > SAVE_EVERY_S:
+                self._save_state()
+                saved_s = time.perf_counter()
+        self._evaluate()
+        self._save_state()
+
+    def train_once(self) -> dict[str, float]:
+        """Makes one step of the optimiser; returns the parts of the loss."""
+        progress = self.progress
+        done = progress.spent_s / (60.0 * self.args.minutes)
+        warm = min(1.0, (progress.step + 1) / WARM_UP_STEPS)
+        for group in self.optimiser.param_groups:
+            group["lr"] = self.args.rate * warm * 0.5 * (1.0 + math.cos(math.pi * done))
+        self.model.train()
+        self.optimiser.zero_grad(set_to_none=True)
+        loss, parts = self.losses()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.model.parameters(), self._max_gradient_norm)
+        self.optimiser.step()
+        self.average.update_parameters(self.model)
+        progress.step += 1
+        return {name: float(part.detach()) for name, part in parts.items()}
+
+    @torch.no_grad()
+    def _evaluate(self) -> None:
+        """Evaluates the averaged network, writes a row, and saves it if it is the best so far."""
+        progress = self.progress
+        progress.evaluated_s = progress.spent_s
+        model: Any = self.average.module.eval()
+        loss, found, told = self.evaluate(model)
+        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)} | found
+        row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
+        append_row(self.out / "val.csv", row)
+        print(f"held back, step {progress.step}: {told}", flush=True)
+        if loss < progress.best:
+            progress.best = loss
+            options = {key: str(value) for key, value in asdict(self.args).items()}
+            card = {"val": row, "options": options, "torch": torch.__version__, **self.about()}
+            self.family.save(self.out / f"{self.family.name}.safetensors", model, card)
+            self._save_state()  # so that a continued run knows the best
+
+    def _log(self, parts: list[dict[str, float]]) -> str:
+        """Writes a row of the training curve; returns its losses in words."""
+        progress = self.progress
+        means = {name: round(float(np.mean([part[name] for part in parts])), 4) for name in parts[0]}
+        row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 3), **means}
+        per_s = round(self._samples_per_step * progress.step / max(progress.spent_s, 1e-9), 1)
+        append_row(self.out / "train.csv", row | {"samples_per_s": per_s})
+        return ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in means.items())
+
+    def _resume(self) -> None:
+        """Loads the state of the run, if there is one, and removes the rows of the curves that are later."""
+        now = self.progress.options
+        done = load_state(
+            self.out / "state.pt",
+            self._parts(),
+            Progress,
+            check=lambda found: require_options(self.out, found.options, now),
+        )
+        if done is not None:
+            self.progress = done
+            print(f"continues from step {done.step}, {done.spent_s / 60:.1f} min", flush=True)
+        for name in ("train.csv", "val.csv"):  # also of a run that was killed before it wrote a state
+            cut_rows(self.out / name, "step", self.progress.step)
+
+    def _parts(self) -> dict[str, Any]:
+        """Returns what `state.pt` holds besides the progress."""
+        return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
+
+    def _save_state(self) -> None:
+        save_state(self.out / "state.pt", self._parts(), msgspec.to_builtins(self.progress))

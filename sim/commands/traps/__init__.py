@@ -1,0 +1,1 @@
+"""Commands for the trap scenes: make them, report which agent escapes from which trap."""

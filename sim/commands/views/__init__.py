@@ -1,0 +1,1 @@
+"""Commands for labelled views: generate shards, draw them, unpack them into files."""

@@ -1,0 +1,219 @@
+"""Every tool starts in both ways, every documented command runs, and the shipped houses are made again to the byte."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import importlib
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sim import cli
+from sim.commands.houses.generate import Args, main
+from sim.episodes.splits import load_split, shipped_splits
+from sim.housegen.house_list import house_bytes
+from sim.housegen.split_recipes import SPLIT_VERSION, SPLITS
+from sim.interface import ConfigError
+from tests.helpers import documented
+from tests.helpers.documented import PYTHON, TRIALS, Only
+from tests.helpers.sampling import sample
+
+ROOT = Path(__file__).resolve().parents[2]
+TOOLS = sorted(file.stem for file in (ROOT / "tools").glob("*.py") if '__name__ == "__main__"' in file.read_text())
+WAYS = [(tool, way) for tool in TOOLS for way in ("file", "module")]
+TRIED = [command for command, trial in TRIALS.items() if not isinstance(trial, Only)]
+OUTPUTS = ("out", "log", "card")
+"""Fields of tools' `Args` that name what they write."""
+SHIPPED = [(split, recipe.name) for split, recipes in SPLITS.items() for recipe in recipes]
+
+
+@pytest.mark.parametrize(("tool", "way"), sample(WAYS, 2))
+def test_a_tool_starts_as_a_file_and_as_a_module(tool: str, way: str) -> None:
+    command = [f"tools/{tool}.py"] if way == "file" else ["-m", f"tools.{tool}"]
+    ended = subprocess.run(
+        [sys.executable, *command, "--help"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "usage" in ended.stdout
+
+
+@pytest.mark.parametrize("tool", TOOLS)
+def test_a_tool_that_imports_another_one_finds_it_when_it_starts_as_a_file(tool: str) -> None:
+    lines = (ROOT / "tools" / f"{tool}.py").read_text().splitlines()
+    imports = [number for number, line in enumerate(lines) if line.startswith(("from tools", "import tools"))]
+    paths = [number for number, line in enumerate(lines) if line.startswith("sys.path.insert(0, ")]
+    assert not imports or (paths and paths[0] < imports[0])
+
+
+@pytest.mark.parametrize(("split", "name"), sample(SHIPPED, 2))
+def test_a_house_made_again_is_the_shipped_file_to_the_byte(split: str, name: str) -> None:
+    recipe = next(recipe for recipe in SPLITS[split] if recipe.name == name)
+    made, shipped = house_bytes(recipe), load_split(split).house_paths[name].read_bytes()
+    assert hashlib.sha256(made).hexdigest() == hashlib.sha256(shipped).hexdigest()
+
+
+def test_the_tool_writes_what_is_shipped(tmp_path: Path) -> None:
+    assert main(Args(split="val", houses=1, out=tmp_path / "val")) == 0
+    written = (tmp_path / "val" / "val_00.xml").read_bytes()
+    assert written == load_split("val").house_paths["val_00"].read_bytes()
+    assert (tmp_path / "textures").is_dir()
+
+
+@pytest.mark.parametrize("number", sample(range(200), 1))
+def test_a_listed_train_house_comes_out_as_listed(number: int) -> None:
+    houses = load_split("train").house_list
+    assert houses is not None
+    name = list(houses.recipes)[number]
+    assert hashlib.sha256(house_bytes(houses.recipes[name])).hexdigest() == houses.sha256[name]
+
+
+@pytest.mark.parametrize("split", ["val", "test", "large", "hazards", "train", "traps"])
+def test_a_shipped_split_carries_the_one_version(split: str) -> None:
+    assert split in shipped_splits()
+    assert load_split(split).version == SPLIT_VERSION
+
+
+def test_the_tool_lists_train_houses_that_pass_and_leaves_their_files_in_the_cache(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("STUBBORN_CACHE_DIR", str(tmp_path / "cache"))
+    assert main(Args(split="train", houses=1, out=tmp_path / "train")) == 0
+    assert [file.name for file in (tmp_path / "train").iterdir()] == ["houses.json"]
+    assert [file.name for file in tmp_path.rglob("*.xml")] == ["train_000.xml"]
+
+
+def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> None:
+    """Whoever documents a command says in `tests/helpers/documented.py` how it is tried."""
+    found = {command: where for command, where in documented.commands().items() if "--help" not in command}
+    untried = [f"{where}: {command}" for command, where in found.items() if command not in TRIALS]
+    assert not untried, "no trial in tests/helpers/documented.py for\n" + "\n".join(untried)
+    stale = [command for command in TRIALS if command not in found]
+    assert not stale, "in tests/helpers/documented.py but in no page:\n" + "\n".join(stale)
+
+
+def test_every_block_of_commands_says_that_it_is_one() -> None:
+    """So that none escapes: a block of shell is marked sh, and no block goes without a mark."""
+    known = {"sh", "python", "xml", "json", "toml", "text"}
+    odd = [
+        f"{block.page}:{block.line}: {block.language or 'no language'}"
+        for page in documented.pages()
+        for block in documented.blocks(page)
+        if block.language not in known
+    ]
+    assert not odd
+
+
+@pytest.mark.parametrize("command", TRIED)
+def test_a_trial_is_the_documented_command_with_less_to_do(command: str) -> None:
+    trial = TRIALS[command]
+    assert not isinstance(trial, Only)
+    tool, options = _tool_and_options(command)
+    tried_tool, tried_options = _tool_and_options(trial[-1])
+    assert tried_tool == tool
+    assert options <= tried_options
+
+
+def test_documented_commands_and_their_trials_are_such_as_their_tools_take() -> None:
+    places = documented.commands() | documented.unmarked_commands()
+    trials = {step: "tests/helpers/documented.py" for name in TRIED for step in _steps(name, Path("scratch"))}
+    refused = []
+    for command, where in {**trials, **places}.items():
+        try:
+            _parse(command)
+        except (ConfigError, ImportError) as error:
+            refused.append(f"{where}: {command}\n    {error}")
+    assert not refused, "\n".join(refused)
+
+
+def test_what_documented_commands_read_is_there_or_made_by_another() -> None:
+    parsed = {command: _parse(command) for command in documented.commands()}
+    made = {str(value) for args in parsed.values() for name, value in _paths(args) if name in OUTPUTS}
+    made |= {shlex.split(command)[-1] for command in parsed if "my_furniture.py" in command}
+    made |= {str(parent) for value in made for parent in Path(value).parents if parent.name}
+    for command, args in parsed.items():
+        for name, path in _paths(args):
+            whole = {str(path), *(str(parent) for parent in path.parents)}
+            there = (documented.ROOT / path).exists() or bool(whole & made) or str(path) in documented.STAND_INS
+            assert name in OUTPUTS or there, f"{command}: no command of the docs makes '{path}'"
+
+
+@pytest.mark.parametrize("command", sample(TRIED, 2))
+def test_a_documented_command_runs(command: str, tmp_path: Path) -> None:
+    _try(command, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", TRIED)
+def test_each_documented_command_runs(command: str, tmp_path: Path) -> None:
+    _try(command, tmp_path)
+
+
+def _try(command: str, scratch: Path) -> None:
+    for step in _steps(command, scratch):
+        words = [sys.executable if word == PYTHON else word for word in shlex.split(step)]
+        ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False, timeout=300)
+        assert ended.returncode == 0, f"{step}\n{ended.stdout[-2000:]}\n{ended.stderr[-2000:]}"
+
+
+def _steps(command: str, scratch: Path) -> tuple[str, ...]:
+    trial = TRIALS[command]
+    assert not isinstance(trial, Only)
+    return tuple(step.replace("{tmp}", str(scratch)) for step in trial)
+
+
+def _tool_and_options(command: str) -> tuple[str, set[str]]:
+    """What a command starts, and the names of its options."""
+    words = shlex.split(command)
+    tool = words[2] if words[:2] == [PYTHON, "-m"] else words[1]
+    return tool, {word for word in words if word.startswith("--")}
+
+
+def _parse(command: str) -> Any:
+    """The command read by its tool's own command line: its `Args`, or None where there is none to show.
+
+    Raises:
+        ConfigError: an option that there is not, or a target, tool or program that nobody thought of.
+    """
+    words = shlex.split(command)
+    if words[0] == "make" and len(words) == 2:
+        ended = subprocess.run(["make", "-n", words[1]], cwd=ROOT, capture_output=True, text=True, check=False)
+        if ended.returncode:
+            raise ConfigError(ended.stderr)
+        return None
+    if words[0] != PYTHON:
+        raise ConfigError(f"no test knows what to make of '{words[0]}'")
+    if words[1] == "-c":  # of a trial: makes what the next step reads
+        return None
+    by_name = words[1] == "-m"
+    name = words[2] if by_name else words[1].removesuffix(".py").replace("/", ".")
+    module = importlib.import_module(name)
+    if hasattr(module, "__path__"):
+        module = importlib.import_module(f"{name}.__main__")
+    if not by_name and not (ROOT / words[1]).is_file():
+        raise ConfigError(f"no file {words[1]}")
+    argv = words[3 if by_name else 2 :]
+    if not hasattr(module, "Args"):
+        if any(word.startswith("-") for word in argv):
+            raise ConfigError(f"{name} has no options")
+        return None
+    try:
+        return cli.parse(module.Args, argv)
+    except SystemExit:
+        assert "--help" in argv
+        return None
+
+
+def _paths(args: Any) -> list[tuple[str, Path]]:
+    """The fields of an `Args` that hold paths, and houses and splits that are given as one."""
+    found = []
+    for field in dataclasses.fields(args) if args is not None else ():
+        value = getattr(args, field.name)
+        for each in value if isinstance(value, tuple) else (value,):
+            if isinstance(each, Path) or (field.name == "split" and "/" in str(each)):
+                found.append((field.name, Path(each)))
+    return found

@@ -1,0 +1,107 @@
+"""The evaluation tool on a few tiny views: its results, and the temperature that it writes to the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import torch
+
+from sim.commands.evaluate.segmentation import Args
+from sim.interface import ConfigError
+from stubborn.segmentation.checkpoints import load_network, save_network
+from stubborn.segmentation.rednet import RedNet, RedNetConfig
+from tests.commands.test_train_segmentation import write_views
+from tools import evaluate_rednet
+
+TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
+
+
+@pytest.fixture
+def weights(tmp_path: Path) -> Path:
+    """An overconfident network."""
+    torch.manual_seed(0)
+    model = RedNet(TINY)
+    with torch.no_grad():
+        model.final_deconv_custom.weight *= 5.0
+    save_network(tmp_path / "tiny.safetensors", model, {"block_px": 1, "step": 7})
+    return tmp_path / "tiny.safetensors"
+
+
+def test_a_calibration_is_fitted_written_and_improves_calibration(tmp_path: Path, weights: Path) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    card = tmp_path / "card.md"
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "train.csv").write_text("step,hours,loss\n20,0.1,9.5\n40,0.2,4.5\n")
+    (tmp_path / "run" / "val.csv").write_text("step,hours,miou_goals,accuracy\n40,0.2,0.3,0.7\n")
+    args = Args(
+        views=(tmp_path / "one", tmp_path / "two"),
+        weights=weights,
+        calibrate=True,
+        card=card,
+        curves=(tmp_path / "run",),
+        threads=1,
+    )
+    before = load_network(weights)[0].state_dict()
+    assert evaluate_rednet.main(args) == 0
+    model, metadata = load_network(weights)
+    assert np.mean(metadata["calibration"]["scale"]) < 0.5
+    assert metadata["step"] == 7
+    assert all(torch.equal(before[name], tensor) for name, tensor in model.state_dict().items())
+    measured = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1), model, metadata)
+    assert measured.views == 8
+    assert measured.after.error < 0.5 * measured.before.error
+    assert 0.0 <= measured.iou.goals <= 1.0
+    some = evaluate_rednet.measure(Args(views=args.views, weights=weights, threads=1, count=3), model, metadata)
+    assert some.views == 6
+    assert measured.frame_ms > 0.5
+    text = card.read_text()
+    assert "| number of views | 8 |" in text
+    for picture in ("card_confusion.png", "card_curves.png"):
+        assert f"({picture})" in text
+        drawn = cv2.imread(str(tmp_path / picture))
+        assert drawn is not None
+        assert drawn.std() > 5.0
+
+
+def test_another_resolution_is_evaluated_and_written_with_the_calibration(tmp_path: Path, weights: Path) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    views = (tmp_path / "one", tmp_path / "two")
+    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1)) == 0
+    assert load_network(weights)[1]["block_px"] == 1
+    assert evaluate_rednet.main(Args(views=views, weights=weights, block_px=2, threads=1, calibrate=True)) == 0
+    assert load_network(weights)[1]["block_px"] == 2
+
+
+def test_views_at_a_lower_resolution_than_the_network_needs_are_refused(tmp_path: Path, weights: Path) -> None:
+    write_views(tmp_path / "one", 2)
+    views = [
+        view for shard in evaluate_rednet.list_shards(tmp_path / "one") for view in evaluate_rednet.read_shard(shard)
+    ]
+    with pytest.raises(ConfigError, match="needs blocks of 1 pixels, but the views are stored in blocks of 2"):
+        evaluate_rednet.loader(RedNet(TINY), views, 1, 2)
+    with pytest.raises(ConfigError, match="--threads must be at least 1"):
+        evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=0))
+
+
+def test_views_of_one_house_and_folders_without_a_training_are_refused(tmp_path: Path, weights: Path) -> None:
+    write_views(tmp_path / "one", 1)
+    with pytest.raises(ConfigError, match="one house"):
+        evaluate_rednet.main(Args(views=(tmp_path / "one",), weights=weights, threads=1))
+    write_views(tmp_path / "two", 2)
+    args = Args(views=(tmp_path / "two",), weights=weights, threads=1, card=tmp_path / "card.md", curves=(tmp_path,))
+    with pytest.raises(ConfigError, match=r"holds no training: train\.csv is missing"):
+        evaluate_rednet.main(args)
+    assert not (tmp_path / "card.md").exists()
+
+
+def test_a_calibration_is_not_written_into_a_file_of_another_project(tmp_path: Path) -> None:
+    file = tmp_path / "published.pth"
+    file.write_bytes(b"weights")
+    with pytest.raises(ConfigError, match="--calibrate writes into the file of the weights"):
+        evaluate_rednet.main(Args(views=(tmp_path,), weights=file, calibrate=True))
+    assert file.read_bytes() == b"weights"

@@ -1,0 +1,1 @@
+"""Assets, benchmarks against other versions, the documentation and its pictures."""

@@ -1,0 +1,169 @@
+"""Compares explorers in house plans by when they first see the target (docs/plans.md, docs/learned_exploration.md).
+
+python -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train --episodes 200 \
+    --explorers corners random-goals semexp semexp:semantics=shuffled semexp:goal=wrong semexp:semantics=none
+
+The whole agent plays, with an exact camera and a map as in the real environment; an episode ends with the first frame
+that shows the target, or after 500 steps. All explorers play the same episodes, in the houses that
+`stubborn train semexp` holds back; `stubborn train poni` holds back others (--houses held-back-poni). Intervals are
+from 2000 bootstrap samples of the houses.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim import cli
+from sim.commands.train.plan_split import split_plans
+from sim.configuration import parse_assignments, with_fields
+from sim.files import write_atomically
+from sim.interface import MAX_STEPS, CameraModel, ConfigError
+from sim.plans.episode import draw_goal_and_start
+from sim.plans.plan import read_plan
+from sim.plans.sight import PlanCamera
+from sim.twin import potential_files
+from sim.twin.agent import TwinAgent, play, twin_config
+from stubborn.agent import AgentConfig
+from stubborn.agents import EXPLORERS
+from stubborn.exploration.explorer import ExplorerConfig
+from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
+from stubborn.exploration.semexp_input import ViewConfig
+
+RANDOM = "random-goals"
+"""The explorer that draws long-term goals as `semexp` does, all places of the window being equally likely."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Args:
+    """Compares explorers in house plans."""
+
+    plans: tuple[Path, ...]
+    """Folders of plans (`stubborn houses plans`)."""
+    explorers: tuple[str, ...] = ("corners", RANDOM, "semexp")
+    """Names of explorers, with fields of their configuration: semexp:semantics=shuffled,goal=wrong or
+    informed-tour:potentials.goal=wrong."""
+    weights: Path | None = None
+    """File of weights of semexp; None: those that ship."""
+    houses: str = "held-back"
+    """held-back: those that `stubborn train semexp` does not train on; trained: the others; held-back-poni: those that
+    `stubborn train poni` does not train on; all."""
+    episodes: cli.Count = 100
+    """Number of episodes."""
+    seed: cli.Seed = 0
+    """Seed of the episodes and of the explorers."""
+    out: cli.OutFile | None = None
+    """File for a JSON line of each episode, written after each explorer."""
+
+
+@dataclass(frozen=True)
+class RandomGoals:
+    """Long-term goals anywhere in the local window."""
+
+    def make(self, camera: CameraModel) -> SemExpExplorer:
+        """Returns a new explorer."""
+        view = ViewConfig()
+        return SemExpExplorer(SemExpConfig(sampled=True), view, lambda _: np.zeros(view.goal_cells**2, np.float32))
+
+
+def main(args: Args) -> int:
+    """Prints a row for each explorer as soon as it has played."""
+    plans = _plans(args)
+    configs = {name: explorer_config(name, args.weights) for name in args.explorers}
+    for config in configs.values():
+        config.make(CameraModel())  # missing weights are told before anything is played
+    lines, first = [], None
+    print(
+        f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count {MAX_STEPS} where it is never seen"
+    )
+    for name, config in configs.items():
+        agent = TwinAgent(twin_config(AgentConfig(explorer=config)))
+        played = [episode(agent, plans, number, args.seed) for number in range(args.episodes)]
+        lines += [{"explorer": name, **line} for line in played]
+        first = played if first is None else first
+        print(row(name, played, first), flush=True)
+        if args.out is not None:
+            write_atomically(args.out, "".join(json.dumps(line) + "\n" for line in lines))
+    return 0
+
+
+def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
+    """Returns the configuration of an explorer from its name and fields.
+
+    Raises:
+        ConfigError: there is no such explorer or field.
+    """
+    name, _, fields = text.partition(":")
+    if name == RANDOM:
+        if fields:
+            raise ConfigError(f"--explorers {text}: {RANDOM} has no fields.")
+        return RandomGoals()
+    if name not in EXPLORERS:
+        raise ConfigError(f"--explorers: there is no '{name}'. There is: {', '.join((*EXPLORERS, RANDOM))}.")
+    assignments = [field for field in fields.split(",") if field]
+    if name == "semexp" and weights is not None and not any(each.startswith("weights=") for each in assignments):
+        assignments.append(f"weights={weights}")
+    try:
+        return with_fields(EXPLORERS[name], parse_assignments(assignments))
+    except ConfigError as error:
+        raise ConfigError(f"--explorers {text}: {error}") from None
+
+
+def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> dict[str, Any]:
+    """Plays one episode; its house, goal and start depend on its number and the seed only."""
+    file = plans[number % len(plans)]
+    plan = _read(file)
+    goal, start = draw_goal_and_start(plan, np.random.default_rng((seed, number)))
+    found = play(agent, PlanCamera(plan), goal, start, seed=seed + number, until_sight=True)
+    return {"house": file.stem, "goal": goal, "episode": number, **found}
+
+
+def row(name: str, played: Sequence[Mapping[str, Any]], first: Sequence[Mapping[str, Any]]) -> str:
+    """Returns the figures of an explorer, and the ratio of its steps to those of the first one, as text."""
+    steps, others = (np.array([line["steps_to_first_sight"] for line in lines], float) for lines in (played, first))
+    seen = np.array([line["gt_explored"] for line in played], float)
+    houses = [str(line["house"]) for line in played]
+    low, high = np.percentile(_resampled(houses, steps), [2.5, 97.5])
+    ratio = np.percentile(_resampled(houses, steps) / _resampled(houses, others), [2.5, 97.5])
+    collisions, metres = (float(np.mean([line[key] for line in played])) for key in ("collisions", "path_length"))
+    return (
+        f"{name:34s} seen {seen.mean():.3f}  steps to first sight {steps.mean():6.1f} [{low:.1f}, {high:.1f}]  median "
+        f"{np.median(steps):5.1f}  ratio {steps.mean() / others.mean():.3f} [{ratio[0]:.3f}, {ratio[1]:.3f}]  "
+        f"collisions {collisions:.1f}  path {metres:.1f} m"
+    )
+
+
+def _resampled(houses: Sequence[str], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the mean of values in 2000 bootstrap samples of the houses, the same samples at each call."""
+    names, index = np.unique(houses, return_inverse=True)
+    total, count = np.bincount(index, values), np.bincount(index)
+    drawn = np.random.default_rng(0).integers(len(names), size=(2000, len(names)))
+    return total[drawn].sum(1) / count[drawn].sum(1)
+
+
+def _plans(args: Args) -> list[Path]:
+    """Returns the plans of the houses that are asked for."""
+    trained, held_back = split_plans(args.plans)
+    every = sorted(trained + held_back)
+    of_poni = [file for file in every if potential_files.held_back(file)]
+    parts = {"held-back": held_back, "trained": trained, "held-back-poni": of_poni, "all": every}
+    if args.houses not in parts:
+        raise ConfigError(f"--houses must be one of {', '.join(parts)}, got '{args.houses}'.")
+    if not parts[args.houses]:
+        raise ConfigError(f"--houses {args.houses}: none of the plans is of these houses.")
+    return parts[args.houses]
+
+
+_read = functools.lru_cache(256)(read_plan)
+
+
+if __name__ == "__main__":
+    sys.exit(cli.run(Args, main))

@@ -1,0 +1,1 @@
+"""Demonstrations for imitation, and the comparison of networks that train for the same time."""
