@@ -42,6 +42,7 @@ from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.houses.packing import packed
 from sim.interface import ConfigError, SuccessRule
+from sim.invocation import command
 from sim.reading import read_bytes
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
@@ -168,7 +169,7 @@ def house_files(folder: Path) -> tuple[str, ...]:
         tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
     )
     if not names:
-        raise ConfigError(f"There are 0 houses in '{folder}' (`stubborn houses generate` makes some).")
+        raise ConfigError(f"There are 0 houses in '{folder}' (`{command('houses', 'generate')}` makes some).")
     return names
 
 

@@ -4,8 +4,8 @@ stubborn merge runs/big                       # runs/big/shard_*_of_* into runs/
 stubborn merge runs/a runs/b --out runs/both
 
 Lines, trajectories, videos and recordings are copied, and the summary is computed from all lines. The command can be
-repeated, also while shards are still running: it adds new episodes. The merged folder is a run: `stubborn run` with the same
-options and this --out runs the missing episodes.
+repeated, also while shards are still running: it adds new episodes. The merged folder is a run: `stubborn run` with the
+same options and this --out runs the missing episodes.
 """
 
 from __future__ import annotations

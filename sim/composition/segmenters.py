@@ -20,6 +20,7 @@ from sim.configuration import as_json
 from sim.detectors.noisy import NoisyConfig, NoisySegmenter
 from sim.errors import ConfigError
 from sim.interface import Observation, Scores, Segmenter, SegmenterSpec
+from sim.invocation import command
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from stubborn.segmentation.shipped import SHIPPED_REDNET
 
@@ -168,7 +169,7 @@ def weights_file(weights: Path | None) -> Path:
     file = weights or SHIPPED_REDNET
     if not file.is_file():
         hint = (
-            " It ships with the package; `stubborn train segmentation` makes one of your own."
+            f" It ships with the package; `{command('train', 'segmentation')}` makes one of your own."
             if file == SHIPPED_REDNET
             else ""
         )

@@ -143,7 +143,8 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
         files = sorted(file.resolve() for file in folder.rglob("*.npz"))
         if not files:
             raise ConfigError(
-                f"No demonstration in '{folder}': `python -m tools.training.render_demonstrations` writes them."
+                f"No demonstration in '{folder}': `python -m tools.training.render_demonstrations` "
+                "of the repository writes them."
             )
         found += files
     return list(dict.fromkeys(found))

@@ -28,6 +28,7 @@ from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 from sim.interface import GOAL_CATEGORIES, ConfigError
+from sim.invocation import command
 from sim.paths import assets_dir
 from sim.reading import Name, first_unprintable, printable, read_json
 
@@ -147,7 +148,7 @@ def load_split(name_or_path: str | Path) -> Split:
     if not _index_of(folder).is_file():
         raise ConfigError(
             f"Split '{folder}' has no {_index_of(folder).name}: a split is a folder of house files with its episodes "
-            "beside them (`stubborn episodes` makes them)."
+            f"beside them (`{command('episodes')}` makes them)."
         )
     return _read_split(folder)
 
@@ -267,7 +268,7 @@ def _read_split(folder: Path) -> Split:
     if house_list and house_list.version != version:
         raise ConfigError(
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
-            "generate both again (`stubborn houses generate`, `stubborn episodes`)."
+            f"generate both again (`{command('houses', 'generate')}`, `{command('episodes')}`)."
         )
     sums = dict(house_list.sha256 if house_list else _file_sums(houses))
     labels = labels_of(folder)

@@ -1,8 +1,8 @@
 """The catalogue of procedural textures; each one is drawn by a function of `texture_patterns` with its own seed.
 
 Most are grey, so that a `Look` tints them; brick, terrazzo and rugs have their own colours.
-`tools.maintenance.make_textures` writes them as PNG files; houses refer to the files by name. Every texture belongs to one pool: train houses never show
-a held-out one.
+`tools.maintenance.make_textures` writes them as PNG files; houses refer to the files by name. Every texture
+belongs to one pool: train houses never show a held-out one.
 """
 
 from __future__ import annotations

@@ -15,11 +15,11 @@ from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labe
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.houses.references import require_root
 from sim.interface import MPCAT40_ID
+from sim.invocation import command
 from sim.reading import read_json, reason_of
 
 FLOOR_TOLERANCE_M = 0.01
 """Largest distance of the top of the ground floor from z = 0."""
-HINT = "A scene from elsewhere needs --labels: `stubborn label` proposes the rules."
 _NOT_CONVEX = {
     int(mujoco.mjtGeom.mjGEOM_HFIELD): "height field",
     int(mujoco.mjtGeom.mjGEOM_SDF): "signed distance field",
@@ -78,7 +78,8 @@ def _validated(house: House, model: mujoco.MjModel) -> Labels:
     try:
         return validate_house(house, model)
     except HouseError as error:
-        raise HouseError(str(error) if house.rules is not None else f"{error} {HINT}") from None
+        hint = f" A scene from elsewhere needs --labels: `{command('label')}` proposes the rules."
+        raise HouseError(str(error) if house.rules is not None else f"{error}{hint}") from None
 
 
 def validate_house(house: House, model: mujoco.MjModel) -> Labels:

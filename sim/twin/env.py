@@ -18,6 +18,7 @@ from sim.errors import ConfigError, EpisodeError
 from sim.geometry.grid import GridFrame, Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, MAX_STEPS, Action
+from sim.invocation import command
 from sim.plans.episode import PlanEpisode, draw_goal, draw_goal_and_start
 from sim.plans.motion_kernels import mark_square, mark_swept
 from sim.plans.plan import Plan, read_plan
@@ -139,7 +140,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         self.files = sorted(plans.glob("*.npz")) if isinstance(plans, Path) else list(plans)
         if not self.files:
             where = f" in '{plans}'" if isinstance(plans, Path) else ""
-            raise ConfigError(f"No plan{where}: `stubborn houses plans` writes them.")
+            raise ConfigError(f"No plan{where}: `{command('houses', 'plans')}` writes them.")
         self._camera: tuple[int, PlanCamera] | None = None
         self._frame = GridFrame.around_start(self.config.map_cells, self.config.cell_m)
         self._planner = Planner(self.config.planning, visited_ground)

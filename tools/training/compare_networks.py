@@ -4,8 +4,8 @@
         --hours 1 --seeds 0 1 --out runs/networks
 
 Each network and seed is a run of `stubborn train segmentation` in `<out>/<network>_<seed>`; `lite0-imagenet` is `lite0`
-from ImageNet weights with a tenth of the learning rate for its encoder. The runs take turns, a part of the time each, so
-that a stopped comparison is still at equal times; the same command resumes. With --hours 0 only the table is written.
+from ImageNet weights with a tenth of the learning rate for its encoder. The runs take turns, a part of the time each,
+so that a stopped comparison is still at equal times; the same command resumes. --hours 0 only writes the table.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import msgspec
 import numpy as np
 
 from sim import cli
+from sim.commands.train import segmentation
 from sim.files import write_atomically
 from sim.interface import ConfigError
 from sim.reading import Count as ReadCount

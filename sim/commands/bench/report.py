@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
@@ -21,7 +22,9 @@ from sim.paths import code_hash
 from sim.reading import reason_of
 from sim.sensors.opengl import describe_gl
 
-BEGIN, END = "<!-- bench: begin, written by `stubborn bench` -->", "<!-- bench: end -->"
+BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
+_BEGIN = re.compile(r"<!-- bench: begin\b.*?-->")
+"""The first mark; a page may have a note in it."""
 COLUMNS = ("part", "what", "measured", "baseline", "ratio", "goal", "")
 
 
@@ -115,11 +118,11 @@ def around_marks(page: Path) -> tuple[str, str]:
         old = page.read_text(encoding="utf-8")
     except (OSError, UnicodeError) as error:
         raise ConfigError(f"--markdown '{page}' cannot be read: {reason_of(error)}.") from None
-    before, begin, rest = old.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
+    begin = _BEGIN.search(old)
+    _, end, after = old[begin.end() :].partition(END) if begin else ("", "", "")
+    if begin is None or not end:
         raise ConfigError(f"--markdown '{page}' has no place for the table: two lines, {BEGIN} and {END}.")
-    return before + begin, end + after
+    return old[: begin.end()], end + after
 
 
 def _quantity(value: float, unit: str) -> str:

@@ -40,6 +40,7 @@ from sim.housegen.rooms import PlanKind
 from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
+from sim.invocation import command
 from sim.paths import assets_dir
 
 
@@ -99,7 +100,7 @@ def main(args: Args) -> int:
         raise ConfigError("A shipped split has no imported furniture: leave out --split, or --furniture.")
     for option, given in (("--transfer-test", args.transfer_test), ("--only-imported", args.only_imported)):
         if given and args.furniture is None:
-            raise ConfigError(f"{option} needs --furniture, a folder that `stubborn import furniture` made.")
+            raise ConfigError(f"{option} needs --furniture, a folder that `{command('import', 'furniture')}` made.")
     began_s = time.perf_counter()
     if args.split == "train":
         made = list(_write_train(args))

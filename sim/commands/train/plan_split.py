@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sim.interface import ConfigError
+from sim.invocation import command
 from sim.plans.plan import house_of
 
 HELD_BACK = 10
@@ -24,7 +25,7 @@ def split_plans(folders: Iterable[Path]) -> tuple[list[Path], list[Path]]:
     for folder in folders:
         files = sorted(folder.glob("*.npz"))
         if not files:
-            raise ConfigError(f"No plan in '{folder}': `stubborn houses plans` writes them.")
+            raise ConfigError(f"No plan in '{folder}': `{command('houses', 'plans')}` writes them.")
         for file in files:
             (held_back if zlib.crc32(house_of(file.stem).encode()) % HELD_BACK == 0 else trained).append(file)
     return trained, held_back

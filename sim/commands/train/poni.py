@@ -26,6 +26,7 @@ from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
 from sim.commands.train.training_files import read_columns
 from sim.interface import ConfigError
+from sim.invocation import command
 from sim.plans.plan import read_plan
 from sim.twin.potential_choices import Choices, add_choices
 from sim.twin.potential_files import HELD_BACK, SYMMETRIES, Batch, SampleSet, held_back, write_samples
@@ -84,7 +85,7 @@ def make_samples(args: Args, config: SampleConfig) -> list[Path]:
     """Writes the samples of all plans that have none yet, and returns the files of all."""
     plans = [file for folder in args.plans for file in sorted(folder.glob("*.npz"))]
     if not plans:
-        raise ConfigError(f"No plan in {', '.join(map(str, args.plans))}: `stubborn houses plans` writes them.")
+        raise ConfigError(f"No plan in {', '.join(map(str, args.plans))}: `{command('houses', 'plans')}` writes them.")
     folder = args.samples or args.out / "samples"
     files = [folder / f"{plan.parent.name}-{plan.name}" for plan in plans]
     if len(set(files)) < len(files):

@@ -3,7 +3,7 @@
 stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 --out runs/semexp_0
 
 Plans are written by `stubborn houses plans`. Every tenth house, by a hash of its name, is held back for
-`tools.research.compare_explorers`. The same command continues a killed run, also with another --minutes or
+comparisons (`tools.research.compare_explorers` of the repository). The same command continues a killed run, also with another --minutes or
 --goals: `state.pt`
 holds weights, optimiser and progress.
 `train.csv` and `curve.png` hold the curve, `semexp.safetensors` the weights so far, `start.safetensors` those at the
@@ -110,7 +110,7 @@ def main(args: Args) -> int:
     torch.set_num_threads(1)  # the network is small
     run = Run(args, plans)
     run.train()
-    print(f"wrote {args.out / 'semexp.safetensors'}: `python -m tools.research.compare_explorers` compares it")
+    print(f"wrote {args.out / 'semexp.safetensors'}")
     return 0
 
 

@@ -74,7 +74,7 @@ class Args:
     pool: str | None = None
     """wide: new houses only, with the furniture of train and many more styles."""
     furniture: Path | None = None
-    """Folder of imported models (`stubborn import furniture`): new houses only, with those of the split train as well."""
+    """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
     views: cli.Count = 1000
     """Number of views in all shards."""
     out: cli.OutFolder

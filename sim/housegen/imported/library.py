@@ -23,6 +23,7 @@ from sim.housegen.imported.meshes import Part, read_parts
 from sim.housegen.imported.reduction import MAX_PLANT_TRIANGLES, MAX_TRIANGLES, UNIT_M, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped
+from sim.invocation import command
 from sim.paths import assets_dir
 from sim.reading import MAX_BYTES, read_json, read_npz
 
@@ -206,11 +207,11 @@ def read_index(folder: Path) -> list[Model]:
     """
     file = folder / INDEX
     if not file.is_file():
-        raise ConfigError(f"'{folder}' has no {INDEX}: make it with `stubborn import furniture`.")
+        raise ConfigError(f"'{folder}' has no {INDEX}: make it with `{command('import', 'furniture')}`.")
     try:
         content = read_json(file, _Index, what="List of models")
     except ConfigError as error:
-        raise ConfigError(f"{error} Import the models again with `stubborn import furniture`.") from None
+        raise ConfigError(f"{error} Import the models again with `{command('import', 'furniture')}`.") from None
     if content.version != VERSION:
         raise ConfigError(f"'{file}' has version {content.version}, not {VERSION}: import the models again.")
     for model in content.models:
