@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from sim import cli
+from sim.commands.main import COMMANDS as COMMANDS_OF_USERS
 from sim.errors import ConfigError
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -24,8 +25,12 @@ NUMBERS = {int: (-7, 10**30), float: (-7.0, math.nan, math.inf, 1e308)}
 
 def commands() -> dict[str, ModuleType]:
     """All modules with options and a main function."""
-    names = ["sim.run", "sim.report", "sim.teleop", *(f"tools.{file.stem}" for file in (ROOT / "tools").glob("*.py"))]
-    modules = {name: importlib.import_module(name) for name in sorted(names) if "def main(" in source(name)}
+    tools = [".".join(file.relative_to(ROOT).with_suffix("").parts) for file in (ROOT / "tools").glob("*/*.py")]
+    names = [
+        *(each.module for each in COMMANDS_OF_USERS.values()),
+        *(name for name in tools if "def main(" in source(name)),
+    ]
+    modules = {name: importlib.import_module(name) for name in sorted(names)}
     return {name: module for name, module in modules.items() if hasattr(module, "Args")}
 
 
@@ -101,7 +106,6 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--against HEAD --parts walk", "--parts must be some of"),
         ("--against HEAD --rounds 0", "--rounds must be at least 1"),
     ],
-    "tools.check_collisions": [("--run nowhere", "no results.jsonl")],
     "sim.commands.houses.check": [("--split nowhere", "Unknown split 'nowhere'"), ("--kind castle", "castle")],
     "tools.training.compare_networks": [
         ("--views nowhere --val-views nowhere --out OUT --networks vast", "No network 'vast'"),

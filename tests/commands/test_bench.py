@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.commands.bench import figures, report
+from sim.commands.bench import bench, figures, report
 from sim.commands.bench.calibration import Calibration
 from sim.commands.bench.figures import Figure, Goal, interleaved, stopwatch
 from sim.commands.bench.growth import MAP_CELLS, hall, memory_mb
@@ -22,7 +22,6 @@ from sim.houses.house import House
 from sim.interface import ConfigError
 from sim.sensors.camera import Camera
 from sim.world.world import World
-from tools import bench
 
 FIGURE = Figure(
     part="a", what="a frame", value=2.0, unit="ms", against="another", baseline=10.0, ratio=5.0, count=3,

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import torch
 
+from sim.commands.evaluate import segmentation as evaluate_rednet
 from sim.commands.evaluate.segmentation import Args
 from sim.interface import ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from tests.commands.test_train_segmentation import write_views
-from tools import evaluate_rednet
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
 

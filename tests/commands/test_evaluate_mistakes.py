@@ -13,12 +13,12 @@ import pytest
 
 from sim import run
 from sim.analysis.comparison import read_run
+from sim.commands.evaluate import mistakes as show_mistakes
 from sim.commands.evaluate.mistakes import Args
 from sim.interface import MPCAT40_ID, ConfigError
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.viewers.palette import PALETTE
 from tests.helpers.worlds import room, with_box
-from tools import show_mistakes
 
 
 @pytest.fixture(scope="module")

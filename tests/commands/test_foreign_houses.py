@@ -11,15 +11,19 @@ import pytest
 from numpy.typing import NDArray
 
 from sim import cli, run
+from sim.commands import episodes as make_episodes
+from sim.commands import gallery
+from sim.commands import label as label_house
+from sim.commands.views import generate as generate_views
 from sim.episodes.splits import load_split
 from sim.gl import mujoco
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.interface import GOAL_CATEGORIES, MPCAT40_ID
+from sim.viewers import house_pictures
 from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.foreign import SCENE, write_scene
 from tests.helpers.worlds import room
-from tools import gallery, generate_views, house_pictures, label_house, make_episodes
 
 
 @pytest.fixture(autouse=True)

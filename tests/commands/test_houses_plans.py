@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from sim.commands.houses import plans as export_plans
 from sim.interface import ConfigError
 from sim.plans.plan import read_plan, write_plan
-from tools import export_plans
 
 
 def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(

@@ -7,9 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from sim.commands.houses import generate as generate_houses
+from sim.commands.importing import furniture as import_furniture
+from sim.commands.views import generate as generate_views
 from sim.errors import ConfigError
 from tests.helpers.models import CHAIR, obj_text, properties, write_catalogue, write_folder
-from tools import generate_houses, generate_views, import_furniture
 
 pytest.importorskip("trimesh")
 pytest.importorskip("fast_simplification")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,13 +12,14 @@ import pytest
 
 from sim import run
 from sim.analysis.comparison import read_run
+from sim.commands import compare as compare_runs
+from sim.commands.reproduce import reproduce
 from sim.commands.reproduce.paper_tables import PAPER_TABLES, table_named
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError
 from sim.task.trajectory import FOLDER
 from tests.helpers.worlds import room, with_box
-from tools import compare_runs, reproduce
 
 AGENTS = ("oracle", "examples.my_agent:make")
 MINE = "examples.my_agent_make_gt_none_tiny"
@@ -180,11 +179,6 @@ def test_tables_are_made_again_from_the_folders_without_running_anything(
     monkeypatch.setattr(reproduce, "run_missing", lambda *_: pytest.fail("an episode was run"))
     assert reproduce.main(replace(args, minutes=0.0)) == 0
     assert page.read_bytes() == before
-
-
-def test_the_tool_runs_as_a_script_from_any_folder(tmp_path: Path) -> None:
-    command = [sys.executable, str(Path(reproduce.__file__)), "--help"]
-    assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
 
 
 def test_runs_of_one_agent_with_other_options_have_folders_of_their_own(args: reproduce.Args) -> None:

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.commands.train import cloned as train_cloned
 from sim.datasets.demonstrations import Demonstration, list_demonstrations, read_demonstration, write_demonstration
 from sim.interface import MPCAT40_ID, Action, ConfigError
 from sim.run import entry
 from stubborn.baselines.cloned_net import FILES
-from tools import render_demonstrations, train_cloned, twin_demonstrations
+from tools.training import render_demonstrations, twin_demonstrations
 
 
 def rows(file: Path) -> list[dict[str, str]]:

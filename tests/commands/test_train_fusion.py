@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.commands.train import fusion as train_tracks
 from sim.episodes.splits import Episode, write_split
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, ConfigError
 from tests.helpers.worlds import room, with_box
-from tools import train_tracks
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_pa
     whole = file.read_bytes()
     for broken in (b"PK", whole[: len(whole) // 2], whole[:200] + b"\xff" * 50 + whole[250:]):
         file.write_bytes(broken)
-        with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of tools/train_tracks\.py"):
+        with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of `stubborn train fusion`"):
             train_tracks.main(args)
 
 

@@ -18,7 +18,7 @@ from sim.plans.plan import write_plan
 from sim.twin.potential_files import held_back
 from stubborn.exploration.poni_net import CHANNELS, FILES, Predictor
 from tests.helpers.worlds import room, with_box
-from tools import draw_potentials
+from tools.research import draw_potentials
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from sim.commands.train import semexp as train_semexp
 from sim.commands.train.plan_split import split_plans
 from sim.interface import ConfigError
 from sim.plans.export import export_plans
@@ -18,7 +19,7 @@ from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.semexp_net import FILES
 from tests.helpers.gridworld import SMALL_CAMERA
 from tests.helpers.worlds import room, with_box
-from tools import compare_explorers, train_semexp
+from tools.research import compare_explorers
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from sim.commands.train import episode_logs
+from sim.commands.train import verifier as train_verifier
 from sim.composition.segmenters import KINDS
 from sim.detectors.noisy import NoisyConfig
 from sim.env.objectnav import ObjectNavEnv
@@ -21,7 +23,6 @@ from stubborn.detection.seeker import TargetSeeker
 from stubborn.detection.verification import FOLDER, FittedVerifier
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.worlds import room, with_box
-from tools import episode_logs, train_verifier
 
 
 @pytest.fixture(scope="module")

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import pytest
 
+from sim.commands import episodes as make_episodes
+from sim.commands.views import generate as generate_views
 from sim.commands.views.generate import FRESH_SEEDS_FROM, Args, main, plan
 from sim.episodes.splits import load_split
 from sim.housegen.furniture import CATALOGUE
 from sim.interface import ConfigError
 from stubborn.segmentation.dataset import list_shards, read_shard
 from tests.helpers.worlds import room, with_box
-from tools import generate_views, make_episodes
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +42,16 @@ def sums(out: Path) -> dict[str, str]:
 
 def test_workers_and_machines_write_the_same_shards_as_one_process(split: Path, tmp_path: Path) -> None:
     assert main(options(split, tmp_path / "one")) == 0
-    command = [sys.executable, "`stubborn views`", "--split", str(split), "--out", str(tmp_path / "two")]
+    command = [
+        sys.executable,
+        "-m",
+        "sim.commands.main",
+        "views",
+        "--split",
+        str(split),
+        "--out",
+        str(tmp_path / "two"),
+    ]
     command += ["--views", "9", "--views-per-shard", "3", "--shrink", "4", "--profile", "fast", "--workers", "2"]
     subprocess.run(command, check=True, capture_output=True)
     main(options(split, tmp_path / "three", shard="1/2"))

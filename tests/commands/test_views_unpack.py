@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from sim import cli
-from tools import unpack_views
+from sim.commands.views import unpack as unpack_views
 
 
 def png(kind: type, *more: int) -> bytes:

@@ -1,19 +1,66 @@
 """Code blocks of README and docs: what readers will copy, and how a test tries it without their hours.
 
 `TRIALS` has a line for every command that stands in a `sh` block. A command that is not in it fails
-`tests/tools/test_commands.py`, so whoever documents one says here how it is tried.
+`tests/commands/test_commands.py`, so whoever documents one says here how it is tried.
 """
 
 from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from sim.commands.main import COMMANDS, split
+
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
+OLD_NAMES_ARE_ERRORS = False
+"""To be set to True when no page names a command by its old path, such as tools/gallery.py."""
+MOVED = {
+    "generate_houses": "houses generate",
+    "check_houses": "houses check",
+    "export_plans": "houses plans",
+    "make_episodes": "episodes",
+    "make_traps": "traps",
+    "trap_report": "traps report",
+    "generate_views": "views",
+    "show_views": "views show",
+    "unpack_views": "views unpack",
+    "label_house": "label",
+    "import_furniture": "import furniture",
+    "train_rednet": "train segmentation",
+    "train_verifier": "train verifier",
+    "train_tracks": "train fusion",
+    "train_semexp": "train semexp",
+    "train_poni": "train poni",
+    "train_cloned": "train cloned",
+    "evaluate_rednet": "evaluate",
+    "show_mistakes": "evaluate mistakes",
+    "worst_objects": "evaluate objects",
+    "compare_runs": "compare",
+    "merge_runs": "merge",
+    "reproduce": "reproduce",
+    "gallery": "gallery",
+    "bench": "bench",
+}
+"""Files of tools/ that users called up to version 0.1, and the commands that they are now."""
+MOVED_TOOLS = {
+    "render_demonstrations": "training",
+    "twin_demonstrations": "training",
+    "compare_networks": "training",
+    "check_twin": "research",
+    "compare_explorers": "research",
+    "draw_potentials": "research",
+    "draw_trajectories": "research",
+    "bench_against": "maintenance",
+    "describe_houses": "maintenance",
+    "make_textures": "maintenance",
+    "readme_picture": "maintenance",
+    "split_report": "maintenance",
+}
+"""Other files of tools/, and the folders in which they are now."""
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
 
 
@@ -50,8 +97,41 @@ def blocks(page: Path) -> Iterator[Block]:
     assert open_fence is None, f"{page}: the block that begins in line {began} has no end"
 
 
+def canonical(words: Sequence[str]) -> str:
+    """Returns a command in the form that `TRIALS` has, whatever form a page prefers.
+
+    `.venv/bin/stubborn run` and `python -m sim.run` become `stubborn run`; old names become the new ones.
+    """
+    first, rest = words[0], list(words[1:])
+    if first in ("stubborn", ".venv/bin/stubborn"):
+        return shlex.join(["stubborn", *rest])
+    if first not in ("python", PYTHON) or not rest:
+        return shlex.join(words)
+    if rest[0] == "-m" and rest[1] in ("sim.run", "sim.report", "sim.web", "sim.teleop"):
+        return shlex.join(["stubborn", rest[1].removeprefix("sim."), *rest[2:]])
+    if rest[0] == "-m" and rest[1].startswith("examples."):
+        return shlex.join([PYTHON, f"{rest[1].replace('.', '/')}.py", *rest[2:]])
+    old = re.fullmatch(r"tools/(\w+)\.py", rest[0])
+    if old and old[1] in MOVED:
+        return shlex.join(["stubborn", *MOVED[old[1]].split(), *rest[1:]])
+    if old and old[1] in MOVED_TOOLS:
+        return shlex.join([PYTHON, "-m", f"tools.{MOVED_TOOLS[old[1]]}.{old[1]}", *rest[1:]])
+    return shlex.join([PYTHON, *rest])
+
+
+def old_names() -> list[str]:
+    """Every place where a page names a command by its old path."""
+    found = []
+    for page in pages():
+        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), start=1):
+            for name in re.findall(r"\btools[/.](\w+)", line):
+                if name in MOVED or name in MOVED_TOOLS:
+                    found.append(f"{page.relative_to(ROOT)}:{number}: {name}")
+    return found
+
+
 def commands() -> dict[str, str]:
-    """Every command of the shell blocks, its words joined by single blanks, and where it stands first."""
+    """Every command of the shell blocks in its canonical form, and where it stands first."""
     found: dict[str, str] = {}
     for page in pages():
         for block in blocks(page):
@@ -59,24 +139,38 @@ def commands() -> dict[str, str]:
                 for line in block.text.replace("\\\n", " ").splitlines():
                     words = shlex.split(line, comments=True)
                     if words:
-                        found.setdefault(shlex.join(words), f"{block.page}:{block.line}")
+                        found.setdefault(canonical(words), f"{block.page}:{block.line}")
     return found
 
 
 def unmarked_commands() -> dict[str, str]:
-    """Commands that start Python with a tool outside of `sh` blocks: in running text and in blocks of `text`."""
+    """Commands outside of `sh` blocks: in running text and in blocks of `text`. `stubborn` is an agent there as well."""
+    started = "|".join(sorted({name.split()[0] for name in COMMANDS}))
+    begins = re.compile(
+        rf"(?:\.venv/bin/)?(?:python (?:-m (?:sim|tools|stubborn)\b|tools/|examples/)|stubborn (?:{started})\b)"
+    )
     found: dict[str, str] = {}
     for page in pages():
         lines = [line for block in blocks(page) if block.language == "text" for line in block.text.splitlines()]
         prose = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
         for code in [*lines, *re.findall(r"`([^`]+)`", prose)]:
-            if not re.match(r"(?:\.venv/bin/)?python (?:-m (?:sim|tools|stubborn)\b|tools/|examples/)", code):
+            if not begins.match(code):
                 continue
-            words = shlex.split(code.replace("\n", " "), comments=True)
-            named_only = len(words) == (3 if words[1] == "-m" else 2)
-            if not named_only and "..." not in words:
-                found.setdefault(shlex.join([PYTHON, *words[1:]]), str(page.relative_to(ROOT)))
+            command = canonical(shlex.split(code.replace("\n", " "), comments=True))
+            name, options = program_of(command)
+            if options and not {"...", "|"} & set(options) and name:
+                found.setdefault(command, str(page.relative_to(ROOT)))
     return found
+
+
+def program_of(command: str) -> tuple[str, list[str]]:
+    """What a canonical command starts (`views show`, `tools.research.check_twin`, `examples/x.py`), and its options."""
+    words = shlex.split(command)
+    if words[0] == "stubborn":
+        return split(words[1:])
+    if words[:2] == [PYTHON, "-m"]:
+        return words[2], words[3:]
+    return words[1] if len(words) > 1 else "", words[2:]
 
 
 @dataclass(frozen=True)
@@ -86,24 +180,23 @@ class Only:
     why: str
 
 
-_RUN = f"{PYTHON} -m sim.run"
+_RUN = "stubborn run"
 _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
-_HOUSES = f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 1 --out {{tmp}}/houses"
+_HOUSES = "stubborn houses generate --first-seed 0 --houses 1 --out {tmp}/houses"
 _SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
 _SEARCHES = (
-    f"{PYTHON} tools/twin_demonstrations.py --first-seed 19 --houses 2 --kind studio --episodes 4 "
+    f"{PYTHON} -m tools.training.twin_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
     "--out {tmp}/demonstrations/searches"
 )
-_TRAIN_CLONED = f"{PYTHON} tools/train_cloned.py --demonstrations {{tmp}}/demonstrations --minutes 0.1 --threads 2"
+_TRAIN_CLONED = "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2"
 _CLONED = f"{_TRAIN_CLONED} --streams 2 --out {{tmp}}/cloned"
-_PLANS = (f"{PYTHON} tools/export_plans.py --pool train --kind studio --houses 4 --out {{tmp}}/plans",)
-_EPISODES = f"{PYTHON} tools/make_episodes.py --split {{tmp}}/houses --episodes 3"
+_PLANS = ("stubborn houses plans --pool train --kind studio --houses 4 --out {tmp}/plans",)
+_EPISODES = "stubborn episodes --split {tmp}/houses --episodes 3"
 _VIEWS = (
-    f"{PYTHON} tools/generate_views.py --split val --views 4 --shrink 4 --profile fast --out {{tmp}}/views --workers 1"
-    " --views-per-shard 4"
+    "stubborn views --split val --views 4 --shrink 4 --profile fast --out {tmp}/views --workers 1 --views-per-shard 4"
 )
 _FOREIGN = f"{PYTHON} -c 'from pathlib import Path; from tests.helpers.foreign import *; "
 _SCENE = _FOREIGN + 'write_scene(Path("{tmp}/s"))\''
@@ -113,23 +206,23 @@ _IN_SCENE = (
     " --out {tmp}/run"
 )
 _OF_SCENE = "--house {tmp}/s/flat.xml --labels {tmp}/s/labels.json"
-_PACKED = f"{PYTHON} tools/make_episodes.py {_OF_SCENE} --episodes 2 --out {{tmp}}/split"
+_PACKED = f"stubborn episodes {_OF_SCENE} --episodes 2 --out {{tmp}}/split"
 _KITCHEN = "runs/worlds/gymnasium_robotics/envs/assets/kitchen_franka"
-_PACKAGE = Only("needs files of another package; tests/tools/test_foreign_houses.py has a scene of its own")
+_PACKAGE = Only("needs files of another package; tests/commands/test_foreign_houses.py has a scene of its own")
 _MODELS = (
     _FOREIGN.replace("foreign", "models") + 'write_folder(Path("{tmp}/source"), chairs=8)\'',
-    f"{PYTHON} tools/import_furniture.py --source {{tmp}}/source --out {{tmp}}/models",
+    "stubborn import furniture --source {tmp}/source --out {tmp}/models",
 )
 _TRANSFER = (
     *_MODELS,
-    f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --transfer-test --houses 1 --out {{tmp}}/transfer",
-    f"{PYTHON} tools/make_episodes.py --split {{tmp}}/transfer --recipe val --episodes 3",
+    "stubborn houses generate --furniture {tmp}/models --transfer-test --houses 1 --out {tmp}/transfer",
+    "stubborn episodes --split {tmp}/transfer --recipe val --episodes 3",
 )
 _UNSEEN = (
     *_MODELS,
-    f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --furniture-split transfer --only-imported"
+    "stubborn houses generate --furniture {tmp}/models --furniture-split transfer --only-imported"
     " --first-seed 7000 --houses 1 --area-m2 60 --out {tmp}/unseen",
-    f"{PYTHON} tools/make_episodes.py --split {{tmp}}/unseen --recipe val --episodes 3",
+    "stubborn episodes --split {tmp}/unseen --recipe val --episodes 3",
 )
 _SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
 
@@ -144,18 +237,16 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --episodes 20 --workers 2 --record --out runs/mine": (
         f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
-    f"{PYTHON} -m sim.report runs/mine": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    "stubborn report runs/mine": (_RECORDED, "stubborn report {tmp}/mine"),
     f"{_RUN} --agent examples.my_agent:AGENT --video": (
         f"{_RUN} --agent examples.my_agent:AGENT --video {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --semantics noisy --noise realsense": (
         f"{_RUN} --semantics noisy --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} -m sim.teleop --house examples/my_house.xml": Only(
-        "needs a terminal; tests/sim/test_teleop.py gives it one"
-    ),
-    f"{PYTHON} tools/reproduce.py ablation --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+    "stubborn teleop --house examples/my_house.xml": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
+    "stubborn reproduce ablation --episodes 200 --workers 2": (
+        "stubborn reproduce ablation --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
     ),
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
@@ -182,10 +273,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --semantics gt --explorer thorough --episodes 100 --workers 2 --out runs/after": (
         f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
     ),
-    f"{PYTHON} tools/compare_runs.py runs/before runs/after": (
+    "stubborn compare runs/before runs/after": (
         f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
         f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
-        f"{PYTHON} tools/compare_runs.py {{tmp}}/before {{tmp}}/after",
+        "stubborn compare {tmp}/before {tmp}/after",
     ),
     # docs/configuration.md
     f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300 --episodes 5": (
@@ -210,33 +301,32 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
         f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
-    f"{PYTHON} tools/bench.py --parts j": (f"{PYTHON} tools/bench.py --quick --parts j",),
+    "stubborn bench --parts j": ("stubborn bench --quick --parts j",),
     # docs/plans.md
-    f"{PYTHON} tools/export_plans.py --split val --out runs/plans/val --workers 2": (
-        f"{PYTHON} tools/export_plans.py --split val --houses 1 --workers 1 --out {{tmp}}/plans",
+    "stubborn houses plans --split val --out runs/plans/val --workers 2": (
+        "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
     ),
-    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2": (
-        f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --kind studio --houses 1 --workers 1"
-        " --out {tmp}/plans",
+    "stubborn houses plans --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2": (
+        "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
-    f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large": Only(
+    "stubborn houses plans --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large": Only(
         "a large house takes long; the command before it is tried with a small one"
     ),
     f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
         f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 1 --workers 1 --out {{tmp}}/real",
     ),
-    f"{PYTHON} tools/check_twin.py --plans runs/plans/val --runs runs/real --explore": (
-        f"{PYTHON} tools/export_plans.py --split val --houses 1 --out {{tmp}}/plans",
+    f"{PYTHON} -m tools.research.check_twin --plans runs/plans/val --runs runs/real --explore": (
+        "stubborn houses plans --split val --houses 1 --out {tmp}/plans",
         f"{_RUN} --semantics gt --record --episodes 1 --out {{tmp}}/real",
-        f"{PYTHON} tools/check_twin.py --plans {{tmp}}/plans --runs {{tmp}}/real --explore --out {{tmp}}/lines.jsonl",
+        f"{PYTHON} -m tools.research.check_twin --plans {{tmp}}/plans --runs {{tmp}}/real --explore"
+        " --out {tmp}/lines.jsonl",
     ),
     # docs/learned_exploration.md
-    f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
-        f"{PYTHON} tools/export_plans.py --pool train --first-seed 0 --kind studio --houses 1 --workers 1"
-        " --out {tmp}/plans",
+    "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
+        "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
     (
-        f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 5000 --houses 42 "
+        "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 5000 --houses 42 "
         "--out runs/plans/large_train"
     ): Only("a large house takes long; the command before it is tried with a small one"),
     f"{_RUN} --agent semexp --semantics gt --episodes 5": (
@@ -246,14 +336,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     (
-        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 "
+        "stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 "
         "--out runs/semexp_0"
     ): (
         *_PLANS,
-        f"{PYTHON} tools/train_semexp.py --plans {{tmp}}/plans --minutes 0.05 --seed 0 --out {{tmp}}/semexp",
+        "stubborn train semexp --plans {tmp}/plans --minutes 0.05 --seed 0 --out {tmp}/semexp",
     ),
     (
-        f"{PYTHON} tools/train_semexp.py --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 1 "
+        "stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 1 "
         "--out runs/semexp_1"
     ): Only("the command before it with another seed"),
     **{
@@ -264,30 +354,31 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         for control in ("semantics=shuffled", "goal=wrong", "semantics=none")
     },
     (
-        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --episodes 120 "
+        f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train --episodes 120 "
         "--explorers random-goals corners semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
         "semexp:semantics=none"
     ): (
         *_PLANS,
-        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --explorers random-goals",
+        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 "
+        "--explorers random-goals",
     ),
     (
-        f"{PYTHON} tools/compare_explorers.py --plans runs/plans/train runs/plans/large_train --houses held-back-poni "
-        "--episodes 72 --explorers frontier corners tour poni poni:goal=wrong poni:semantics=shuffled "
+        f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train "
+        "--houses held-back-poni --episodes 72 --explorers frontier corners tour poni poni:goal=wrong poni:semantics=shuffled "
         "poni:semantics=none"
     ): (
         *_PLANS,
-        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 "
+        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 "
         "--explorers poni:goal=wrong",
     ),
-    f"{PYTHON} tools/train_poni.py --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni": (
+    "stubborn train poni --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni": (
         *_PLANS,
-        f"{PYTHON} tools/train_poni.py --plans {{tmp}}/plans --minutes 0.05 --out {{tmp}}/poni",
+        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
     ),
-    f"{PYTHON} tools/draw_potentials.py --samples runs/poni/samples --out potentials.png": (
+    f"{PYTHON} -m tools.research.draw_potentials --samples runs/poni/samples --out potentials.png": (
         *_PLANS,
-        f"{PYTHON} tools/train_poni.py --plans {{tmp}}/plans --minutes 0.05 --out {{tmp}}/poni",
-        f"{PYTHON} tools/draw_potentials.py --samples {{tmp}}/poni/samples --out {{tmp}}/potentials.png",
+        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
+        f"{PYTHON} -m tools.research.draw_potentials --samples {{tmp}}/poni/samples --out {{tmp}}/potentials.png",
     ),
     f"{_RUN} --agent poni --semantics gt": (
         f"{_RUN} --agent poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
@@ -295,16 +386,15 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
         f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 6300 --houses 24 "
+    "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 6300 --houses 24 "
     "--out runs/plans/large_new": (
-        f"{PYTHON} tools/export_plans.py --pool train --kind large --area-m2 280 --first-seed 6300 --houses 1 "
-        "--out {tmp}/plans",
+        "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 6300 --houses 1 --out {tmp}/plans",
     ),
-    f"{PYTHON} tools/compare_explorers.py --plans runs/plans/large_new --houses all --episodes 96 --seed 11 "
+    f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/large_new --houses all --episodes 96 --seed 11 "
     "--explorers corners tour poni informed-tour informed-tour:potentials.goal=wrong "
     "informed-tour:potentials.semantics=none": (
         *_PLANS,
-        f"{PYTHON} tools/compare_explorers.py --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
+        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
         "--explorers informed-tour:potentials.goal=wrong",
     ),
     f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
@@ -317,14 +407,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent cloned --semantics gt --split val --episodes 1 --workers 1 --out {{tmp}}/run",
     ),
     f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
-    f"{PYTHON} tools/render_demonstrations.py runs/shown/oracle --out runs/demonstrations": (
+    f"{PYTHON} -m tools.training.render_demonstrations runs/shown/oracle --out runs/demonstrations": (
         _SHOWN,
-        f"{PYTHON} tools/render_demonstrations.py {{tmp}}/shown/oracle --out {{tmp}}/demonstrations",
+        f"{PYTHON} -m tools.training.render_demonstrations {{tmp}}/shown/oracle --out {{tmp}}/demonstrations",
     ),
-    f"{PYTHON} tools/twin_demonstrations.py --houses 112 --episodes 40 --out runs/demonstrations/searches": (
+    f"{PYTHON} -m tools.training.twin_demonstrations --houses 112 --episodes 40 --out runs/demonstrations/searches": (
         _SEARCHES,
     ),
-    f"{PYTHON} tools/train_cloned.py --demonstrations runs/demonstrations --minutes 30 --threads 2 --out runs/cloned": (
+    "stubborn train cloned --demonstrations runs/demonstrations --minutes 30 --threads 2 --out runs/cloned": (
         _SEARCHES,
         _CLONED,
     ),
@@ -338,14 +428,14 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90' --episodes 1": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out runs/my_gallery": (
-        f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out {{tmp}}/gallery",
+    "stubborn gallery --houses examples/my_house.xml --out runs/my_gallery": (
+        "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
-    f"{PYTHON} tools/generate_houses.py --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
-    f"{PYTHON} tools/check_houses.py --pool heldout --seeds 200 --workers 2": (
-        f"{PYTHON} tools/check_houses.py --pool heldout --seeds 1 --workers 1 --kind studio --views 2",
+    "stubborn houses generate --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
+    "stubborn houses check --pool heldout --seeds 200 --workers 2": (
+        "stubborn houses check --pool heldout --seeds 1 --workers 1 --kind studio --views 2",
     ),
-    f"{PYTHON} tools/make_episodes.py --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
+    "stubborn episodes --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
         _HOUSES,
         _EPISODES,
@@ -355,150 +445,144 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} examples/my_furniture.py runs/my_house.xml": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
     ),
-    f"{PYTHON} tools/gallery.py --houses runs/my_house.xml --out runs/my_gallery": (
+    "stubborn gallery --houses runs/my_house.xml --out runs/my_gallery": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
-        f"{PYTHON} tools/gallery.py --houses {{tmp}}/my_house.xml --out {{tmp}}/gallery",
+        "stubborn gallery --houses {tmp}/my_house.xml --out {tmp}/gallery",
     ),
     f"{_RUN} --house runs/my_house.xml --goal stool --episodes 2": (
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
         f"{_RUN} --house {{tmp}}/my_house.xml --goal stool --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/import_furniture.py --source /usr/share/sweethome3d/furniture --out runs/models": Only(
+    "stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models": Only(
         "needs Debian's package; a catalogue of its form is read in tests/sim/housegen/test_imported.py"
     ),
-    f"{PYTHON} tools/import_furniture.py --source my_models --out runs/my_models": _MODELS,
-    f"{PYTHON} tools/gallery.py --sheet --furniture runs/models --out runs/models_sheets": (
+    "stubborn import furniture --source my_models --out runs/my_models": _MODELS,
+    "stubborn gallery --sheet --furniture runs/models --out runs/models_sheets": (
         *_MODELS,
-        f"{PYTHON} tools/gallery.py --sheet --furniture {{tmp}}/models --categories table --out {{tmp}}/sheets",
+        "stubborn gallery --sheet --furniture {tmp}/models --categories table --out {tmp}/sheets",
     ),
-    f"{PYTHON} tools/generate_houses.py --furniture runs/models --houses 4 --out runs/furnished": (
+    "stubborn houses generate --furniture runs/models --houses 4 --out runs/furnished": (
         *_MODELS,
-        f"{PYTHON} tools/generate_houses.py --furniture {{tmp}}/models --houses 1 --out {{tmp}}/furnished",
+        "stubborn houses generate --furniture {tmp}/models --houses 1 --out {tmp}/furnished",
     ),
-    f"{PYTHON} tools/generate_views.py --pool wide --furniture runs/models --views 20000 --shrink 2"
-    " --out views_models": (
+    "stubborn views --pool wide --furniture runs/models --views 20000 --shrink 2 --out views_models": (
         *_MODELS,
-        f"{PYTHON} tools/generate_views.py --pool wide --furniture {{tmp}}/models --views 1 --shrink 4 --profile fast"
+        "stubborn views --pool wide --furniture {tmp}/models --views 1 --shrink 4 --profile fast"
         " --out {tmp}/views --workers 1",
     ),
-    f"{PYTHON} tools/generate_houses.py --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
-    f"{PYTHON} tools/make_episodes.py --split runs/transfer --recipe val": _TRANSFER,
-    f"{PYTHON} tools/generate_views.py --split runs/transfer --views 2000 --shrink 2 --profile fast"
-    " --out views_transfer": (
+    "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
+    "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
+    "stubborn views --split runs/transfer --views 2000 --shrink 2 --profile fast --out views_transfer": (
         *_TRANSFER,
-        f"{PYTHON} tools/generate_views.py --split {{tmp}}/transfer --views 1 --shrink 4 --profile fast"
-        " --out {tmp}/views --workers 1",
+        "stubborn views --split {tmp}/transfer --views 1 --shrink 4 --profile fast --out {tmp}/views --workers 1",
     ),
     f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
         *_TRANSFER,
         f"{_RUN} --split {{tmp}}/transfer --episodes 1 --agent oracle --workers 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/gallery.py --sheet --categories stool --pool train --out runs/gallery": (
-        f"{PYTHON} tools/gallery.py --sheet --categories fireplace --pool train --out {{tmp}}/gallery",
+    "stubborn gallery --sheet --categories stool --pool train --out runs/gallery": (
+        "stubborn gallery --sheet --categories fireplace --pool train --out {tmp}/gallery",
     ),
     # docs/report.md
     f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
         " --out {tmp}/harsh",
     ),
-    f"{PYTHON} -m sim.report runs/harsh": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
-    f"{PYTHON} -m sim.report runs/before runs/after": (
+    "stubborn report runs/harsh": (_RECORDED, "stubborn report {tmp}/mine"),
+    "stubborn report runs/before runs/after": (
         f"{_RUN} --agent oracle --goal bed --episodes 1 --out {{tmp}}/before",
         _RECORDED,
-        f"{PYTHON} -m sim.report {{tmp}}/before {{tmp}}/mine",
+        "stubborn report {tmp}/before {tmp}/mine",
     ),
-    f"{PYTHON} -m sim.report runs/may runs/june runs/july": (
+    "stubborn report runs/may runs/june runs/july": (
         _RECORDED,
-        f"{PYTHON} -m sim.report {{tmp}}/mine {{tmp}}/mine {{tmp}}/mine",
+        "stubborn report {tmp}/mine {tmp}/mine {tmp}/mine",
     ),
     # docs/gallery.md
     **{
-        f"{PYTHON} tools/gallery.py --houses assets/mjcf_houses/{house}.xml --out runs/gallery": (
-            f"{PYTHON} tools/gallery.py --houses examples/my_house.xml --out {{tmp}}/gallery",
+        f"stubborn gallery --houses assets/mjcf_houses/{house}.xml --out runs/gallery": (
+            "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
         )
         for house in ("val/val_03", "large/large_10", "hazards/hazards_02")
     },
-    f"{PYTHON} tools/trap_report.py --out runs/traps --agents stubborn --traps glass_maze --headings 1": (
-        f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
+    "stubborn traps report --out runs/traps --agents stubborn --traps glass_maze --headings 1": (
+        "stubborn traps report --out {tmp}/traps --agents oracle --traps glass_pane --headings 1",
     ),
     f"{_RUN} --semantics noisy --episodes 6 --record --video --out runs/six": (
         f"{_RUN} --semantics noisy {_SMALL} --agent oracle --episodes 1 --record --video --out {{tmp}}/six",
     ),
-    f"{PYTHON} -m sim.report runs/six": (_RECORDED, f"{PYTHON} -m sim.report {{tmp}}/mine"),
+    "stubborn report runs/six": (_RECORDED, "stubborn report {tmp}/mine"),
     # docs/performance.md
-    f"{PYTHON} tools/bench.py --out runs/bench.json": (
-        f"{PYTHON} tools/bench.py --quick --parts c --out {{tmp}}/bench.json",
-    ),
-    f"{PYTHON} tools/bench.py --parts a,b,d": (f"{PYTHON} tools/bench.py --quick --parts a,b,d",),
+    "stubborn bench --out runs/bench.json": ("stubborn bench --quick --parts c --out {tmp}/bench.json",),
+    "stubborn bench --parts a,b,d": ("stubborn bench --quick --parts a,b,d",),
     # docs/scale.md
     f"{_RUN} --episodes 200 --workers 2 --out runs/two": (
         f"{_RUN} {_SMALL} --agent oracle --episodes 2 --workers 2 --out {{tmp}}/two",
     ),
     f"{_RUN} --episodes 1000 --shard 0/4 --out runs/big": (_SHARDS[0],),
     f"{_RUN} --episodes 1000 --shard 1/4 --out runs/big": (_SHARDS[1],),
-    f"{PYTHON} tools/merge_runs.py runs/big": (*_SHARDS, f"{PYTHON} tools/merge_runs.py {{tmp}}/big"),
+    "stubborn merge runs/big": (*_SHARDS, "stubborn merge {tmp}/big"),
     # docs/reproduce.md
-    f"{PYTHON} tools/reproduce.py ablation": (
-        f"{PYTHON} tools/reproduce.py ablation --episodes 1 --agents random oracle --out {{tmp}}/paper",
+    "stubborn reproduce ablation": (
+        "stubborn reproduce ablation --episodes 1 --agents random oracle --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits val --semantics rednet --agents stubborn stubborn-plus --episodes 200"
+    "stubborn reproduce splits --splits val --semantics rednet --agents stubborn stubborn-plus --episodes 200"
     " --workers 2": (
-        f"{PYTHON} tools/reproduce.py splits --splits val --semantics rednet --agents stubborn stubborn-plus"
+        "stubborn reproduce splits --splits val --semantics rednet --agents stubborn stubborn-plus"
         " --episodes 1 --workers 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits val --semantics noisy --agents stubborn stubborn-plus --episodes 200"
+    "stubborn reproduce splits --splits val --semantics noisy --agents stubborn stubborn-plus --episodes 200"
     " --workers 2": (
-        f"{PYTHON} tools/reproduce.py splits --splits val --semantics noisy --agents stubborn stubborn-plus"
+        "stubborn reproduce splits --splits val --semantics noisy --agents stubborn stubborn-plus"
         " --episodes 1 --workers 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
+    "stubborn reproduce splits --splits val --agents stubborn stubborn-plus --episodes 200 --workers 2": (
+        "stubborn reproduce splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
         " --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits hazards large runs/transfer --semantics rednet --agents stubborn"
+    "stubborn reproduce splits --splits hazards large runs/transfer --semantics rednet --agents stubborn"
     " stubborn-plus --episodes 100": (
         *_TRANSFER,
-        f"{PYTHON} tools/reproduce.py splits --splits {{tmp}}/transfer --semantics rednet --agents"
+        "stubborn reproduce splits --splits {tmp}/transfer --semantics rednet --agents"
         " 'random --config task.max_steps=5' --episodes 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes"
+    "stubborn reproduce splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes"
     " 500 --workers 2": (
-        f"{PYTHON} tools/reproduce.py splits --splits test --semantics rednet --agents"
+        "stubborn reproduce splits --splits test --semantics rednet --agents"
         " 'random --config task.max_steps=5' --episodes 1 --workers 1 --out {tmp}/tables",
     ),
-    f"{PYTHON} tools/reproduce.py splits --splits val large hazards --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py splits --splits val large --episodes 1 --workers 1 --agents random oracle "
+    "stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2": (
+        "stubborn reproduce splits --splits val large --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
     ),
     (
-        f"{PYTHON} tools/reproduce.py splits --splits val hazards --episodes 200 --workers 2 --agents stubborn "
+        "stubborn reproduce splits --splits val hazards --episodes 200 --workers 2 --agents stubborn "
         "'stubborn --config agent.planning.dilation_m=0.10' 'stubborn --explorer tour'"
     ): (
-        f"{PYTHON} tools/reproduce.py splits --splits val --episodes 1 --workers 1 --agents random "
+        "stubborn reproduce splits --splits val --episodes 1 --workers 1 --agents random "
         "'stubborn --config agent.planning.dilation_m=0.10 task.max_steps=3' --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py explorers --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py explorers --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+    "stubborn reproduce explorers --episodes 200 --workers 2": (
+        "stubborn reproduce explorers --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py explorers --split large --episodes 300 --workers 2": (
-        f"{PYTHON} tools/reproduce.py explorers --split large --episodes 1 --workers 1 --agents oracle random "
-        "--out {tmp}/paper",
+    "stubborn reproduce explorers --split large --episodes 300 --workers 2": (
+        "stubborn reproduce explorers --split large --episodes 1 --workers 1 --agents oracle random --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/reproduce.py all --episodes 1000 --workers 2 --out runs/paper": (
-        f"{PYTHON} tools/reproduce.py all --episodes 1 --workers 1 --agents random oracle --out {{tmp}}/paper",
+    "stubborn reproduce all --episodes 1000 --workers 2 --out runs/paper": (
+        "stubborn reproduce all --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
     ),
-    f"{PYTHON} tools/draw_trajectories.py runs/paper/stubborn_gt_none_val": (
+    f"{PYTHON} -m tools.research.draw_trajectories runs/paper/stubborn_gt_none_val": (
         _RECORDED,
-        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine",
+        f"{PYTHON} -m tools.research.draw_trajectories {{tmp}}/mine",
     ),
-    f"{PYTHON} tools/draw_trajectories.py runs/paper/stubborn_gt_none_val runs/paper/poni_gt_none_val": (
+    f"{PYTHON} -m tools.research.draw_trajectories runs/paper/stubborn_gt_none_val runs/paper/poni_gt_none_val": (
         _RECORDED,
-        f"{PYTHON} tools/draw_trajectories.py {{tmp}}/mine {{tmp}}/mine",
+        f"{PYTHON} -m tools.research.draw_trajectories {{tmp}}/mine {{tmp}}/mine",
     ),
     # docs/datasets.md
-    f"{PYTHON} tools/generate_views.py --split val --views 500 --shrink 2 --profile fast"
+    "stubborn views --split val --views 500 --shrink 2 --profile fast"
     " --extras instances normals poses --out views_objects": (f"{_VIEWS} --extras instances normals poses",),
-    f"{PYTHON} tools/generate_views.py --split val --views 800 --sequence 40 --extras poses --out views_along": (
+    "stubborn views --split val --views 800 --sequence 40 --extras poses --out views_along": (
         f"{_VIEWS} --sequence 4 --extras poses",
     ),
     f"{PYTHON} examples/read_views.py views_val/views-000000.tar": (
@@ -506,75 +590,73 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} examples/read_views.py {{tmp}}/views/views-000000.tar",
     ),
     # docs/segmentation.md
-    f"{PYTHON} tools/generate_views.py --split train --views 100000 --out views --workers 2": (
-        f"{PYTHON} tools/generate_views.py --split train --views 1 --out {{tmp}}/views --workers 1",
+    "stubborn views --split train --views 100000 --out views --workers 2": (
+        "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
     ),
-    f"{PYTHON} tools/generate_views.py --split train --views 20000 --shrink 2 --profile fast --out views_small": (
-        f"{PYTHON} tools/generate_views.py --split train --views 1 --shrink 2 --profile fast --out {{tmp}}/views",
+    "stubborn views --split train --views 20000 --shrink 2 --profile fast --out views_small": (
+        "stubborn views --split train --views 1 --shrink 2 --profile fast --out {tmp}/views",
     ),
-    f"{PYTHON} tools/generate_views.py --pool wide --views 20000 --shrink 2 --profile fast --out views_wide": (
-        f"{PYTHON} tools/generate_views.py --pool wide --views 1 --shrink 2 --profile fast --out {{tmp}}/views",
+    "stubborn views --pool wide --views 20000 --shrink 2 --profile fast --out views_wide": (
+        "stubborn views --pool wide --views 1 --shrink 2 --profile fast --out {tmp}/views",
     ),
-    f"{PYTHON} tools/generate_views.py --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
-    f"{PYTHON} tools/generate_views.py --split val --views 500 --out views_val_whole": (
-        f"{PYTHON} tools/generate_views.py --split val --views 1 --out {{tmp}}/views --workers 1",
+    "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
+    "stubborn views --split val --views 500 --out views_val_whole": (
+        "stubborn views --split val --views 1 --out {tmp}/views --workers 1",
     ),
-    f"{PYTHON} tools/show_views.py --views views_objects --out views.png": (
+    "stubborn views show --views views_objects --out views.png": (
         _VIEWS,
-        f"{PYTHON} tools/show_views.py --views {{tmp}}/views --out {{tmp}}/views.png",
+        "stubborn views show --views {tmp}/views --out {tmp}/views.png",
     ),
-    f"{PYTHON} tools/unpack_views.py --views views_objects --out views_png": (
+    "stubborn views unpack --views views_objects --out views_png": (
         _VIEWS,
-        f"{PYTHON} tools/unpack_views.py --views {{tmp}}/views --out {{tmp}}/views_png",
+        "stubborn views unpack --views {tmp}/views --out {tmp}/views_png",
     ),
-    f"{PYTHON} tools/train_rednet.py --views views_small --val-views views_val --out runs/rednet --hours 3": (
+    "stubborn train segmentation --views views_small --val-views views_val --out runs/rednet --hours 3": (
         _VIEWS,
-        f"{PYTHON} tools/train_rednet.py --views {{tmp}}/views --val-views {{tmp}}/views --out {{tmp}}/rednet"
+        "stubborn train segmentation --views {tmp}/views --val-views {tmp}/views --out {tmp}/rednet"
         " --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
     f"{_RUN} --semantics rednet --weights runs/rednet/rednet.safetensors": (
         f"{_RUN} --semantics rednet --weights {_SHIPPED} {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/evaluate_rednet.py --views views_val --calibrate --card card.md "
-    "--weights runs/rednet/rednet.safetensors": (
+    "stubborn evaluate --views views_val --calibrate --card card.md --weights runs/rednet/rednet.safetensors": (
         _VIEWS.replace("shard 4", "shard 2"),
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
-        f"{PYTHON} tools/evaluate_rednet.py --views {{tmp}}/views --calibrate --card {{tmp}}/card.md "
-        "--weights {tmp}/rednet.safetensors",
+        "stubborn evaluate --views {tmp}/views --calibrate --card {tmp}/card.md --weights {tmp}/rednet.safetensors",
     ),
-    f"{PYTHON} tools/evaluate_rednet.py --count 400 --views runs/v/train runs/v/wide runs/v/imported runs/v/imported2 "
+    "stubborn evaluate --count 400 --views runs/v/train runs/v/wide runs/v/imported runs/v/imported2 "
     "runs/v/val runs/v/transfer": (
         _VIEWS.replace("shard 4", "shard 2"),
-        f"{PYTHON} tools/evaluate_rednet.py --count 3 --views {{tmp}}/views",
+        "stubborn evaluate --count 3 --views {tmp}/views",
     ),
-    f"{PYTHON} tools/worst_objects.py --views views_val --out worst.png": (
+    "stubborn evaluate objects --views views_val --out worst.png": (
         _VIEWS,
-        f"{PYTHON} tools/worst_objects.py --views {{tmp}}/views --out {{tmp}}/worst.png",
+        "stubborn evaluate objects --views {tmp}/views --out {tmp}/worst.png",
     ),
     f"{_RUN} --episodes 50 --record --out runs/looked": (
         f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
     ),
-    f"{PYTHON} tools/show_mistakes.py runs/looked --out runs/false.png": (
+    "stubborn evaluate mistakes runs/looked --out runs/false.png": (
         f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
-        f"{PYTHON} tools/show_mistakes.py {{tmp}}/looked --out {{tmp}}/false.png",
+        "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
-    f"{PYTHON} tools/show_mistakes.py runs/looked --cause missed_detection --out runs/missed.png": Only(
-        "a small run has none; tests/tools/test_show_mistakes.py"
+    "stubborn evaluate mistakes runs/looked --cause missed_detection --out runs/missed.png": Only(
+        "a small run has none; tests/commands/test_evaluate_mistakes.py"
     ),
-    f"{PYTHON} tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth --views views "
+    "stubborn train segmentation --size published --init rednet_semmap_mp3d_40.pth --views views "
     "--val-views views_val_whole --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
-    f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
+    f"stubborn train segmentation --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
     "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views views_small --val-views views_val --out runs/finer "
     "--hours 1": (
         _VIEWS,
-        f"{PYTHON} tools/train_rednet.py --init {_SHIPPED} --window-px 64 --whole-share 0.5 --focus-share 0.5 "
+        f"stubborn train segmentation --init {_SHIPPED} --window-px 64 --whole-share 0.5 --focus-share 0.5 "
         "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views {tmp}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
-    f"{PYTHON} tools/compare_networks.py --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "
+    f"{PYTHON} -m tools.training.compare_networks --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "
     "--out runs/networks": (
         _VIEWS,
-        f"{PYTHON} tools/compare_networks.py --views {{tmp}}/views --val-views {{tmp}}/views --hours 0 --seeds 0 "
+        f"{PYTHON} -m tools.training.compare_networks --views {{tmp}}/views --val-views {{tmp}}/views --hours 0 --seeds 0 "
         "--out {tmp}/networks",
     ),
     # docs/results.md and the pages of results beside it
@@ -583,22 +665,22 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --agent stubborn-plus --split val --episodes 1 --out {{tmp}}/run --config task.max_steps=5 "
         "'agent.seeker.look.bar=[[0,0.05],[40,0.05],[100,0.35],[200,0.45],[300,0.55],[400,0.64],[500,0.7]]'",
     ),
-    f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 200 --workers 2": (
-        f"{PYTHON} tools/reproduce.py verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
+    "stubborn reproduce verification --semantics rednet --episodes 200 --workers 2": (
+        "stubborn reproduce verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
         "--out {tmp}/paper",
     ),
-    f"{PYTHON} tools/bench_against.py --against 'HEAD~10'": (
-        f"{PYTHON} tools/bench_against.py --against HEAD --parts start --rounds 1",
+    f"{PYTHON} -m tools.maintenance.bench_against --against 'HEAD~10'": (
+        f"{PYTHON} -m tools.maintenance.bench_against --against HEAD --parts start --rounds 1",
     ),
-    f"{PYTHON} tools/bench_against.py --against 'HEAD~10' --parts step --rounds 60": (
-        f"{PYTHON} tools/bench_against.py --against HEAD --parts start --rounds 1",
+    f"{PYTHON} -m tools.maintenance.bench_against --against 'HEAD~10' --parts step --rounds 60": (
+        f"{PYTHON} -m tools.maintenance.bench_against --against HEAD --parts start --rounds 1",
     ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
-    f"{PYTHON} tools/trap_report.py --out runs/traps": (
-        f"{PYTHON} tools/trap_report.py --out {{tmp}}/traps --agents oracle --traps glass_pane --headings 1",
+    "stubborn traps report --out runs/traps": (
+        "stubborn traps report --out {tmp}/traps --agents oracle --traps glass_pane --headings 1",
     ),
     # docs/watching.md
     f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
@@ -611,57 +693,57 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
-    f"{PYTHON} -m sim.web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
-    f"{PYTHON} -m sim.teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
-    f"{PYTHON} -m sim.teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
+    "stubborn web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
+    "stubborn teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
+    "stubborn teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
     # docs/verification.md
-    f"{PYTHON} tools/train_verifier.py --semantics noisy --split train --episodes 2000 --workers 2": Only(
-        "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
+    "stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2": Only(
+        "plays until there are candidates enough; tests/commands/test_train_verifier.py plays a few"
     ),
-    f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 200 --workers 2 --judge": (
-        f"{PYTHON} tools/train_verifier.py --semantics noisy --split val --episodes 1 --workers 1 --judge"
+    "stubborn train verifier --semantics noisy --split val --episodes 200 --workers 2 --judge": (
+        "stubborn train verifier --semantics noisy --split val --episodes 1 --workers 1 --judge"
         " --max-steps 20 --log {tmp}/log",
     ),
-    f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
+    "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported"
     " --first-seed 8000 --houses 60 --area-m2 100 --out runs/unseen3": _UNSEEN[:-1],
-    f"{PYTHON} tools/make_episodes.py --split runs/unseen3 --recipe val --episodes 720": _UNSEEN,
-    f"{PYTHON} tools/train_verifier.py --semantics rednet --split runs/unseen3 --episodes 720": Only(
-        "plays until there are candidates enough; tests/tools/test_train_verifier.py plays a few"
+    "stubborn episodes --split runs/unseen3 --recipe val --episodes 720": _UNSEEN,
+    "stubborn train verifier --semantics rednet --split runs/unseen3 --episodes 720": Only(
+        "plays until there are candidates enough; tests/commands/test_train_verifier.py plays a few"
     ),
-    f"{PYTHON} tools/generate_houses.py --furniture runs/models --furniture-split transfer --only-imported"
+    "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported"
     " --first-seed 7000 --houses 24 --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
-    f"{PYTHON} tools/make_episodes.py --split runs/unseen --recipe val --episodes 72": _UNSEEN,
-    f"{PYTHON} tools/train_tracks.py --split runs/unseen --episodes 72": (
+    "stubborn episodes --split runs/unseen --recipe val --episodes 72": _UNSEEN,
+    "stubborn train fusion --split runs/unseen --episodes 72": (
         *_UNSEEN,
-        f"{PYTHON} tools/train_tracks.py --split {{tmp}}/unseen --episodes 3 --max-steps 60 --log {{tmp}}/log"
+        "stubborn train fusion --split {tmp}/unseen --episodes 3 --max-steps 60 --log {tmp}/log"
         " --out {tmp}/fusion.json",
     ),
-    f"{PYTHON} tools/train_tracks.py --split val --episodes 15 --judge": (
-        f"{PYTHON} tools/train_tracks.py --split val --episodes 1 --judge --max-steps 20 --log {{tmp}}/log",
+    "stubborn train fusion --split val --episodes 15 --judge": (
+        "stubborn train fusion --split val --episodes 1 --judge --max-steps 20 --log {tmp}/log",
     ),
     f"{_RUN} --semantics noisy --verification logistic": (
         f"{_RUN} --semantics noisy --verification logistic {_SMALL} --episodes 1 --out {{tmp}}/run",
     ),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
-    f"{PYTHON} -m sim.report runs/flat": (_SCENE, _IN_SCENE, f"{PYTHON} -m sim.report {{tmp}}/run"),
-    f"{PYTHON} tools/label_house.py --house flat.xml --out labels.json --picture runs/flat.png": (
+    "stubborn report runs/flat": (_SCENE, _IN_SCENE, "stubborn report {tmp}/run"),
+    "stubborn label --house flat.xml --out labels.json --picture runs/flat.png": (
         _SCENE,
-        f"{PYTHON} tools/label_house.py --house {{tmp}}/s/flat.xml --out {{tmp}}/flat.json --picture {{tmp}}/flat.png",
+        "stubborn label --house {tmp}/s/flat.xml --out {tmp}/flat.json --picture {tmp}/flat.png",
     ),
-    f"{PYTHON} tools/label_house.py --house flat.xml --labels labels.json --picture runs/flat.png": (
+    "stubborn label --house flat.xml --labels labels.json --picture runs/flat.png": (
         _SCENE,
-        f"{PYTHON} tools/label_house.py {_OF_SCENE} --picture {{tmp}}/flat.png",
+        f"stubborn label {_OF_SCENE} --picture {{tmp}}/flat.png",
     ),
-    f"{PYTHON} tools/gallery.py --house flat.xml --labels labels.json --out runs/flat_gallery": (
+    "stubborn gallery --house flat.xml --labels labels.json --out runs/flat_gallery": (
         _SCENE,
-        f"{PYTHON} tools/gallery.py {_OF_SCENE} --out {{tmp}}/gallery",
+        f"stubborn gallery {_OF_SCENE} --out {{tmp}}/gallery",
     ),
-    f"{PYTHON} tools/generate_views.py --house flat.xml --labels labels.json --views 500 --out runs/flat_views": (
+    "stubborn views --house flat.xml --labels labels.json --views 500 --out runs/flat_views": (
         _SCENE,
-        f"{PYTHON} tools/generate_views.py {_OF_SCENE} --views 4 --shrink 4 --profile fast --out {{tmp}}/views",
+        f"stubborn views {_OF_SCENE} --views 4 --shrink 4 --profile fast --out {{tmp}}/views",
     ),
-    f"{PYTHON} tools/make_episodes.py --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (
+    "stubborn episodes --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (
         _SCENE,
         _PACKED,
     ),

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
-import subprocess
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -157,26 +154,3 @@ def test_names_of_an_option_come_in_their_order_and_unknown_ones_are_refused() -
     for text in ("z", "", "a,z"):
         with pytest.raises(ConfigError, match="--parts must be some of a,b,c,d, got"):
             cli.chosen(text, "abcd", option="--parts")
-
-
-def test_the_interpreter_is_named_as_one_would_type_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    interpreter = tmp_path / "project" / ".venv" / "bin" / "python"
-    interpreter.parent.mkdir(parents=True)
-    interpreter.symlink_to(sys.executable)
-    monkeypatch.setattr(sys, "executable", str(interpreter))
-    monkeypatch.setenv("PATH", "/nowhere")
-    monkeypatch.chdir(tmp_path / "project")
-    assert cli.command("-m", "sim.report", Path("runs/my run")) == ".venv/bin/python -m sim.report 'runs/my run'"
-    (tmp_path / "elsewhere").mkdir()
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    assert cli.python() == str(interpreter)
-    monkeypatch.setenv("PATH", str(interpreter.parent))
-    assert cli.python() == "python"
-
-
-@pytest.mark.parametrize("words", ["-m sim.web", "-m sim.report", "`stubborn evaluate mistakes`"])
-def test_help_names_the_command_that_was_given(words: str) -> None:
-    done = subprocess.run(
-        [sys.executable, *words.split(), "--help"], cwd=ROOT, capture_output=True, text=True, check=False, timeout=100
-    )
-    assert re.search(rf"^usage: \S*python\S* {re.escape(words)} \[-h\]", done.stdout)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sim.interface import ConfigError
-from tools import bench_against
+from tools.maintenance import bench_against
 from tools.maintenance.bench_against import Worker, commit_of, in_turns, unpack
 
 pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reason="needs a git checkout")
@@ -28,7 +28,7 @@ def test_what_is_no_commit_is_no_ref(ref: str) -> None:
 
 def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:
     unpack(commit_of("HEAD"), tmp_path)
-    assert (tmp_path / "tools" / "bench.py").is_file()
+    assert (tmp_path / "sim" / "run.py").is_file()
     assert not (tmp_path / ".git").exists()
 
 

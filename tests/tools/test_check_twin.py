@@ -19,7 +19,7 @@ from sim.plans.plan import write_plan
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
 from tests.helpers.worlds import room, with_box
-from tools import check_twin
+from tools.research import check_twin
 
 LINE = {
     "episode_id": "e0", "house": "flat", "goal": "bed", "agent": "stubborn", "seed": 0, "end_reason": "max_steps",

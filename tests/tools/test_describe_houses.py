@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from sim.commands import episodes as make_episodes
 from tests.helpers.worlds import room, with_box
-from tools import describe_houses, make_episodes
+from tools.maintenance import describe_houses
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from sim.geometry.grid import GridFrame
 from sim.interface import ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
 from tests.helpers.worlds import room, with_box
-from tools import draw_trajectories
+from tools.research import draw_trajectories
 
 FRAME = GridFrame(origin_xy_m=(-3.0, -2.0), shape=(160, 240), cell_m=0.025)
 HEIGHT_PX = round(160 * FRAME.cell_m * draw_trajectories.PX_M)

@@ -15,7 +15,7 @@ from sim.interface import Action, ConfigError
 from sim.robot.drive import Motion
 from sim.task.trajectory import Recorder, trajectory_file, write_trajectory
 from tests.helpers.worlds import room, with_box
-from tools import render_demonstrations
+from tools.training import render_demonstrations
 
 
 def test_an_episode_that_failed_at_its_first_action_is_left_out(

@@ -7,12 +7,13 @@
 
 Tables: failures, ablation, exploration, categories, overall, or all of these, the paper's; verification, which compares
 its methods; splits, which compares the rows of the ablation and two explorers on each of several splits; and explorers,
-which compares all explorers, the learned ones with their controls, also by the median time to first sight. Each run
-has a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs. The
-agents take turns, a chunk of episodes (with several splits, of each of them), so that they have the same first episodes
-whenever the command is stopped; the same command resumes. Tables are printed and written to `<out>/tables`; the options --semantics, --agents, --noise, --split and --seed become part of the name if they are given. With
-`--minutes 0` no episode is run, and runs of older code are accepted if they have the same agent, segmentation, split,
-seed and noise. See docs/reproduce.md.
+which compares all explorers, the learned ones with their controls, also by the median time to first sight. Each run has
+a folder `<out>/<agent>_<semantics>_...`, as `stubborn run --record` writes it; the tables share the runs. The agents
+take turns, a chunk of episodes (with several splits, of each of them), so that they have the same first episodes
+whenever the command is stopped; the same command resumes. Tables are printed and written to `<out>/tables`; the options
+--semantics, --agents, --noise, --split and --seed become part of the name if they are given. With `--minutes 0` no
+episode is run, and runs of older code are accepted if they have the same agent, segmentation, split, seed and noise.
+See docs/reproduce.md.
 """
 
 from __future__ import annotations

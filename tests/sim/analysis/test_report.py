@@ -411,7 +411,7 @@ def test_an_interval_has_a_width_where_all_episodes_ended_alike() -> None:
 
 def test_the_command_of_a_run_makes_the_same_run(played: Path) -> None:
     words = command_of(read_run(played / "found").config)
-    assert words.startswith("python -m sim.run --agent oracle --semantics rednet --house")
+    assert words.startswith("stubborn run --agent oracle --semantics rednet --house")
     assert "--split" not in words
 
 

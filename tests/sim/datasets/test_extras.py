@@ -17,6 +17,8 @@ import webdataset
 from torch.utils.data import DataLoader
 
 from examples.read_views import read_with_webdataset
+from sim.commands.views import show as show_views
+from sim.commands.views import unpack as unpack_views
 from sim.datasets.coco import annotate, bounding_box, decode_mask, encode_mask
 from sim.datasets.normals import surface_normals
 from sim.datasets.shards import write_shard
@@ -28,7 +30,6 @@ from sim.interface import FORWARD_M, MPCAT40_ID, CameraModel, ConfigError
 from sim.robot.config import RobotConfig
 from stubborn.segmentation.dataset import LabelledView, ViewDataset, decode_member, read_shard
 from tests.helpers.worlds import room, with_box
-from tools import show_views, unpack_views
 
 SMALL = CameraModel(width_px=160, height_px=120)
 
