@@ -14,6 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
+_EXAMPLE = re.compile(r"`(examples/[\w./]+)`")
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
 
 
@@ -48,6 +49,15 @@ def blocks(page: Path) -> Iterator[Block]:
         else:
             kept.append(line.removeprefix(open_fence["indent"]))
     assert open_fence is None, f"{page}: the block that begins in line {began} has no end"
+
+
+def example_of(block: Block) -> str | None:
+    """The file of examples/ that the line above a block names, so that the block must be a part of it; or None."""
+    lines = (ROOT / block.page).read_text(encoding="utf-8").splitlines()[: block.line - 1]
+    while lines and not lines[-1].strip():
+        lines.pop()
+    named = _EXAMPLE.findall(lines[-1]) if lines else []
+    return named[-1] if named else None
 
 
 def commands() -> dict[str, str]:
