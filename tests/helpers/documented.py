@@ -69,7 +69,6 @@ def commands() -> dict[str, str]:
                 for line in block.text.replace("\\\n", " ").splitlines():
                     words = shlex.split(line, comments=True)
                     if words:
-                        words[0] = PYTHON if words[0] == "python" else words[0]  # that of the activated environment
                         found.setdefault(shlex.join(words), f"{block.page}:{block.line}")
     return found
 
