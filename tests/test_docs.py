@@ -1,8 +1,10 @@
-"""The documentation holds together: links, pictures, Python blocks, examples, and nothing from other hosts."""
+"""The documentation is short and consistent: words, links, pictures, code, examples; nothing from other hosts."""
 
 from __future__ import annotations
 
+import ast
 import dataclasses
+import importlib
 import importlib.util
 import os
 import re
@@ -21,7 +23,6 @@ from sim.housegen.furniture import CATALOGUE
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
-from sim.interface import CameraModel, RobotModel
 from stubborn import agent
 from stubborn.detection import distances
 from stubborn.exploration import corners
@@ -31,7 +32,6 @@ from stubborn.mapping.navmap import CollisionLayer, NavMap
 from stubborn.planning import planner
 from stubborn.planning.avoidance import visited_ground
 from stubborn.planning.planner import Planner, PlanningConfig, Route
-from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers import documented
 from tests.helpers.documented import ROOT, Block
 from tests.helpers.sampling import sample
@@ -41,30 +41,41 @@ from tools.maintenance.site_hooks import fetched_from_elsewhere
 DOCS = ROOT / "docs"
 CONFIGURED = (agent, collision_marks, corners, mapper, planner, distances)
 """Modules with the configs that the page of differences names."""
-SNIPPET = re.compile(r'--8<-- "([^"]+)"')
-PYTHON_BLOCKS = [
-    block
-    for page in documented.pages()
-    for block in documented.blocks(page)
-    if block.language == "python" and not SNIPPET.search(block.text)
-]
-PROMISED = (
-    *(f"sim.interface.{name}" for name in ("Action", "GOAL_CATEGORIES", "MPCAT40", "CameraModel", "RobotModel")),
-    *(f"sim.interface.{name}" for name in ("Observation", "Scores", "Segmenter.scores", "Agent.act", "ConfigError")),
-    *(
-        "sim.env.objectnav.ObjectNavEnv",
-        "stubborn.agents.make",
-        "stubborn.agent.AgentConfig",
-        "sim.housegen.generator.generate",
-    ),
-    *(
-        "sim.task.trajectory.read_trajectory",
-        "sim.episodes.splits.load_split",
-        "sim.composition.options.RunOptions.agent",
-        "sim.task.failures",
-    ),
-)
-"""Names on which users may rely, and others that pages speak of."""
+MOST_WORDS = {
+    "README.md": 450,
+    "docs/index.md": 450,
+    "docs/names.md": 350,
+    "docs/concepts.md": 800,
+    "docs/task.md": 700,
+    "docs/running.md": 700,
+    "docs/watching.md": 800,
+    "docs/agents.md": 800,
+    "docs/gymnasium.md": 800,
+    "docs/houses.md": 1100,
+    "docs/furniture.md": 600,
+    "docs/worlds.md": 700,
+    "docs/datasets.md": 450,
+    "docs/segmentation.md": 800,
+    "docs/explorers.md": 900,
+    "docs/results.md": 900,
+    "docs/differences.md": 700,
+    "docs/traps.md": 250,
+    "docs/performance.md": 300,
+    "docs/maintaining.md": 250,
+}
+"""The largest number of words of each page, code and tables included. A new page takes its words from other pages."""
+MOST_WORDS_IN_ALL = 12_500
+MOST_LINES_OF_CHANGELOG = 80
+CHANGELOG_HEADINGS = {"Added", "Changed", "Deprecated", "Fixed", "Removed", "Security"}
+PAGES = [str(page.relative_to(ROOT)) for page in documented.pages()]
+BLOCKS = [block for page in documented.pages() for block in documented.blocks(page)]
+EXCERPTS = [block for block in BLOCKS if block.language == "python" and documented.example_of(block)]
+"""Blocks below a line that names a file of examples/: parts of that file."""
+PYTHON_BLOCKS = [block for block in BLOCKS if block.language == "python"]
+RUNNABLE_BLOCKS = [block for block in PYTHON_BLOCKS if block not in EXCERPTS]
+COMMIT = re.compile(r"\b(?=[0-9a-f]*[0-9])(?=[0-9a-f]*[a-f])[0-9a-f]{7,40}\b")
+NOT_ON_GITHUB = re.compile(r"--8<--|^:::", re.MULTILINE)
+"""Marks that only MkDocs replaces."""
 FURNITURE_LAWS = [
     law
     for name, law in vars(furniture_laws).items()
@@ -79,20 +90,98 @@ NEED_MORE = {
 """Words of blocks that cannot run here, and what they need."""
 
 
-def _in_code(text: str) -> str:
-    """The text without its code, where nothing is a link."""
-    return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL))
+def _outside_code(text: str) -> str:
+    """The text without its blocks of code, where nothing is a link or a heading."""
+    return re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
 
 
-def test_every_link_and_picture_leads_somewhere() -> None:
+def _anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as GitHub and MkDocs make them."""
+    headings = re.findall(r"^#+ (.+)$", _outside_code(page.read_text(encoding="utf-8")), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_and_picture_leads_somewhere(page: str) -> None:
     broken = []
-    for page in documented.pages():
-        for link in re.findall(r"\]\(([^)\s]+)\)", _in_code(page.read_text(encoding="utf-8"))):
-            if not link.startswith(("http://", "https://", "#")):
-                file = (page.parent / link.split("#")[0]).resolve()
-                if not file.exists():
-                    broken.append(f"{page.relative_to(ROOT)}: {link}")
+    text = _outside_code(re.sub(r"`[^`\n]*`", "", (ROOT / page).read_text(encoding="utf-8")))
+    for link in re.findall(r"\]\(([^)\s]+)\)", text):
+        if not link.startswith(("http://", "https://")):
+            name, _, anchor = link.partition("#")
+            file = (ROOT / page).parent / name if name else ROOT / page
+            if not file.exists() or (anchor and anchor not in _anchors(file)):
+                broken.append(link)
     assert not broken
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_has_a_limit_of_words_and_keeps_it(page: str) -> None:
+    assert page in MOST_WORDS, "give a new page words of other pages"
+    assert len((ROOT / page).read_text(encoding="utf-8").split()) <= MOST_WORDS[page]
+
+
+def test_all_pages_together_keep_the_limit_of_words() -> None:
+    assert sum(len((ROOT / page).read_text(encoding="utf-8").split()) for page in PAGES) <= MOST_WORDS_IN_ALL
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_reads_on_github_as_on_the_site_and_names_no_commit(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert not NOT_ON_GITHUB.findall(text)
+    assert not COMMIT.findall(text)
+
+
+def test_commits_and_marks_of_mkdocs_are_found() -> None:
+    assert len(COMMIT.findall("`2158948a`, 1f9d8bd, 1234567, effaced, 0.474, val_0018")) == 2
+    assert len(NOT_ON_GITHUB.findall('--8<-- "examples/my_agent.py"\n\n::: sim.interface\n')) == 2
+
+
+def test_the_changelog_is_short_and_keeps_its_headings() -> None:
+    lines = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= MOST_LINES_OF_CHANGELOG
+    assert {line.removeprefix("### ") for line in lines if line.startswith("### ")} <= CHANGELOG_HEADINGS
+    versions = [line.removeprefix("## ") for line in lines if line.startswith("## ")]
+    assert versions[0] == "[Unreleased]"
+    assert all(re.fullmatch(r"\[\d+\.\d+\.\d+\] - \d{4}-\d\d-\d\d", version) for version in versions[1:])
+
+
+@pytest.mark.parametrize("block", EXCERPTS, ids=lambda block: f"{block.page}:{block.line}")
+def test_a_block_below_the_name_of_an_example_is_a_part_of_it(block: Block) -> None:
+    name = documented.example_of(block)
+    assert name is not None
+    assert f"\n{block.text}" in f"\n{(ROOT / name).read_text(encoding='utf-8')}"
+
+
+def test_the_example_agent_is_shown() -> None:
+    assert "examples/my_agent.py" in {documented.example_of(block) for block in EXCERPTS}
+
+
+@pytest.mark.parametrize("block", PYTHON_BLOCKS, ids=lambda block: f"{block.page}:{block.line}")
+def test_a_python_block_parses(block: Block) -> None:
+    ast.parse(block.text)
+
+
+def _names_of_the_page() -> list[tuple[str, str]]:
+    """Each name of the page of names, with the module that it is imported from."""
+    names, module = [], ""
+    for line in (DOCS / "names.md").read_text(encoding="utf-8").splitlines():
+        module = line.removeprefix("## From ") if line.startswith("## ") else module
+        if line.startswith("- "):
+            for name in re.findall(r"`([\w.]+)`", line.partition(": ")[0]):
+                owner, _, last = name.rpartition(".")
+                names.append((owner or module, last))
+    return names
+
+
+@pytest.mark.parametrize(("module", "name"), _names_of_the_page())
+def test_a_name_of_the_page_of_names_can_be_imported(module: str, name: str) -> None:
+    assert hasattr(importlib.import_module(module), name)
+
+
+def test_the_page_of_names_has_the_names_that_users_touch() -> None:
+    names = [name for _, name in _names_of_the_page()]
+    assert {"Action", "MPCAT40_ID", "Ground", "LabelledView", "Segmenter", "AgentSpec"} <= set(names)
+    assert len(names) == len(set(names))
 
 
 def test_every_page_is_in_the_navigation_and_every_entry_a_page() -> None:
@@ -103,13 +192,6 @@ def test_every_page_is_in_the_navigation_and_every_entry_a_page() -> None:
 def test_every_picture_in_docs_is_shown() -> None:
     text = "".join(page.read_text(encoding="utf-8") for page in documented.pages())
     assert not [file.name for file in (DOCS / "images").iterdir() if file.name not in text]
-
-
-def test_every_snippet_is_a_file_of_the_repository() -> None:
-    text = "".join(page.read_text(encoding="utf-8") for page in DOCS.rglob("*.md"))
-    named = SNIPPET.findall(text)
-    assert "examples/my_agent.py" in named
-    assert all((ROOT / name).is_file() for name in named)
 
 
 def test_every_config_field_that_the_differences_name_is_there() -> None:
@@ -129,7 +211,7 @@ def test_every_config_field_that_the_differences_name_is_there() -> None:
     assert seen >= 35
 
 
-@pytest.mark.parametrize("block", sample(PYTHON_BLOCKS, 3), ids=lambda block: f"{block.page}:{block.line}")
+@pytest.mark.parametrize("block", sample(RUNNABLE_BLOCKS, 3), ids=lambda block: f"{block.page}:{block.line}")
 def test_a_python_block_runs(block: Block, tmp_path: Path) -> None:
     """As a file in a process of its own, as a reader would; what needs another file is compiled only."""
     file = tmp_path / "block.py"
@@ -150,24 +232,17 @@ def test_a_python_block_runs(block: Block, tmp_path: Path) -> None:
     assert ended.returncode == 0, ended.stderr
 
 
-def _names_on_the_page_of_agents() -> dict[str, Any]:
+def _explorer_of_the_page() -> Any:
+    """The configuration of the explorer on the page of agents."""
     names: dict[str, Any] = {"__name__": "page"}
     sys.modules["page"] = types.ModuleType("page")  # dataclasses look their module up
-    for block in PYTHON_BLOCKS:
-        if block.page == "docs/agents.md":
-            exec(block.text, names)
-    return names
-
-
-def test_the_variant_on_the_page_of_agents_is_an_agent_with_its_own_config() -> None:
-    spec = _names_on_the_page_of_agents()["BOLD"]
-    variant = spec.make(camera=CameraModel(), robot=RobotModel(), segmenter=GroundTruthSegmenter(), config=spec.config)
-    assert (variant.config.planning.dilation_m, variant.config.collisions.wide_m) == (0.10, 0.35)
-    assert variant.config.untrap == agent.AgentConfig().untrap
+    (block,) = [block for block in RUNNABLE_BLOCKS if block.page == "docs/agents.md" and "FARTHEST" in block.text]
+    exec(block.text, names)
+    return names["FARTHEST"]
 
 
 def test_the_explorer_on_the_page_of_agents_leads_to_the_farthest_reachable_cell() -> None:
-    explorer = _names_on_the_page_of_agents()["FARTHEST"].make(None)
+    explorer = _explorer_of_the_page().make(None)
     frame = GridFrame.around_start(101, 0.05)
     navmap = NavMap.empty(frame)
     layers, planner = (CollisionLayer.NONE,), Planner(PlanningConfig(), visited_ground)
@@ -239,5 +314,3 @@ def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
         cwd=ROOT, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"}, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert ended.returncode == 0, ended.stderr
-    anchors = "".join(page.read_text(encoding="utf-8") for page in (tmp_path / "site" / "api").glob("*.html"))
-    assert not [name for name in PROMISED if f'id="{name}"' not in anchors]

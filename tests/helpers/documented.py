@@ -61,6 +61,7 @@ MOVED_TOOLS = {
     "split_report": "maintenance",
 }
 """Other files of tools/, and the folders in which they are now."""
+_EXAMPLE = re.compile(r"`(examples/[\w./]+)`")
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>```+|~~~+)(?P<language>[\w+-]*)(?P<rest>[^\n]*)$")
 
 
@@ -128,6 +129,15 @@ def old_names() -> list[str]:
                 if name in MOVED or name in MOVED_TOOLS:
                     found.append(f"{page.relative_to(ROOT)}:{number}: {name}")
     return found
+
+
+def example_of(block: Block) -> str | None:
+    """The file of examples/ that the line above a block names, so that the block must be a part of it; or None."""
+    lines = (ROOT / block.page).read_text(encoding="utf-8").splitlines()[: block.line - 1]
+    while lines and not lines[-1].strip():
+        lines.pop()
+    named = _EXAMPLE.findall(lines[-1]) if lines else []
+    return named[-1] if named else None
 
 
 def commands() -> dict[str, str]:
