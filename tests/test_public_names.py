@@ -22,8 +22,8 @@ NAMES = [(package, name) for package in PACKAGES for name in package.__all__]
 @pytest.mark.parametrize(("package", "name"), NAMES, ids=lambda value: getattr(value, "__name__", value))
 def test_a_public_name_is_the_object_of_its_module(package: ModuleType, name: str) -> None:
     module = importlib.import_module(package._MODULE_OF[name])
-    assert getattr(package, name) is getattr(module, name)
     assert name in dir(package)
+    assert getattr(package, name) is getattr(module, name)
     value = getattr(module, name)
     if inspect.isclass(value) or inspect.isfunction(value):
         assert value.__module__ == module.__name__, f"{name} is defined in {value.__module__}."
