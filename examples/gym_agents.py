@@ -6,9 +6,9 @@ python examples/gym_agents.py
 import gymnasium
 from gymnasium.wrappers import RecordEpisodeStatistics
 
-from sim.env.objectnav import ObjectNavEnv
-from stubborn import agents
-from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+import stubborn
+from sim import ObjectNavEnv
+from stubborn import GroundTruthSegmenter
 
 
 def play(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
@@ -16,7 +16,7 @@ def play(name: str, episode_id: str = "val_0011", max_steps: int = 500) -> dict:
     env = gymnasium.make("sim.gym:stubborn/ObjectNav-v0", sensors=("depth", "semantic"), max_steps=max_steps)
     world, env = env.unwrapped, RecordEpisodeStatistics(env)
     assert isinstance(world, ObjectNavEnv)
-    agent = agents.make(name, camera=world.camera_model, robot=world.robot_model, segmenter=GroundTruthSegmenter())
+    agent = stubborn.make(name, camera=world.camera_model, robot=world.robot_model, segmenter=GroundTruthSegmenter())
     observation, info = env.reset(options={"episode_id": episode_id})
     agent.reset(info["goal"], seed=0)
     done = False

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sim.interface import Action, AgentSpec, CameraModel, Observation, RobotModel, Segmenter
+from sim import Action, AgentSpec, CameraModel, Observation, RobotModel, Segmenter
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from sim.housegen import generate
-from sim.housegen.furniture import CATALOGUE
-from sim.housegen.furniture.catalogue import Style
-from sim.housegen.furniture.workbench import Workbench
-from sim.houses.writing import house_text
+from sim import CATALOGUE, Style, Workbench, generate, house_text
 from sim.paths import assets_dir
 
 

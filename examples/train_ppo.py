@@ -26,11 +26,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import sim.gym
-from sim import cli
+from sim import Action, CameraModel, ConfigError, Pose, SensorContext, cli
 from sim.files import write_atomically
-from sim.geometry.pose import Pose
-from sim.interface import Action, CameraModel, ConfigError
-from sim.sensors.sensor import SensorContext
 
 try:
     from stable_baselines3 import PPO

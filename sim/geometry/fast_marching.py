@@ -2,14 +2,15 @@
 
 Both functions solve the eikonal equation, |gradient of time| = 1 / speed, with upwind differences over passable cells:
 
-- `distances` is second order at speed 1 and visits every cell that can be reached. The ground truth is computed with
-  it. Its values are those of `skfmm.distance` of scikit-fmm, to the last bit of float64 (tests compare the two).
+- `distances` is second order at speed 1 and visits every cell that can be reached. The task's reference distances are
+  computed with it, by scikit-fmm, so that the judge and the agent do not share code.
 - `travel_times` is first order with a speed per cell and stops as soon as the caller's question is answered. The agent
   calls it at every step. It needs no heap: waiting cells lie in buckets of times, and a cell whose time falls later is
   processed again, so that the result is not an approximation (Yatziv, Bartesaghi, Sapiro 2006, "O(N) implementation of
-  the fast marching algorithm"). A second-order scheme depends on the order of cells, hence the heap of `distances`.
+  the fast marching algorithm").
 
-The first call after an installation compiles for some seconds; later processes load the result from numba's cache.
+The first call of `travel_times` after an installation compiles for some seconds; later processes load the result from
+numba's cache.
 """
 
 from __future__ import annotations
@@ -17,14 +18,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import skfmm
 from jaxtyping import Bool, Float, Float32
 
-from sim.geometry.fast_marching_kernels import (
-    advance_first_order,
-    advance_second_order,
-    frame_problem,
-    unframed,
-)
+from sim.geometry.fast_marching_kernels import advance_first_order, frame_problem, unframed
 
 
 def distances(
@@ -39,14 +36,17 @@ def distances(
 
     Returns:
         Metres between cell centres; infinite where there is no path.
+
+    Raises:
+        ValueError: `cell_m` is not positive.
     """
-    rows, cols = sources.shape
-    framed = np.zeros((rows + 4, cols + 4), np.bool_)  # the stencil reaches two cells past the border
-    framed[2:-2, 2:-2] = passable
-    distance = np.full(framed.shape, np.inf)
-    distance[2:-2, 2:-2][sources & passable] = 0.0
-    advance_second_order(framed.reshape(-1), distance.reshape(-1), cols + 4, 1.0 / cell_m / cell_m)
-    return distance[2:-2, 2:-2].astype(np.float32)
+    sources = sources & passable
+    if not sources.any():  # scikit-fmm raises ValueError
+        return np.full(sources.shape, np.inf, np.float32)
+    front = np.ascontiguousarray(np.where(sources, 0.0, 1.0))  # scikit-fmm misreads arrays of another memory order
+    masked = np.ma.MaskedArray(front, mask=~passable)
+    distance = np.ma.filled(skfmm.distance(masked, dx=float(cell_m), order=2), np.inf)
+    return np.where(passable, distance, np.inf).astype(np.float32)
 
 
 def travel_times(

@@ -1,4 +1,7 @@
-"""Distances and travel times by fast marching: analytic cases, and scikit-fmm as the reference."""
+"""Distances and travel times by fast marching: analytic cases, and for travel times scikit-fmm as the reference."""
+
+import itertools
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -26,10 +29,20 @@ def cluttered(seed: int, rows: int = 70, cols: int = 90):
     return goal & passable, passable, np.clip(0.35 + clearance_m / 0.3, 0.35, 1.0).astype(np.float32)
 
 
-def reference(sources: np.ndarray, passable: np.ndarray, cell_m: float) -> np.ndarray:
-    """Second-order distances by scikit-fmm; infinite where there is no path."""
-    front = np.ma.MaskedArray(np.where(sources & passable, 0.0, 1.0), mask=~passable)
-    return np.where(passable, np.ma.filled(skfmm.distance(front, dx=cell_m), np.inf), np.inf).astype(np.float32)
+def steps_over_edges(goal: np.ndarray, passable: np.ndarray) -> np.ndarray:
+    """Number of steps from cell to cell, over edges, to the nearest goal cell; -1 where no path leads."""
+    steps, reached = np.where(goal, 0, -1), goal.copy()
+    for number in itertools.count(1):
+        grown = reached.copy()
+        grown[1:] |= reached[:-1]
+        grown[:-1] |= reached[1:]
+        grown[:, 1:] |= reached[:, :-1]
+        grown[:, :-1] |= reached[:, 1:]
+        grown &= passable
+        if (grown == reached).all():
+            return steps
+        steps[grown & ~reached], reached = number, grown
+    raise AssertionError
 
 
 def one_cell(shape: tuple[int, int], row: int, col: int) -> np.ndarray:
@@ -38,22 +51,56 @@ def one_cell(shape: tuple[int, int], row: int, col: int) -> np.ndarray:
     return mask
 
 
-@pytest.mark.parametrize("share", [0.0, 0.1, 0.3, 0.4])
-def test_distances_are_those_of_scikit_fmm_to_the_last_bit(share: float):
-    rng = np.random.default_rng(int(100 * share))
-    for _ in range(40):
-        shape = tuple(rng.integers(1, 50, 2).tolist())
-        passable = rng.random(shape) >= share
-        sources = (rng.random(shape) < rng.choice([0.002, 0.02, 0.2])) & passable
-        sources[tuple(rng.integers(0, shape))] = True
-        if (sources & passable).any():
-            np.testing.assert_array_equal(distances(sources, passable, CELL_M), reference(sources, passable, CELL_M))
+@pytest.mark.parametrize("seed", range(6))
+def test_distances_differ_between_neighbours_by_no_more_than_a_cell(seed: int):
+    goal, passable, _ = cluttered(seed, rows=120, cols=150)
+    distance_m = distances(goal, passable, CELL_M)
+    for axis in (0, 1):
+        gap_m = np.abs(np.diff(np.where(passable, distance_m, np.nan), axis=axis))
+        assert np.nanmax(gap_m) <= 1.3 * CELL_M  # the second-order scheme overshoots behind corners
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_distances_among_walls_are_those_of_scikit_fmm(seed: int):
-    goal, passable, _ = cluttered(seed, rows=240, cols=240)
-    np.testing.assert_array_equal(distances(goal, passable, 0.025), reference(goal, passable, 0.025))
+def test_distances_lie_between_the_straight_line_and_a_path_over_cell_edges(seed: int):
+    goal, passable, _ = cluttered(seed)
+    distance_m = distances(goal, passable, CELL_M)
+    straight_m = CELL_M * distance_to(goal)
+    steps = steps_over_edges(goal, passable)
+    assert (np.isfinite(distance_m) == passable).all()
+    assert (distance_m >= straight_m - 0.7 * CELL_M)[passable].all()
+    assert (distance_m <= CELL_M * steps + 1e-5)[passable].all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_distances_to_several_sources_are_those_to_the_nearest_one(seed: int):
+    """Where the fronts of two sources meet, the second-order scheme sees both of them."""
+    _, passable, _ = cluttered(seed)
+    rows, cols = np.nonzero(passable)
+    ends = [one_cell(passable.shape, rows[index], cols[index]) for index in (0, -1)]
+    alone_m = [distances(end, passable, CELL_M)[passable] for end in ends]
+    together_m = distances(ends[0] | ends[1], passable, CELL_M)[passable]
+    np.testing.assert_allclose(together_m, np.minimum(*alone_m), atol=0.5 * CELL_M)
+
+
+def test_distances_of_a_turned_grid_are_the_turned_distances():
+    goal, passable, _ = cluttered(2)
+    distance_m = distances(goal, passable, CELL_M)
+    for turn in (np.flipud, np.fliplr, np.transpose):
+        np.testing.assert_allclose(distances(turn(goal), turn(passable), CELL_M), turn(distance_m), atol=0.5 * CELL_M)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+def test_distances_do_not_depend_on_the_order_in_memory(order: Literal["C", "F"]):
+    goal, passable, _ = cluttered(4)
+    spread = np.zeros((140, 180), bool, order=order)
+    spread[::2, ::2], view = passable, spread[::2, ::2]
+    expected_m = distances(goal, passable, CELL_M)
+    np.testing.assert_array_equal(distances(np.array(goal, order=order), view, CELL_M), expected_m)
+
+
+def test_distances_scale_with_the_cell():
+    goal, passable, _ = cluttered(3)
+    np.testing.assert_allclose(distances(goal, passable, 0.1), 2.0 * distances(goal, passable, 0.05), rtol=1e-6)
 
 
 def test_distances_in_the_open_are_straight():
@@ -80,8 +127,39 @@ def test_distances_are_infinite_where_no_path_leads():
     distance_m = distances(one_cell((5, 7), 2, 1), passable, CELL_M)
     assert np.isfinite(distance_m[:, :3]).all()
     assert np.isinf(distance_m[:, 3:]).all()
-    assert np.isinf(distances(~passable, passable, CELL_M)).all()
     assert (distances(passable, passable, CELL_M)[passable] == 0).all()
+
+
+@pytest.mark.parametrize("shape", [(5, 7), (1, 1), (1, 7), (0, 5)])
+def test_distances_without_a_passable_source_are_infinite(shape: tuple[int, int]):
+    everywhere, nowhere = np.ones(shape, bool), np.zeros(shape, bool)
+    for sources, passable in ((nowhere, everywhere), (everywhere, nowhere), (nowhere, nowhere)):
+        distance_m = distances(sources, passable, CELL_M)
+        assert distance_m.shape == shape
+        assert distance_m.dtype == np.float32
+        assert np.isinf(distance_m).all()
+
+
+def test_distances_along_a_single_row_are_exact():
+    row = np.ones((1, 9), bool)
+    expected_m = CELL_M * np.abs(np.arange(9) - 3)
+    np.testing.assert_allclose(distances(one_cell((1, 9), 0, 3), row, CELL_M)[0], expected_m, rtol=1e-6)
+    np.testing.assert_allclose(distances(one_cell((9, 1), 3, 0), row.T, CELL_M)[:, 0], expected_m, rtol=1e-6)
+
+
+def test_a_blocked_source_does_not_count_beside_a_free_one():
+    passable = np.ones((5, 9), bool)
+    passable[2, 2] = False
+    both = one_cell((5, 9), 2, 2) | one_cell((5, 9), 2, 7)
+    np.testing.assert_array_equal(
+        distances(both, passable, CELL_M), distances(one_cell((5, 9), 2, 7), passable, CELL_M)
+    )
+
+
+@pytest.mark.parametrize("cell_m", [0.0, -0.05])
+def test_a_cell_without_a_size_is_refused(cell_m: float):
+    with pytest.raises(ValueError, match="greater than zero"):
+        distances(np.ones((2, 2), bool), np.ones((2, 2), bool), cell_m)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -1,0 +1,77 @@
+"""`sim` and `stubborn` name what users need, and import it when it is first used."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import sim
+import stubborn
+
+PACKAGES = (sim, stubborn)
+NAMES = [(package, name) for package in PACKAGES for name in package.__all__]
+
+
+@pytest.mark.parametrize(("package", "name"), NAMES, ids=lambda value: getattr(value, "__name__", value))
+def test_a_public_name_is_the_object_of_its_module(package: ModuleType, name: str) -> None:
+    module = importlib.import_module(package._MODULE_OF[name])
+    assert name in dir(package)
+    assert getattr(package, name) is getattr(module, name)
+    value = getattr(module, name)
+    if inspect.isclass(value) or inspect.isfunction(value):
+        assert value.__module__ == module.__name__, f"{name} is defined in {value.__module__}."
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
+def test_type_checkers_see_the_names_of_the_table(package: ModuleType) -> None:
+    tree = ast.parse(Path(str(package.__file__)).read_text())
+    (guarded,) = (node for node in tree.body if isinstance(node, ast.If))
+    seen = {
+        alias.name: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    assert seen == package._MODULE_OF
+    assert set(package.__all__) == set(seen)
+    assert len(package.__all__) == len(set(package.__all__))
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
+def test_a_name_that_does_not_exist_raises_the_usual_error(package: ModuleType) -> None:
+    with pytest.raises(AttributeError, match=f"module '{package.__name__}' has no attribute 'Sofa'"):
+        package.Sofa  # noqa: B018 - the access raises
+
+
+@pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
+def test_importing_a_package_imports_nothing_large(package: ModuleType) -> None:
+    assert modules_after(f"import {package.__name__}") == []
+
+
+def test_the_contract_needs_no_simulator() -> None:
+    names = (
+        "Action, AgentSpec, CameraModel, GOAL_CATEGORIES, MPCAT40_ID, Observation, RobotModel, Scores, SegmenterSpec"
+    )
+    assert modules_after(f"from sim import {names}") == ["numpy"]
+
+
+def test_no_name_of_the_agent_imports_mujoco() -> None:
+    assert "mujoco" not in modules_after("import stubborn; [getattr(stubborn, name) for name in stubborn.__all__]")
+
+
+def test_subpackages_can_be_imported_as_before() -> None:
+    code = (
+        "import sim, sim.gym, gymnasium, sim.geometry.grid; gymnasium.spec(sim.gym.ENV_ID); sim.geometry.grid.GridFrame"
+    )
+    assert "gymnasium" in modules_after(code)
+
+
+def modules_after(code: str) -> list[str]:
+    """Returns those large packages that are imported when a new process has run the code."""
+    large = ("gymnasium", "mujoco", "numba", "numpy", "torch")
+    code += f"; import sys; print(*(name for name in {large} if name in sys.modules))"
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
