@@ -1,12 +1,15 @@
-"""Tests of the page that describes the shipped houses."""
+"""Tests of the page and the table that describe the shipped houses."""
 
 from __future__ import annotations
 
+import csv
+import hashlib
 from pathlib import Path
 
 import pytest
 
 from sim.commands import episodes as make_episodes
+from sim.interface import GOAL_CATEGORIES
 from tests.helpers.worlds import room, with_box
 from tools.maintenance import describe_houses
 
@@ -25,28 +28,57 @@ def root(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def page(root: Path, measure: int) -> str:
-    describe_houses.main(describe_houses.Args(out=root / "README.md", root=root, measure=measure))
-    return (root / "README.md").read_text()
+def write(root: Path) -> tuple[str, list[dict[str, str]]]:
+    """Returns the page and the rows of the table."""
+    describe_houses.main(describe_houses.Args(out=root / "README.md", root=root))
+    with (root / "houses.csv").open(encoding="utf-8", newline="") as file:
+        return (root / "README.md").read_text(encoding="utf-8"), list(csv.DictReader(file))
 
 
-def test_categories_and_unreachable_instances_are_on_the_page(root: Path) -> None:
-    text = page(root, measure=0)
-    assert "| sink | 2 | 1 |" in text
-    assert "| bed | 2 | 2 |" in text
-    assert "not goals: val_01: sink_00." in text
-    assert "fast ms" not in text
+def test_the_table_has_one_row_for_each_house(root: Path) -> None:
+    _, rows = write(root)
+    assert [(row["split"], row["house"]) for row in rows] == [("val", "val_00"), ("val", "val_01")]
+    assert sum(int(row["episodes"]) for row in rows) == 4
 
 
-def test_the_page_without_measurements_is_deterministic(root: Path) -> None:
-    assert page(root, measure=0) == page(root, measure=0)
+def test_seed_and_kind_come_from_the_recipe_with_the_name_of_the_house(root: Path) -> None:
+    _, rows = write(root)
+    assert [(row["seed"], row["kind"]) for row in rows] == [("10000", "flat"), ("10001", "corridor")]
 
 
-def test_measured_rendering_times_are_on_the_page(root: Path) -> None:
-    text = page(root, measure=2)
-    (row,) = [line for line in text.splitlines() if line.startswith("| val_00 |")]
-    fast_ms, good_ms, void = (float(cell) for cell in row.split("|")[-4:-1])
-    assert fast_ms > 0.0
-    assert good_ms > 0.0
-    assert 0.0 < void < 1.0  # such a room has no ceiling
-    assert "--measure 2" in text
+def test_instances_and_unreachable_instances_are_in_the_table(root: Path) -> None:
+    _, (open_house, walled) = write(root)
+    assert (open_house["sink"], open_house["bed"], open_house["unreachable"]) == ("1", "1", "")
+    assert (walled["sink"], walled["unreachable"]) == ("1", "sink_00")
+    assert open_house["chair"] == "0"
+    assert set(GOAL_CATEGORIES) <= set(open_house)
+
+
+def test_the_checksum_is_that_of_the_file(root: Path) -> None:
+    _, rows = write(root)
+    for row in rows:
+        content = (root / "val" / f"{row['house']}.xml").read_bytes()
+        assert (row["sha256"], row["kilobytes"]) == (hashlib.sha256(content).hexdigest(), f"{len(content) / 1000:.0f}")
+
+
+@pytest.mark.parametrize(
+    ("levels_m", "storeys"), [((0.0,), 1), ((-0.6, 0.0), 1), ((0.0, 2.9), 2), ((-0.6, 0.0, 2.9), 2)]
+)
+def test_levels_less_than_a_metre_apart_are_one_storey(levels_m: tuple[float, ...], storeys: int) -> None:
+    assert describe_houses.count_storeys(levels_m) == storeys
+
+
+def test_goals_without_an_episode_are_named_on_the_page(root: Path) -> None:
+    page, _ = write(root)
+    (sentence,) = [line for line in page.splitlines() if line.startswith("No episode of `val`")]
+    assert "chair" in sentence
+    assert "bed" not in sentence.replace("bathtub", "")
+
+
+def test_page_and_table_are_deterministic(root: Path) -> None:
+    assert write(root) == write(root)
+
+
+def test_the_shipped_page_has_at_most_900_words() -> None:
+    shipped = Path(__file__).resolve().parents[2] / "assets" / "mjcf_houses" / "README.md"
+    assert len(shipped.read_text(encoding="utf-8").split()) <= 900
