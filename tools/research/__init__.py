@@ -1,0 +1,1 @@
+"""Experiments and tables for the makers of the project; not part of the installed package."""
