@@ -1,0 +1,221 @@
+"""Reads the archive of result lines, and chooses the runs that the tables of results are made from.
+
+The archive, `docs/tables/splits-2.0.0.tar.gz`, holds one folder for each run, with the `config.json` and
+`results.jsonl` that `stubborn run` wrote. Runs that newer ones replace are in its folder `older`; tables do not use
+them.
+"""
+
+from __future__ import annotations
+
+import shlex
+import tarfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import msgspec
+
+from sim.analysis.comparison import Line, Run, read_run
+from sim.composition.agents import find_agent
+from sim.composition.options import RunOptions
+from sim.errors import ConfigError
+from sim.reading import convert
+
+ROOT = Path(__file__).resolve().parents[2]
+ARCHIVE = ROOT / "docs" / "tables" / "splits-2.0.0.tar.gz"
+OLDER = "older"
+"""The folder of the archive with the runs that newer ones replace."""
+RUN_FILES = ("config.json", "results.jsonl")
+MAX_FILE_BYTES = 50_000_000
+GROUND_TRUTH_KINDS = ("gt", "noisy")
+"""Kinds of segmentation that are made from ground truth."""
+OWN_THRESHOLD = ("logistic", "threshold")
+"""Methods of verification whose fit stores a threshold, which a run may replace."""
+CHECKSUM_DIGITS = 8
+Say = Callable[[str], None]
+
+
+class _Verification(msgspec.Struct):
+    method: str = ""
+    least_probability: float | None = None
+
+
+class _Tree(msgspec.Struct):
+    verification: _Verification = msgspec.field(default_factory=_Verification)
+
+
+class _Setup(msgspec.Struct):
+    """The parts of `config.json` that say which options a run had."""
+
+    explorer: str | None = None
+    verification: str | None = None
+    noise: str | None = None
+    seed: int | None = None
+    settings: dict[str, Any] = msgspec.field(default_factory=dict)
+    config: _Tree = msgspec.field(default_factory=_Tree)
+
+
+@dataclass(frozen=True, order=True)
+class RunKey:
+    """What one row of a table evaluates."""
+
+    split: str
+    agent: str
+    options: str
+    """Options of `stubborn run` that are not the default, such as "--explorer informed-tour"."""
+    semantics: str
+
+    @property
+    def name(self) -> str:
+        """The agent with its options."""
+        return f"{self.agent} {self.options}".strip()
+
+
+@dataclass(frozen=True)
+class ArchivedRun:
+    """One run of the archive."""
+
+    key: RunKey
+    run: Run
+    folder: str
+    """Its folder in the archive."""
+
+    def first_lines(self, count: int | None = None) -> list[Line]:
+        """Returns the lines of the first episodes of the split; their ids are numbered in the order of the split.
+
+        Raises:
+            ConfigError: the run has fewer episodes.
+        """
+        ids = sorted(self.run.lines)
+        if count is not None and count > len(ids):
+            raise ConfigError(f"'{self.folder}' has {len(ids)} episodes; a table needs {count}.")
+        return [self.run.lines[each] for each in ids[:count]]
+
+    @property
+    def uses_ground_truth(self) -> bool:
+        """True where the agent declares it, or reads segmentation that is made from ground truth."""
+        spec = find_agent(self.key.agent)
+        return spec.uses_ground_truth or (spec.uses_segmentation and self.key.semantics in GROUND_TRUTH_KINDS)
+
+    @property
+    def codes(self) -> str:
+        """The hashes of the code that ran the episodes, as config.json records them."""
+        versions = self.run.config.get("versions", {})
+        return " ".join(self.run.config.get("codes") or [str(versions.get("code", "unknown"))])
+
+    @property
+    def network(self) -> str:
+        """The first digits of the SHA-256 of the network's weights; "" without a network."""
+        return str(self.run.config.get("files_sha256", {}).get("weights", ""))[:CHECKSUM_DIGITS]
+
+    def command(self, episodes: int) -> str:
+        """Returns the command that runs the same episodes."""
+        source = self.run.recorded("split")
+        parts = ["stubborn run --agent", self.key.agent, self.key.options, "--semantics", self.key.semantics]
+        return " ".join(filter(None, [*parts, "--split", shlex.quote(source), f"--episodes {episodes}"]))
+
+
+def read_archive(archive: Path, folder: Path, say: Say) -> dict[RunKey, ArchivedRun]:
+    """Returns the runs of an archive; what is not a run is reported and skipped.
+
+    Args:
+        archive: a tar file.
+        folder: an empty folder, which receives the files of the runs.
+        say: receives a sentence on each folder and file that is skipped.
+
+    Raises:
+        ConfigError: the archive cannot be read, or holds no run.
+    """
+    try:
+        with tarfile.open(archive) as opened:
+            names = sorted(set(_extract(opened, folder, say)))
+    except (OSError, tarfile.TarError, EOFError) as error:
+        raise ConfigError(f"Archive '{archive}' cannot be read: {error}.") from None
+    found: list[ArchivedRun] = []
+    for name in names:
+        try:
+            run = read_run(folder / name)
+            found.append(ArchivedRun(key_of(run), run, name))
+        except ConfigError as error:
+            say(f"Skipped '{name}': {error}")
+    if not found:
+        raise ConfigError(f"Archive '{archive}' holds no run.")
+    return newest(found, say)
+
+
+def newest(runs: Iterable[ArchivedRun], say: Say) -> dict[RunKey, ArchivedRun]:
+    """Returns one run for each key: that with the most episodes, among equals that of the later version.
+
+    Raises:
+        ConfigError: two runs are equal in both.
+    """
+    chosen: dict[RunKey, ArchivedRun] = {}
+    for run in runs:
+        other = chosen.setdefault(run.key, run)
+        if other is run:
+            continue
+        if _rank(other) == _rank(run):
+            raise ConfigError(
+                f"'{other.folder}' and '{run.folder}' are runs of the same agent, split and segmentation; move the "
+                f"older one to the folder '{OLDER}' of the archive."
+            )
+        kept, dropped = (run, other) if _rank(run) > _rank(other) else (other, run)
+        say(f"Skipped '{dropped.folder}': '{kept.folder}' has more episodes or a later version.")
+        chosen[run.key] = kept
+    return chosen
+
+
+def key_of(run: Run) -> RunKey:
+    """Returns what a run evaluates.
+
+    Raises:
+        ConfigError: config.json lacks a field that a table needs.
+    """
+    agent, semantics = str(run.recorded("agent")), str(run.recorded("semantics"))
+    find_agent(agent)
+    return RunKey(str(run.recorded("split_identity")["name"]), agent, shlex.join(_options(run)), semantics)
+
+
+def _options(run: Run) -> Iterator[str]:
+    """Yields the words of the options of `stubborn run` that are not the default, in a fixed order."""
+    setup = convert(dict(run.config), _Setup, where=f"Config '{run.path / 'config.json'}'")
+    defaults = RunOptions()
+    for name in ("explorer", "verification", "noise", "seed"):
+        value = getattr(setup, name)
+        if value is not None and value != getattr(defaults, name):
+            yield from (f"--{name}", str(value))
+    settings = {path: _setting_text(value) for path, value in setup.settings.items()}
+    verification = setup.config.verification
+    if verification.method in OWN_THRESHOLD and verification.least_probability is not None:
+        settings.setdefault("verification.least_probability", str(verification.least_probability))
+    if settings:
+        yield from ("--config", *(f"{path}={value}" for path, value in sorted(settings.items())))
+
+
+def _setting_text(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value).replace(" ", "")
+
+
+def _rank(run: ArchivedRun) -> tuple[int, Sequence[int]]:
+    version = str(run.run.config.get("versions", {}).get("stubborn-objectnav", "0"))
+    return len(run.run.lines), [int(part) for part in version.split(".") if part.isdigit()]
+
+
+def _extract(opened: tarfile.TarFile, folder: Path, say: Say) -> Iterator[str]:
+    """Writes the files of runs below a folder, and yields the folder of each in the archive."""
+    for member in opened:
+        path = PurePosixPath(member.name)
+        if member.isdir() or path.parts[:1] == (OLDER,):
+            continue
+        inside = not path.is_absolute() and ".." not in path.parts and len(path.parts) > 1
+        if not inside or not member.isfile() or path.name not in RUN_FILES or member.size > MAX_FILE_BYTES:
+            say(f"Skipped '{member.name}': it is not a {' or '.join(RUN_FILES)} of a run.")
+            continue
+        content = opened.extractfile(member)
+        if content is None:
+            continue
+        target = folder.joinpath(*path.parts)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content.read())
+        yield str(path.parent)

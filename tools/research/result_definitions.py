@@ -1,0 +1,202 @@
+"""The tables of docs/results.md: which runs each one shows, and which runs are compared.
+
+A table shows only rows of `docs/tables/results.csv`, and all rows of one split in a table are of the same episodes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from sim.analysis.metrics import COLLISIONS, EXPLORED, FIRST_SIGHT, SPL, STEPS, SUCCESS, TRAPPED, Metric
+from tools.research.result_archive import RunKey
+
+SOFT_SPL = Metric("soft SPL", "soft_spl", digits=3)
+DISTANCE = Metric("distance to goal, m", "distance_to_goal", digits=2)
+MEANS = (SUCCESS, SPL, SOFT_SPL, DISTANCE, EXPLORED, COLLISIONS, TRAPPED, STEPS)
+"""Metrics whose mean and interval each row of results.csv has."""
+COMPARED = (SUCCESS, SPL, COLLISIONS, TRAPPED, FIRST_SIGHT, STEPS)
+"""Metrics whose paired difference each row of comparisons.csv has."""
+MEDIAN = "median_first_sight"
+"""Column of results.csv: median steps to first sight; an episode that never shows the goal counts with the limit."""
+FAILED = "failed_"
+"""Start of the columns of results.csv with the number of failed episodes by cause (`sim.task.failures`)."""
+FALSE_DETECTIONS = f"{FAILED}false_detection"
+"""Column of results.csv: episodes that ended with a STOP at another object."""
+
+
+@dataclass(frozen=True)
+class RowKey:
+    """A row of results.csv: a run, and how many of its first episodes."""
+
+    run: RunKey
+    episodes: int
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A row of comparisons.csv: the first run minus the second one, paired by episode."""
+
+    table: str
+    first: RunKey
+    second: RunKey
+    episodes: int
+
+
+@dataclass(frozen=True)
+class PageTable:
+    """A table of the page: labels, then cells, each a column of a row of results.csv."""
+
+    name: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[tuple[str, ...], tuple[tuple[RowKey, Metric | str], ...]], ...]
+
+    def needed(self) -> Iterator[RowKey]:
+        """Yields the rows of results.csv that the table shows."""
+        for _, cells in self.rows:
+            yield from (row for row, _ in cells)
+
+
+HEADLINE_EPISODES = {"val": 200, "large": 100, "hazards": 100, "test": 500}
+HEADLINE = {
+    "val": ("oracle gt", "stubborn gt", "stubborn-plus gt", "stubborn rednet", "stubborn-plus rednet"),
+    "large": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
+    "hazards": ("oracle gt", "stubborn gt", "stubborn rednet", "stubborn-plus rednet"),
+    "test": ("stubborn rednet", "stubborn-plus rednet"),
+}
+"""Agents and segmentation, by split."""
+ABLATION = {
+    "stubborn-i": "I: none",
+    "stubborn-ii": "II: untrap moves",
+    "stubborn-iii": "III: and collision layers",
+    "stubborn-iv": "IV: and exploration avoids them",
+    "stubborn": "V: and visited ground is free",
+}
+ABLATION_SPLITS = ("val", "hazards", "large")
+ABLATION_EPISODES = 200
+EXPLORERS = {
+    "stubborn": "corners (`stubborn`)",
+    "frontier-avoid": "`frontier-avoid`",
+    "frontier": "`frontier`",
+    "stubborn --explorer informed-tour": "`informed-tour`",
+    "poni": "`poni`",
+    "semexp": "`semexp`",
+    "semexp --config agent.explorer.goal=wrong": "`semexp`, wrong goal",
+    "cloned": "`cloned`",
+    "random": "`random`",
+    "oracle": "`oracle`",
+}
+EXPLORER_EPISODES = {"val": 200, "large": 300}
+CONTROLS = tuple(
+    f"semexp --config agent.explorer.{control}" for control in ("goal=wrong", "semantics=shuffled", "semantics=none")
+)
+"""Runs that show whether `semexp` uses the goal and the semantics; each is compared with it."""
+BAR = "--config verification.least_probability=0.5"
+NETWORK = (
+    ("val", "stubborn", "naive Bayes", "stubborn", "rednet", 200),
+    ("val", "stubborn", "threshold", f"stubborn --verification threshold {BAR}", "rednet", 200),
+    ("val", "stubborn", "logistic", f"stubborn --verification logistic {BAR}", "rednet", 200),
+    ("val", "stubborn", "none", "stubborn --verification none", "rednet", 200),
+    ("val", "stubborn-plus", "tracks", "stubborn-plus", "rednet", 200),
+    ("val, `noisy`", "stubborn", "naive Bayes", "stubborn", "noisy", 200),
+    ("val, `noisy`", "stubborn-plus", "tracks", "stubborn-plus", "noisy", 200),
+    ("transfer", "stubborn", "naive Bayes", "stubborn", "rednet", 100),
+    ("transfer", "stubborn-plus", "tracks", "stubborn-plus", "rednet", 100),
+)
+
+
+def run_key(split: str, name: str, semantics: str) -> RunKey:
+    """Returns the key of an agent with options, such as "stubborn --explorer tour"."""
+    agent, _, options = name.partition(" ")
+    return RunKey(split, agent, options, semantics)
+
+
+def page_tables() -> tuple[PageTable, ...]:
+    """Returns the tables of the page."""
+    return _headline(), _ablation(), _explorers(), _network()
+
+
+def comparisons() -> Iterator[Comparison]:
+    """Yields the comparisons that the page may quote."""
+    for split, episodes in HEADLINE_EPISODES.items():
+        present = [run_key(split, *agent.split()) for agent in HEADLINE[split]]
+        for second, first in itertools.combinations(present, 2):
+            yield Comparison("headline", first, second, episodes)
+    *rows, whole = ABLATION
+    for split in ABLATION_SPLITS:
+        for name in rows:
+            first, second = run_key(split, name, "gt"), run_key(split, whole, "gt")
+            yield Comparison("ablation", first, second, ABLATION_EPISODES)
+    for split, episodes in EXPLORER_EPISODES.items():
+        for name in list(EXPLORERS)[1:]:
+            first, second = run_key(split, name, "gt"), run_key(split, "stubborn", "gt")
+            yield Comparison("explorers", first, second, episodes)
+        for name in CONTROLS:
+            first, second = run_key(split, name, "gt"), run_key(split, "semexp", "gt")
+            yield Comparison("explorers", first, second, episodes)
+    yield from _network_comparisons()
+
+
+def _network_comparisons() -> Iterator[Comparison]:
+    """Yields, for each split and segmentation of the table, each row minus the first one."""
+    keys: dict[tuple[str, str, int], list[RunKey]] = {}
+    for shown, _, _, name, semantics, episodes in NETWORK:
+        split = _split(shown)
+        keys.setdefault((split, semantics, episodes), []).append(run_key(split, name, semantics))
+    for (_, _, episodes), (second, *others) in keys.items():
+        yield from (Comparison("network", first, second, episodes) for first in others)
+
+
+def _headline() -> PageTable:
+    rows = []
+    for split, agent in ((split, agent) for split, agents in HEADLINE.items() for agent in agents):
+        name, semantics = agent.split()
+        row, count = RowKey(run_key(split, name, semantics), HEADLINE_EPISODES[split]), HEADLINE_EPISODES[split]
+        shown = "-" if name == "oracle" else "truth" if semantics == "gt" else "network"
+        rows.append(((f"{split}, {count}", f"`{name}`", shown), _cells(row, (SUCCESS, SPL))))
+    header = ("split, episodes", "agent", "segmentation", "success %", "SPL")
+    return PageTable("headline", header, tuple(rows))
+
+
+def _ablation() -> PageTable:
+    rows = []
+    for name, label in ABLATION.items():
+        val, hazards, large = (
+            RowKey(run_key(split, name, "gt"), ABLATION_EPISODES) for split in ("val", "hazards", "large")
+        )
+        hard = _cells(hazards, (SUCCESS, TRAPPED, COLLISIONS))
+        rows.append(((label,), (*_cells(val, (SUCCESS,)), *hard, *_cells(large, (SUCCESS,)))))
+    header = (
+        "measures", "val: success %", "hazards: success %", "hazards: trapped %", "hazards: collisions",
+        "large: success %",
+    )  # fmt: skip
+    return PageTable("ablation", header, tuple(rows))
+
+
+def _explorers() -> PageTable:
+    rows = []
+    for name, label in EXPLORERS.items():
+        of = {split: RowKey(run_key(split, name, "gt"), count) for split, count in EXPLORER_EPISODES.items()}
+        cells = [cell for row in of.values() for cell in _cells(row, (SUCCESS, SPL))]
+        rows.append(((label,), (*cells, *_cells(of["large"], (MEDIAN,)))))
+    header = ("explorer", "val: success %", "val: SPL", "large: success %", "large: SPL", "large: first sight")
+    return PageTable("explorers", header, tuple(rows))
+
+
+def _network() -> PageTable:
+    rows = []
+    for shown, agent, verification, name, semantics, episodes in NETWORK:
+        row = RowKey(run_key(_split(shown), name, semantics), episodes)
+        labels = (f"{shown}, {episodes}", f"`{agent}`", verification)
+        rows.append((labels, _cells(row, (SUCCESS, SPL, FALSE_DETECTIONS))))
+    header = ("split, episodes", "agent", "verification", "success %", "SPL", "false detections")
+    return PageTable("network", header, tuple(rows))
+
+
+def _cells(row: RowKey, columns: Sequence[Metric | str]) -> tuple[tuple[RowKey, Metric | str], ...]:
+    return tuple((row, column) for column in columns)
+
+
+def _split(shown: str) -> str:
+    return shown.partition(",")[0]
