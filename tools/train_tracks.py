@@ -33,7 +33,7 @@ import numpy as np
 from jaxtyping import Int
 
 from sim import cli
-from sim.composition.segmenters import KINDS, detector_config, make_segmenter
+from sim.composition.segmenters import KINDS, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -153,7 +153,7 @@ class TrackRunner:
             camera=self._env.camera_model,
             robot=self._env.robot_model,
             success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
+            segmenter=make_segmenter(args.semantics, self._env, args.weights),
             config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL)),
         )
         assert isinstance(self._agent.seeker, TrackSeeker)

@@ -32,7 +32,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # a script does no
 import msgspec
 
 from sim import cli
-from sim.composition.segmenters import KINDS, detector_config, make_segmenter
+from sim.composition.segmenters import KINDS, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -152,7 +152,7 @@ class CandidateRunner:
             camera=self._env.camera_model,
             robot=self._env.robot_model,
             success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
+            segmenter=make_segmenter(args.semantics, self._env, args.weights),
             verifier=self._recorder,
             config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
         )
