@@ -10,6 +10,7 @@ to the left; yaw is counter-clockwise, in radians. Images have row 0 at the top.
 from __future__ import annotations
 
 import enum
+import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -322,6 +323,29 @@ class AgentSpec:
                 f"AgentSpec '{self.description or self.make}': sensor {names} reads ground truth: declare "
                 "uses_ground_truth=True."
             )
+
+    def build(self, name: str, *, max_steps: int, **parts: Any) -> Agent:
+        """Returns a new agent.
+
+        Args:
+            name: the agent's name, for the error message.
+            max_steps: actions of an episode; given only to a factory that has a parameter of this name.
+            parts: the other arguments of `AgentFactory`.
+
+        Raises:
+            ConfigError: the factory does not take these arguments.
+        """
+        try:
+            signature = inspect.signature(self.make)
+            if "max_steps" in signature.parameters:
+                parts["max_steps"] = max_steps
+            signature.bind(**parts)
+        except TypeError as error:
+            raise ConfigError(
+                f"Agent '{name}': its factory is called with the arguments {', '.join(parts)}, but: {error}. "
+                "A parameter **options accepts those that it does not use."
+            ) from None
+        return self.make(**parts)
 
 
 def _reads_truth(sensor: Any) -> bool:

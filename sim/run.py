@@ -27,15 +27,15 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    from sim.composition.checks import check_options  # these bring MuJoCo, which a list does not need
-    from sim.composition.playing import report_house, run_missing
-    from sim.composition.runner import plan_episodes
+    from sim.composition.environments import episodes_of  # these bring MuJoCo, which a list does not need
+    from sim.composition.running import report_house, run_missing
+    from sim.composition.setup import resolve
     from sim.evaluation.parallel import Shard
 
-    check_options(options)
+    setup = resolve(options)
     if options.house is None and options.split == "test":
         print("Split test is for a last measurement: choose nothing by its results.", file=sys.stderr)
-    episodes, split = plan_episodes(options)
+    episodes, split = episodes_of(setup)
     report_house(options, console)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")
     count = len(episodes)
@@ -45,8 +45,8 @@ def main(options: RunOptions) -> int:
         if not episodes:
             console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
             return 0
-    options = replace(options, episodes=count, out=out)
-    lines, summary = run_missing(options, episodes, split, console)
+    setup = replace(setup, options=replace(options, episodes=count, out=out))
+    lines, summary = run_missing(setup, episodes, split, console)
     display.print_results(console, lines, summary)
     failures = (line["episode_id"] for line in lines if not line["success"] and options.house is None)
     display.print_where_to_look(

@@ -16,10 +16,11 @@ from typing import Any, Literal
 
 from sim import cli
 from sim.analysis import display
+from sim.composition.environments import episodes_of, make_env
 from sim.composition.human import HUMAN, Cockpit, Human, Quit, judged
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of, record_of
-from sim.composition.runner import identity_of, make_env, plan_episodes
+from sim.composition.record import identity_of, record_of
+from sim.composition.setup import Setup, resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError
@@ -98,12 +99,13 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
     """
     options = run_options(args)
     assert options.out is not None
-    episodes, split = plan(args, options)
-    content = record_of(options, configuration_of(options, HUMAN), split)
+    setup = resolve(options, HUMAN)
+    episodes, split = available(args, setup)
+    content = record_of(setup, split)
     record = RunDirectory(options.out, content)
     try:
         episode = choose(args, episodes, {line["episode_id"] for line in record.lines})
-        line = play(options, episode, cockpit, content)
+        line = play(setup, episode, cockpit, content)
         record.append(line)
         record.write_summary({"split": split})
     finally:
@@ -134,10 +136,10 @@ def run_options(args: Args) -> RunOptions:
     )
 
 
-def plan(args: Args, options: RunOptions) -> tuple[list[Episode], dict[str, Any]]:
+def available(args: Args, setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
     """Returns all episodes that can be played, and what identifies their source."""
     if args.house is not None:  # one is drawn from the seed
-        return plan_episodes(options, HUMAN)
+        return episodes_of(setup)
     env = ObjectNavEnv(split=args.split, goal=args.goal, sensors=())
     try:
         split = env.split
@@ -166,17 +168,17 @@ def choose(args: Args, episodes: Sequence[Episode], done: set[str]) -> Episode:
     raise ConfigError(f"There is no episode '{args.episode_id}' here; there are '{episodes[0].episode_id}' and others.")
 
 
-def play(options: RunOptions, episode: Episode, cockpit: Cockpit, content: dict[str, Any]) -> dict[str, Any]:
+def play(setup: Setup, episode: Episode, cockpit: Cockpit, content: dict[str, Any]) -> dict[str, Any]:
     """Lets a person drive through an episode; returns its result line, once the trajectory is written."""
+    options = setup.options
     assert options.out is not None
-    config = configuration_of(options, HUMAN)
-    env = make_env(options, config, sensors=config.sensors, truth=VIEWER_IMAGES)
+    env = make_env(setup, sensors=setup.sensors, truth=VIEWER_IMAGES)
     human = Human(env, cockpit)
     viewers = [VideoRecorder(options.out, AgentMapPainter(human.mapper, show_plan=False))] if options.video else []
     try:
         seed = episode_seed(options.seed, episode.episode_id)
         metrics = judged(play_episode(env, human, episode, seed=seed, viewers=viewers))
-        line = identity_of(options, HUMAN, episode) | metrics
+        line = identity_of(setup, episode) | metrics
         about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
         record_episode(env, options.out, line, about | {"versions": content["versions"]})
         write_last_view(env, options.out, line["episode_id"])

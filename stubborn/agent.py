@@ -28,15 +28,15 @@ from sim.interface import (
 )
 from stubborn.detection.approach import Approach
 from stubborn.detection.distances import StopDistances, TargetConfig
-from stubborn.detection.seeker import Seeker, TargetSeeker
+from stubborn.detection.seeker import SeekerConfig, SeekerParts, TargetSeekerConfig
 from stubborn.detection.verification import AcceptAll, Verifier
 from stubborn.exploration.corners import CornerConfig
-from stubborn.exploration.explorer import Explorer, ExplorerConfig, Ground, ReadsSemantics, run_explorer
+from stubborn.exploration.explorer import ExplorerConfig, Ground, ReadsSemantics, run_explorer
 from stubborn.kernels.grids import MAX_REACH
 from stubborn.mapping.collision_marks import CollisionConfig, GpsNoise, is_collision, mark_collision, mark_visited
 from stubborn.mapping.mapper import Mapper, MappingConfig, Sighting
 from stubborn.mapping.navmap import NavMap
-from stubborn.mapping.object_layers import ObjectLayers
+from stubborn.mapping.object_layers import ObjectLayersConfig
 from stubborn.planning.avoidance import CollisionAvoidance, collision_policies
 from stubborn.planning.planner import Planner, PlanningConfig, Route
 from stubborn.planning.steering import next_action
@@ -63,9 +63,14 @@ class AgentConfig:
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     untrap: UntrapConfig = field(default_factory=UntrapConfig)
+    layers: ObjectLayersConfig = field(default_factory=ObjectLayersConfig)
+    """Memory of the scores."""
     explorer: ExplorerConfig = field(default_factory=CornerConfig)
-    """The explorer: `CornerConfig` (the paper), `ThoroughConfig`, `FrontierConfig`, or another one."""
+    """Chooses where to look; the default is the paper's."""
     target: TargetConfig = field(default_factory=TargetConfig)
+    """Distances and steps of the approach to a candidate."""
+    seeker: SeekerConfig = field(default_factory=TargetSeekerConfig)
+    """Decides on candidates; the default is the paper's."""
 
     def __post_init__(self) -> None:
         if not 1 <= self.window_cells <= self.map_cells:
@@ -92,13 +97,10 @@ class StubbornAgent:
         segmenter: Segmenter,
         success: SuccessRule = SuccessRule(),  # noqa: B008 - frozen
         verifier: Verifier | None = None,
-        explorer: Explorer | None = None,
-        layers: ObjectLayers | None = None,
-        seeker: Seeker | None = None,
         config: AgentConfig = AgentConfig(),
         max_steps: int = MAX_STEPS,
     ) -> None:
-        """Builds the agent from its parts.
+        """Makes the parts of the agent from their configurations.
 
         Args:
             camera: camera of the observations.
@@ -106,29 +108,30 @@ class StubbornAgent:
             segmenter: source of the scores. With inexact outlines the rim of the target does not count (see
                 `Mapper.add_scores`), and the agent goes nearer before it stops.
             success: when a STOP counts.
-            verifier: judges candidates; by default it accepts all.
-            explorer: chooses where to look; by default the one of `config.explorer`.
-            layers: keeps the scores; by default those of all frames.
-            seeker: decides on candidates; by default the paper's, with `verifier`.
-            config: all other parameters.
+            verifier: judges candidates, if the seeker asks it; by default it accepts all.
+            config: all other parameters, with the configurations of explorer, seeker and object layers.
             max_steps: actions of an episode; near their end the agent takes more risk.
         """
         self.config = config
         self.robot = robot
         self.segmenter = segmenter
         self.policies = collision_policies(config.avoidance, config.untrap)
-        self.mapper = Mapper(camera, robot, config.mapping, layers)
+        self.mapper = Mapper(camera, robot, config.mapping, config.layers.make(config.mapping.candidate_score))
         self.planner = Planner(config.planning, self.policies.proven_ground)
-        self.explorer = explorer or config.explorer.make(camera)
-        self.seeker: Seeker = seeker or TargetSeeker(
-            config.target,
-            self.planner,
-            verifier or AcceptAll(),
-            layers=self.policies.approach,
-            distances=StopDistances.of(config.target, success, segmenter.spec),
-            candidate_score=config.mapping.candidate_score,
-            least_cells=1 if segmenter.spec.exact_outlines else config.target.least_cells,
-            max_steps=max_steps,
+        self.explorer = config.explorer.make(camera)
+        self.seeker = config.seeker.make(
+            SeekerParts(
+                camera=camera,
+                robot=robot,
+                segmenter=segmenter,
+                planner=self.planner,
+                layers=self.policies.approach,
+                target=config.target,
+                distances=StopDistances.of(config.target, success, segmenter.spec),
+                verifier=verifier or AcceptAll(),
+                candidate_score=config.mapping.candidate_score,
+                max_steps=max_steps,
+            )
         )
         self.untrap = Untrap(self.policies.untrap_after)
         self.reset(GOAL_CATEGORIES[0], 0)
@@ -187,13 +190,13 @@ class StubbornAgent:
 
     def _map(self, observation: Observation, pose: Pose) -> Sighting:
         """Enters the frame into the map, and returns the target points in it."""
-        depth = observation["depth"]
-        exact_depth = self.mapper.add_depth(self.navmap, depth, pose)
+        depth, frame = observation["depth"], self.mapper.frame(self.navmap, pose)
+        exact_depth = self.mapper.add_depth(frame, depth)
         scores = self.segmenter.scores(observation, self.goal)
         rim_px = 0 if exact_depth and self.segmenter.spec.exact_outlines else self.config.mapping.rim_px
-        sighting = self.mapper.add_scores(self.navmap, depth, scores, pose, self.step, rim_px=rim_px)
+        sighting = self.mapper.add_scores(frame, depth, scores, self.step, rim_px=rim_px)
         if isinstance(self.explorer, ReadsSemantics):
-            self.mapper.add_goals(self.navmap, depth, self.segmenter.posteriors(observation), pose)
+            self.mapper.add_goals(frame, depth, self.segmenter.posteriors(observation))
         self.seeker.observe(self.navmap, observation, pose, self.step)
         return sighting
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import inspect
 from collections.abc import Mapping
 from dataclasses import fields, replace
 from types import MappingProxyType
@@ -13,7 +12,8 @@ from sim.interface import MAX_STEPS, Agent, AgentSpec, CameraModel, ConfigError,
 from stubborn.agent import AgentConfig, CollisionAvoidance, StubbornAgent
 from stubborn.baselines.cloned import ClonedConfig, cloned_agent
 from stubborn.baselines.random import RandomConfig, random_agent
-from stubborn.baselines.single_frame import latest_frame_agent, single_frame_agent
+from stubborn.detection.seeker import TargetSeekerConfig
+from stubborn.detection.track_seeker import TrackSeekerConfig
 from stubborn.detection.verification import Verifier
 from stubborn.drawing.map_painter import make_painter
 from stubborn.exploration.corners import CornerConfig
@@ -23,7 +23,7 @@ from stubborn.exploration.poni import PoniConfig
 from stubborn.exploration.semexp import SemExpConfig
 from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
-from stubborn.plus import PlusConfig, plus_agent
+from stubborn.mapping.object_layers import ObjectLayersConfig
 
 NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
 """None of the paper's measures against collisions."""
@@ -62,49 +62,57 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 """The explorers by name, for `AgentConfig.explorer`: a configuration, whose `make` returns the explorer."""
 
 
-def _stubborn_spec(description: str, config: AgentConfig, make: Any = StubbornAgent) -> AgentSpec:
-    """Returns the specification of an agent that builds a map."""
-    return AgentSpec(make=make, description=description, config=config, sensors=("depth",), painter=make_painter)
+PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig())
+"""`stubborn-plus`: the paper's agent with tracks of objects and a tour over what is left to see."""
 
 
-SPECS: Mapping[str, AgentSpec] = MappingProxyType(
+PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
     {
-        "stubborn": _stubborn_spec("the paper's agent, with all four measures against collisions", AgentConfig()),
+        "stubborn": ("the paper's agent, with all four measures against collisions", AgentConfig()),
         **{
-            name: _stubborn_spec(
+            name: (
                 f"row {name.removeprefix('stubborn-')} of the paper's ablation: {_ROW_WORDS[name]}",
                 AgentConfig(avoidance=row),
             )
             for name, row in ABLATION.items()
         },
-        "stubborn-plus": _stubborn_spec(
+        "stubborn-plus": (
             "ours: tracks objects, looks before it goes, tours what is left to see (informed-tour)",
-            PlusConfig(),
-            plus_agent,
+            PLUS,
         ),
-        "single-frame": _stubborn_spec(
-            "stubborn without verification (--verification none)", AgentConfig(), single_frame_agent
+        "single-frame": (
+            "stubborn without verification (--verification none)",
+            AgentConfig(seeker=TargetSeekerConfig(verify=False)),
         ),
-        "latest-frame": _stubborn_spec(
+        "latest-frame": (
             "stubborn without verification and memory: the latest frame decides",
-            AgentConfig(),
-            latest_frame_agent,
+            AgentConfig(seeker=TargetSeekerConfig(verify=False), layers=ObjectLayersConfig(latest_frame_only=True)),
         ),
-        "frontier": _stubborn_spec(
+        "frontier": (
             "goes to the nearest frontier (Yamauchi 1997), without measures against collisions",
             AgentConfig(explorer=FrontierConfig(), avoidance=NO_AVOIDANCE),
         ),
-        "frontier-avoid": _stubborn_spec(
-            "frontier with all measures against collisions", AgentConfig(explorer=FrontierConfig())
-        ),
-        "semexp": _stubborn_spec(
+        "frontier-avoid": ("frontier with all measures against collisions", AgentConfig(explorer=FrontierConfig())),
+        "semexp": (
             "stubborn with long-term goals from a learned policy (Chaplot et al. 2020)",
             AgentConfig(explorer=SemExpConfig()),
         ),
-        "poni": _stubborn_spec(
+        "poni": (
             "stubborn that goes to the frontier with the best predicted potential (PONI, 2022)",
             AgentConfig(explorer=PoniConfig()),
         ),
+    }
+)
+"""The agents that build a map: description and configuration of each name. All of them are a `StubbornAgent`."""
+
+SPECS: Mapping[str, AgentSpec] = MappingProxyType(
+    {
+        **{
+            name: AgentSpec(
+                make=StubbornAgent, description=description, config=config, sensors=("depth",), painter=make_painter
+            )
+            for name, (description, config) in PRESETS.items()
+        },
         "cloned": AgentSpec(
             make=cloned_agent,
             description="end-to-end: a recurrent policy cloned from demonstrations, without a map",
@@ -160,15 +168,15 @@ def make(
             raise ConfigError(f"Agent {name!r} has no option {option!r}. It has: {', '.join(allowed)}.")
     if isinstance(options.get("explorer"), str):
         options["explorer"] = EXPLORERS[_known(options["explorer"], EXPLORERS, "explorer")]
-    limit = {"max_steps": max_steps} if "max_steps" in inspect.signature(spec.make).parameters else {}
-    return spec.make(
+    return spec.build(
+        name,
         camera=camera,
         robot=robot,
         success=success,
         segmenter=segmenter,
         verifier=verifier,
         config=replace(config, **options),
-        **limit,
+        max_steps=max_steps,
     )
 
 

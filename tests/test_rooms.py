@@ -42,7 +42,7 @@ AGENT_ROOMS = (
     ("stubborn.exploration",),
     ("stubborn.detection",),
     ("stubborn.agent",),
-    ("stubborn.drawing", "stubborn.baselines", "stubborn.plus"),
+    ("stubborn.drawing", "stubborn.baselines"),
     ("stubborn.agents",),
 )
 """The rooms of `stubborn`, lowest first."""

@@ -111,17 +111,7 @@ def build_agent(
     if spec.uses_ground_truth:
         parts["truth"] = env
     try:
-        signature = inspect.signature(spec.make)
-        if "max_steps" in signature.parameters:
-            parts["max_steps"] = env.task_config.max_steps
-        signature.bind(**parts)
-    except TypeError as error:
-        raise ConfigError(
-            f"Agent '{name}': its factory is called with the arguments {', '.join(parts)}, but: {error}. "
-            "A parameter **options accepts those that it does not use."
-        ) from None
-    try:
-        return spec.make(**parts)
+        return spec.build(name, max_steps=env.task_config.max_steps, **parts)
     except (Exception, SystemExit) as error:
         if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
             raise

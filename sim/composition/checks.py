@@ -1,20 +1,15 @@
-"""Checks of a run's options that need no house."""
+"""Checks of a run's options against each other, before any name is looked up."""
 
 from __future__ import annotations
 
-from sim.composition.agents import find_agent, find_explorer
 from sim.composition.options import RunOptions
-from sim.composition.segmenters import KINDS, check_semantics
 from sim.errors import ConfigError
 from sim.evaluation.parallel import Shard
-from sim.sensors.noise import get_noise
-from sim.sensors.profiles import get_profile
 from sim.viewers import selection
-from stubborn.detection.verification import verifier_for
 
 
 def check_options(options: RunOptions) -> None:
-    """Raises ConfigError where options contradict each other or name something that does not exist."""
+    """Raises ConfigError where options contradict each other or are out of range."""
     for name, smallest in (("episodes", 1), ("workers", 1), ("seed", 0)):
         value = getattr(options, name)
         if value < smallest:
@@ -30,10 +25,3 @@ def check_options(options: RunOptions) -> None:
         Shard.parse(options.shard)
         if options.out is None:
             raise ConfigError(f"--shard {options.shard} needs --out: one folder for all shards.")
-    get_profile(options.profile)
-    get_noise(options.noise)
-    check_semantics(options.semantics, options.weights)
-    verifier_for(options.semantics, KINDS[options.semantics].spec, options.verifier, options.verification)
-    find_agent(options.agent)
-    if options.explorer is not None:
-        find_explorer(options.explorer)

@@ -122,42 +122,44 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
 """The kinds of segmentation by the name that `--semantics` takes."""
 
 
-def detector_config(semantics: str, weights: Path | None) -> Any:
-    """Returns the default configuration of a kind of segmentation, with the user's weights if any.
-
-    Raises:
-        ConfigError: see `check_semantics`.
-    """
-    check_semantics(semantics, weights)
-    config = KINDS[semantics].config
-    return config if weights is None else replace(config, weights=weights)
-
-
-def make_segmenter(semantics: str, env: ObjectNavEnv, config: Any = None) -> Segmenter:
-    """Returns the segmenter of a kind for an environment.
+def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
+    """Returns a kind of segmentation.
 
     Args:
         semantics: one of `KINDS`.
-        env: an environment with the sensors and the truth images that the kind's specification names.
-        config: the kind's configuration; its default when None.
+        weights: the user's weights, whose file must exist; None: those that ship, where the kind needs some.
+
+    Raises:
+        ConfigError: there is no such kind, or no weights for it.
+    """
+    if semantics not in KINDS:
+        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: {', '.join(KINDS)}.")
+    kind = KINDS[semantics]
+    if weights is not None and not isinstance(kind.config, NetworkConfig):
+        raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'.")
+    if isinstance(kind.config, NetworkConfig):
+        weights_file(weights)
+    return kind
+
+
+def detector_config(kind: SegmentationKind, weights: Path | None) -> Any:
+    """Returns the default configuration of a kind of segmentation, with the user's weights if any."""
+    return kind.config if weights is None else replace(kind.config, weights=weights)
+
+
+def make_segmenter(semantics: str, env: ObjectNavEnv, weights: Path | None = None) -> Segmenter:
+    """Returns the segmenter of a kind, with its default configuration, for tools that have no run.
+
+    Args:
+        semantics: one of `KINDS`.
+        env: an environment with the sensors and the true images that the kind's specification names.
+        weights: the user's weights; None: those that ship.
 
     Raises:
         ConfigError: there is no such kind, or its weights are missing, broken or of another network.
     """
-    check_semantics(semantics, None)
-    kind = KINDS[semantics]
-    return kind.make(env, kind.config if config is None else config)
-
-
-def check_semantics(semantics: str, weights: Path | None) -> None:
-    """Raises ConfigError where there is no such kind of segmentation, or no weights for it."""
-    if semantics not in KINDS:
-        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: {', '.join(KINDS)}.")
-    config = KINDS[semantics].config
-    if weights is not None and not isinstance(config, NetworkConfig):
-        raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'.")
-    if isinstance(config, NetworkConfig):
-        weights_file(weights)
+    kind = find_segmentation(semantics, weights)
+    return kind.make(env, detector_config(kind, weights))
 
 
 def weights_file(weights: Path | None) -> Path:

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from sim.cli import USAGE_ERRORS
 from sim.composition.options import RunOptions
 from sim.composition.runner import Parts, build_parts
+from sim.composition.setup import resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
@@ -119,7 +120,7 @@ class Session:
             self._free()
             weights = self._weights if wish.semantics == "rednet" else None
             options = RunOptions(agent=wish.agent, semantics=wish.semantics, weights=weights, split=wish.split)
-            self._parts = build_parts(options, watched=True)
+            self._parts = build_parts(resolve(options), watched=True)
             self._pictures, self._made_for = Pictures(self._parts), key
         return self._parts, self._pictures
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool
 
 from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
-from sim.interface import MAX_STEPS, Observation
+from sim.interface import MAX_STEPS, CameraModel, Observation, RobotModel, Segmenter
 from stubborn.detection.approach import Approach, approach_on
 from stubborn.detection.candidates import CandidateParts
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import StopDistances, TargetConfig
-from stubborn.detection.verification import RatesCandidates, Verifier
+from stubborn.detection.verification import AcceptAll, RatesCandidates, Verifier
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import distance_to
@@ -59,6 +59,57 @@ class Seeker(Protocol):
     def postpone(self, navmap: NavMap, step: int) -> None:
         """Sets aside the candidates that are approached: they cannot be reached with the map of now."""
         ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeekerParts:
+    """What an agent gives to its seeker."""
+
+    camera: CameraModel
+    robot: RobotModel
+    segmenter: Segmenter
+    planner: Planner
+    layers: tuple[CollisionLayer, ...]
+    """Collision layers to plan on, in order of preference."""
+    target: TargetConfig
+    """Distances and steps of the approach."""
+    distances: StopDistances
+    verifier: Verifier
+    """Judges candidates by the paper's features; a seeker need not use it."""
+    candidate_score: float
+    """Cells with a higher score of the target are candidates."""
+    max_steps: int
+    """Actions of an episode."""
+
+
+@runtime_checkable
+class SeekerConfig(Protocol):
+    """A frozen dataclass with the parameters of a seeker."""
+
+    def make(self, parts: SeekerParts) -> Seeker:
+        """Returns a new seeker with these parameters."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class TargetSeekerConfig:
+    """The paper's seeker."""
+
+    verify: bool = True
+    """False: every candidate is accepted, as by the paper's Single-Frame (Table "ObjIDResults")."""
+
+    def make(self, parts: SeekerParts) -> TargetSeeker:
+        """Returns a new seeker with these parameters."""
+        return TargetSeeker(
+            parts.target,
+            parts.planner,
+            parts.verifier if self.verify else AcceptAll(),
+            layers=parts.layers,
+            distances=parts.distances,
+            candidate_score=parts.candidate_score,
+            least_cells=1 if parts.segmenter.spec.exact_outlines else parts.target.least_cells,
+            max_steps=parts.max_steps,
+        )
 
 
 @dataclass(frozen=True)

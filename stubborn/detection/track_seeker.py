@@ -13,19 +13,15 @@ from sim.geometry.grid import Window, cells_near_segment
 from sim.geometry.pose import Pose
 from sim.interface import (
     FORWARD_M,
-    MAX_STEPS,
     TURN_RAD,
-    CameraModel,
     ConfigError,
     Observation,
-    RobotModel,
-    Segmenter,
     wrap_angle,
 )
 from stubborn.detection.approach import Approach, approach_from_here, approach_on
-from stubborn.detection.distances import StopDistances, TargetConfig
 from stubborn.detection.fusion import fusion_for
 from stubborn.detection.look import LookConfig, Verdicts, look_at
+from stubborn.detection.seeker import SeekerParts
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort, ViewpointFinder
 from stubborn.mapping.mapper import Sighting
@@ -63,43 +59,32 @@ class TrackSeekerConfig:
         if self.most_pushes < 1:
             raise ConfigError(f"TrackSeekerConfig.most_pushes must be >= 1, got {self.most_pushes}.")
 
+    def make(self, parts: SeekerParts) -> TrackSeeker:
+        """Returns a new seeker with these parameters. It judges tracks itself and does not use the verifier."""
+        finder = ViewpointFinder(parts.planner, parts.layers, parts.distances, parts.target.target_edge_m)
+        return TrackSeeker(self, parts, finder)
+
 
 class TrackSeeker:
     """A `Seeker` that accepts, rejects and sets aside tracks; see `stubborn.detection.tracks` and `look`.
 
     Args:
         config: tracks and decisions.
-        target: steps and margins of the approach.
-        camera: camera of the observations.
-        robot: its radius and the place of its camera count.
-        segmenter: source of the posteriors.
-        finder: finds places to look from and to stop at.
-        distances: of a STOP.
-        max_steps: actions of an episode; the agent takes more risk as they run out.
+        parts: of the agent. It takes more risk as the actions of the episode run out.
+        finder: finds viewpoints, and places to stop at.
     """
 
-    def __init__(
-        self,
-        config: TrackSeekerConfig,
-        target: TargetConfig,
-        *,
-        camera: CameraModel,
-        robot: RobotModel,
-        segmenter: Segmenter,
-        finder: ViewpointFinder,
-        distances: StopDistances,
-        max_steps: int = MAX_STEPS,
-    ) -> None:
+    def __init__(self, config: TrackSeekerConfig, parts: SeekerParts, finder: ViewpointFinder) -> None:
         self.config = config
-        self.target = target
-        self.camera = camera
-        self.robot = robot
-        self.segmenter = segmenter
-        self.fusion = fusion_for(segmenter.spec, config.tracks.evidence.fusion)
+        self.target = parts.target
+        self.camera = parts.camera
+        self.robot = parts.robot
+        self.segmenter = parts.segmenter
+        self.fusion = fusion_for(parts.segmenter.spec, config.tracks.evidence.fusion)
         self.finder = finder
-        self.distances = distances
-        self.max_steps = max_steps
-        self._last_resort_step = target.last_resort_from(max_steps)
+        self.distances = parts.distances
+        self.max_steps = parts.max_steps
+        self._last_resort_step = parts.target.last_resort_from(parts.max_steps)
         self.reset("")
 
     def reset(self, goal: str) -> None:

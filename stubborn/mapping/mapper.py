@@ -14,7 +14,7 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, ConfigError,
 from stubborn.kernels.frames import goal_bits
 from stubborn.mapping.drops import DropConfig, Drops
 from stubborn.mapping.navmap import NavMap
-from stubborn.mapping.object_layers import AllFrames, FrameScores, ObjectLayers
+from stubborn.mapping.object_layers import FrameScores, ObjectLayers, ObjectLayersConfig
 from stubborn.mapping.occupancy import Occupancy, OccupancyConfig, SightLines, Surfaces, agreeing
 from stubborn.mapping.projection import Rays, in_range, sight_window_cells
 
@@ -81,14 +81,31 @@ NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(
 """A frame without a target pixel."""
 
 
+@dataclass(frozen=True)
+class Frame:
+    """A frame of the camera that is entered into a map: from which pose, and into which part of the map."""
+
+    navmap: NavMap
+    pose: Pose
+    """Of the robot, in the frame of the map."""
+    camera_pose: Pose
+    window: Window
+    """The part of the map that the camera can see."""
+
+    @property
+    def view(self) -> NavMap:
+        """The layers of that part."""
+        return self.navmap.view(self.window)
+
+
 class Mapper:
     """Writes frames into a `NavMap`. It holds precomputed rays and no memory of the episode."""
 
     def __init__(
         self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
     ) -> None:
-        """`layers` keeps the scores; by default those of all frames, as in the paper."""
-        self.layers = layers or AllFrames(config.candidate_score)
+        """Precomputes the rays of the camera. `layers` keeps the scores; None: those of all frames, as in the paper."""
+        self.layers = layers or ObjectLayersConfig().make(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
         if config.obstacle_min_height_m >= top_m:
             raise ConfigError(
@@ -106,14 +123,19 @@ class Mapper:
         self._occupancy = Occupancy(camera, config.occupancy, config.obstacle_min_height_m)
         self._drops = Drops(camera, self._obstacle_rays, config.drops)
 
-    def add_depth(self, navmap: NavMap, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose) -> bool:
+    def frame(self, navmap: NavMap, pose: Pose) -> Frame:
+        """Returns the frame that the camera takes from a pose of the robot, for the methods below."""
+        x_m, y_m = pose.ahead(self.camera_forward_m)
+        cells = sight_window_cells(self.camera, navmap.frame.cell_m)
+        return Frame(navmap, pose, Pose(x_m, y_m, pose.yaw_rad), navmap.frame.window_at(x_m, y_m, cells))
+
+    def add_depth(self, frame: Frame, depth: Float32[np.ndarray, "height_px width_px"]) -> bool:
         """Enters one depth image in metres into the obstacle layers.
 
         Returns:
             True when the image is exact, that is, shows no noise.
         """
-        camera_pose = self._camera_pose(pose)
-        window = self._sight_window(navmap, camera_pose)
+        camera_pose, window = frame.camera_pose, frame.window
         rays, c = self._obstacle_rays, self.config
         surfaces = Surfaces.of(rays.sample(depth), c.occupancy)
         solid, tall = rays.count_obstacles(
@@ -124,7 +146,7 @@ class Mapper:
             band_m=(c.obstacle_min_height_m, self._obstacle_top_m),
             eye_level_halfwidth_m=c.eye_level_halfwidth_m,
         )
-        view = navmap.view(window)
+        view = frame.view
         sight = SightLines.of_frame(
             surfaces.depth, rays.up, rays.left, camera_pose, rise_m=self._obstacle_top_m - self.camera.height_m
         )
@@ -135,10 +157,9 @@ class Mapper:
 
     def add_scores(
         self,
-        navmap: NavMap,
+        frame: Frame,
         depth: Float32[np.ndarray, "height_px width_px"],
         scores: Scores,
-        pose: Pose,
         step: int,
         *,
         rim_px: int = 0,
@@ -148,8 +169,7 @@ class Mapper:
         A rim of `rim_px` pixels of the image at the target's outline does not count: with inexact depth or scores it
         may show what is beside the target.
         """
-        camera_pose = self._camera_pose(pose)
-        window = self._sight_window(navmap, camera_pose)
+        navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, score_pick = self._rays_for(scores.target.shape)
         d, target, other = rays.sample(depth), scores.target[score_pick], scores.best_other[score_pick]
         found = target > self.config.candidate_score
@@ -163,25 +183,23 @@ class Mapper:
         row, col = (indices.start for indices in cells.span)
         part = navmap.frame.part(*(_moved(indices, by) for indices, by in zip(cells.span, window.corner, strict=True)))
         navmap.grow_known(*part.index)
-        frame = FrameScores(part.frame.shape, cells.rows - row, cells.cols - col, target, other)
-        self.layers.add(navmap.view(part), frame, step)
+        scored = FrameScores(part.frame.shape, cells.rows - row, cells.cols - col, target, other)
+        self.layers.add(navmap.view(part), scored, step)
         shown = found & (cells.rows >= 0)
         if not shown.any():
             return NOTHING_SIGHTED
-        self._drop_candidates(navmap.view(window), d, found, rays, camera_pose)
+        self._drop_candidates(frame.view, d, found, rays, camera_pose)
         flat = cells.rows[shown] * np.int32(window.frame.shape[1]) + cells.cols[shown]
-        return note_sighting(navmap, window, *np.divmod(np.unique(flat), window.frame.shape[1]), pose)
+        return note_sighting(navmap, window, *np.divmod(np.unique(flat), window.frame.shape[1]), frame.pose)
 
     def add_goals(
         self,
-        navmap: NavMap,
+        frame: Frame,
         depth: Float32[np.ndarray, "height_px width_px"],
         posteriors: Float32[np.ndarray, "classes h w"],
-        pose: Pose,
     ) -> None:
         """Enters the goal categories that one frame shows with a probability above `candidate_score`."""
-        camera_pose = self._camera_pose(pose)
-        window = self._sight_window(navmap, camera_pose)
+        navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, pick = self._rays_for(posteriors.shape[1:])
         bits: UInt32[np.ndarray, "h w"] = goal_bits(
             posteriors, _GOAL_CHANNELS, pick[0].start, pick[0].step, np.float32(self.config.candidate_score)
@@ -236,14 +254,6 @@ class Mapper:
         passed = self._occupancy.passes(view.frame, rows, cols, sight, self.config.candidate_gap_m)
         view.score_max[rows[passed], cols[passed]] = 0.0
         view.score_sum[rows[passed], cols[passed]] = 0.0
-
-    def _camera_pose(self, pose: Pose) -> Pose:
-        x_m, y_m = pose.ahead(self.camera_forward_m)
-        return Pose(x_m, y_m, pose.yaw_rad)
-
-    def _sight_window(self, navmap: NavMap, camera_pose: Pose) -> Window:
-        cells = sight_window_cells(self.camera, navmap.frame.cell_m)
-        return navmap.frame.window_at(camera_pose.x_m, camera_pose.y_m, cells)
 
     def _rays_for(self, shape: tuple[int, ...]) -> tuple[Rays, tuple[slice, slice]]:
         """Returns the rays of the score pixels that are used, and the slices that pick these from score images."""

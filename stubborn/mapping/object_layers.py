@@ -6,6 +6,7 @@ below it, whose scores say nothing about the picture.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +14,18 @@ from jaxtyping import Bool, Float32, Int
 
 from stubborn.kernels.frames import highest_scores
 from stubborn.mapping.navmap import NavMap
+
+
+@dataclass(frozen=True, kw_only=True)
+class ObjectLayersConfig:
+    """How long the object layers remember scores."""
+
+    latest_frame_only: bool = False
+    """False: the layers of the paper, over all frames. True: the score of the frame that showed a cell last."""
+
+    def make(self, candidate_score: float) -> ObjectLayers:
+        """Returns the layers; a cell becomes a candidate at a score higher than `candidate_score`."""
+        return LatestFrame(candidate_score) if self.latest_frame_only else AllFrames(candidate_score)
 
 
 class ObjectLayers(Protocol):

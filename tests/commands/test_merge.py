@@ -11,8 +11,8 @@ import pytest
 
 from sim import run
 from sim.commands.merge import Args, main
-from sim.composition.checks import check_options
 from sim.composition.options import RunOptions
+from sim.composition.setup import resolve
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.interface import ConfigError
@@ -124,4 +124,4 @@ def test_nothing_to_merge_is_one_sentence(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="got nothing"):
         main(Args(runs=(), out=tmp_path / "out"))
     with pytest.raises(ConfigError, match="--shard 0/2 needs --out"):
-        check_options(RunOptions(shard="0/2"))
+        resolve(RunOptions(shard="0/2"))

@@ -317,7 +317,7 @@ def test_an_unknown_name_or_option_is_refused_with_what_there_is():
 def test_importing_the_agents_imports_neither_mujoco_nor_the_rest_of_sim():
     code = (
         "import sys, stubborn.agents, stubborn.drawing.map_painter, stubborn.segmentation.ground_truth\n"
-        "import stubborn.detection.verification, stubborn.exploration.frontier, stubborn.baselines.single_frame\n"
+        "import stubborn.detection.verification, stubborn.exploration.frontier, stubborn.baselines.cloned\n"
         "bad = [m for m in sys.modules if m.split('.')[0] in ('mujoco', 'gymnasium', 'OpenGL', 'sklearn')]\n"
         "allowed = ('sim.interface', 'sim.errors', 'sim.geometry', 'sim.reading')\n"
         "ours = [m for m in sys.modules if m.startswith('sim.') and not m.startswith(allowed)]\n"

@@ -10,7 +10,7 @@ import pytest
 
 from sim.analysis.comparison import read_run
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of
+from sim.composition.setup import resolve
 from sim.configuration import as_json
 from sim.geometry.pose import Pose
 from sim.interface import Action, ConfigError
@@ -50,7 +50,7 @@ def record(folder: Path, *, robot: str | None = None, **options: Any) -> Any:
     """Writes the `config.json` of a run with some options and a robot file; returns the configuration of its agent."""
     defaults: dict[str, Any] = {"semantics": "gt", "verification": "none"}
     chosen = RunOptions(**(defaults | options))
-    config = configuration_of(chosen)
+    config = resolve(chosen).config
     names = ("agent", "explorer", "semantics")
     content = {name: getattr(chosen, name) for name in names} | {"robot": robot, "config": as_json(config)}
     (folder / "config.json").write_text(json.dumps(content))

@@ -43,14 +43,12 @@ from sim.task.config import TaskConfig
 from sim.task.metrics import EXPLORED_SHARE, steps_to_first_sight
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.twin.agent import TwinAgent, play, twin_config
-from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.agents import SPECS
-from stubborn.baselines.single_frame import single_frame_agent
+from stubborn.agent import AgentConfig
+from stubborn.agents import PRESETS
+from stubborn.detection.seeker import TargetSeekerConfig
 from stubborn.mapping.navmap import NavMap
 
 MEASURES = ("area_seen_m2", "steps_to_first_sight")
-PLAYABLE = (StubbornAgent, single_frame_agent)
-"""Factories of agents that are a `StubbornAgent` with a configuration; ground truth needs no verification."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,9 +126,9 @@ def agent_config(run: Run) -> AgentConfig:
         ConfigError: the twin cannot play this agent, or the run had another robot, camera, task, segmentation or noise.
     """
     name = str(run.recorded("agent"))
-    config = SPECS[name].config if name in SPECS and SPECS[name].make in PLAYABLE else None
-    if not isinstance(config, AgentConfig):
-        there = ", ".join(name for name, spec in SPECS.items() if spec.make in PLAYABLE)
+    config = next((config for there, (_, config) in PRESETS.items() if there == name and _is_playable(config)), None)
+    if config is None:
+        there = ", ".join(name for name, (_, config) in PRESETS.items() if _is_playable(config))
         raise ConfigError(f"'{run.path}' has the agent '{name}', which the twin cannot play. It plays: {there}.")
     if run.config.get("robot"):
         raise ConfigError(f"'{run.path}' has a robot of its own ({run.config['robot']}), which the twin does not have.")
@@ -145,6 +143,11 @@ def agent_config(run: Run) -> AgentConfig:
     if run.config.get("explorer") is not None:
         config = replace(config, explorer=find_explorer(str(run.config["explorer"])))
     return with_fields(config, _recorded_tree(run, "agent"))
+
+
+def _is_playable(config: AgentConfig) -> bool:
+    """Returns whether the twin has what an agent reads: no object layers of its own, no tracks."""
+    return isinstance(config.seeker, TargetSeekerConfig) and not config.layers.latest_frame_only
 
 
 def _recorded_tree(run: Run, name: str) -> dict[str, Any]:

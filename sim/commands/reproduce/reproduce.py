@@ -36,9 +36,9 @@ from sim.analysis.comparison import Line, Run, code_of, read_run
 from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
 from sim.commands.reproduce.agent_setup import AgentSetup, file_name
 from sim.commands.reproduce.paper_tables import PAPER_TABLES, PaperTable, table_named
-from sim.composition.checks import check_options
 from sim.composition.options import RunOptions
-from sim.composition.playing import run_missing
+from sim.composition.running import run_missing
+from sim.composition.setup import resolve
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS, RESAMPLES
@@ -141,7 +141,7 @@ def run_episodes(args: Args, setups: Sequence[AgentSetup], splits: Sequence[Spli
                 done = read_run(_folder(part.args, setup)).lines if _has_run(part.args, setup) else {}
                 if first and all(episode.episode_id in done for episode in chunk):
                     continue
-                run_missing(_run_args(part.args, setup), chunk, _identity(part.split), console)
+                run_missing(resolve(_run_args(part.args, setup)), chunk, _identity(part.split), console)
             longest_s = max(longest_s, time.monotonic() - chunk_began_s)
 
 
@@ -374,4 +374,4 @@ def _check(args: Args) -> None:
     setups = {s for name in _table_names(args) for s in table_named(name).setups(args.agents, args.semantics)}
     for each in _each_split(args):
         for setup in setups:
-            check_options(_run_args(each, setup))
+            resolve(_run_args(each, setup))

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sim import cli
-from sim.composition.segmenters import KINDS, check_semantics, detector_config, detector_record
+from sim.composition.segmenters import KINDS, detector_config, detector_record, find_segmentation
 from sim.episodes.splits import Episode, Split
 from sim.evaluation.config_fields import differing_fields, field_text
 from sim.evaluation.executors import make_executor
@@ -58,7 +58,7 @@ class LogOptions:
 
 def check(args: LogOptions) -> None:
     """Raises ConfigError for an exact kind of segmentation, and for a fit on val or test."""
-    check_semantics(args.semantics, args.weights)
+    find_segmentation(args.semantics, args.weights)
     if not KINDS[args.semantics].spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
         raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. There is: {', '.join(kinds)}.")
@@ -116,7 +116,7 @@ def log_config(args: LogOptions, split: Split) -> dict[str, Any]:
     """
     return {
         "semantics": args.semantics,
-        "detector": detector_record(detector_config(args.semantics, args.weights)),
+        "detector": detector_record(detector_config(KINDS[args.semantics], args.weights)),
         "seed": args.seed,
         "max_steps": args.max_steps,
         "split_identity": {"name": split.name, "version": split.version, "sha256": split.sha256},

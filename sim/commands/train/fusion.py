@@ -31,7 +31,7 @@ from jaxtyping import Int
 
 from sim import cli
 from sim.commands.train.episode_logs import LogOptions, check, line_of, lines_of
-from sim.composition.segmenters import KINDS, detector_config, make_segmenter
+from sim.composition.segmenters import KINDS, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -41,16 +41,19 @@ from sim.files import inside, write_atomically
 from sim.interface import GOAL_CATEGORIES, MPCAT40, Action, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Name, read_npz
+from stubborn.agent import StubbornAgent
+from stubborn.agents import PLUS
 from stubborn.detection.fusion import FOLDER, Fusion, read_fusion
 from stubborn.detection.fusion_fit import PLAUSIBLE, Sample, fit, judge, left_out, probabilities, samples_of
 from stubborn.detection.look import LookConfig
-from stubborn.detection.track_seeker import TrackSeeker
+from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.detection.tracks import Tracks
-from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import STRIDE_PX
 
 LOOK_AT_ALL = LookConfig(bar=((0, 1.0),), slack=0.0, visit=0.15)
 """The agent accepts nothing, and looks at everything that may be the goal."""
+SEEKER = TrackSeekerConfig()
+"""That of `stubborn-plus`."""
 LEAST_VOXELS = 6
 """Smaller tracks are no candidates of the agent's and not logged."""
 MAX_FILE_BYTES = 256 << 20
@@ -143,13 +146,12 @@ class TrackRunner:
             truth=tuple({"semantic", *spec.truth}),
             max_steps=args.max_steps,
         )
-        config = PlusConfig()
-        self._agent = plus_agent(
+        self._agent = StubbornAgent(
             camera=self._env.camera_model,
             robot=self._env.robot_model,
             success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
-            config=replace(config, seeker=replace(config.seeker, look=LOOK_AT_ALL)),
+            segmenter=make_segmenter(args.semantics, self._env, args.weights),
+            config=replace(PLUS, seeker=replace(SEEKER, look=LOOK_AT_ALL)),
         )
         assert isinstance(self._agent.seeker, TrackSeeker)
         self._agent.seeker.fusion = Fusion()  # what is logged must not depend on the parameters that the fit replaces
@@ -190,7 +192,7 @@ class TrackRunner:
         return seeker.tracks
 
     def _agent_tracks_limit(self) -> int:
-        return PlusConfig().seeker.tracks.most_tracks
+        return SEEKER.tracks.most_tracks
 
     def _count(self, depth: np.ndarray, counts: Int[np.ndarray, "tracks ids"]) -> None:
         """Adds the true ids of the pixels of the frame to those of their tracks."""

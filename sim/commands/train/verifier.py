@@ -30,7 +30,7 @@ import msgspec
 
 from sim import cli
 from sim.commands.train.episode_logs import LogOptions, check, line_of, lines_of
-from sim.composition.segmenters import KINDS, detector_config, make_segmenter
+from sim.composition.segmenters import KINDS, make_segmenter
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split, load_split
 from sim.errors import EpisodeError, PhysicsError
@@ -149,7 +149,7 @@ class CandidateRunner:
             camera=self._env.camera_model,
             robot=self._env.robot_model,
             success=self._env.success_rule,
-            segmenter=make_segmenter(args.semantics, self._env, detector_config(args.semantics, args.weights)),
+            segmenter=make_segmenter(args.semantics, self._env, args.weights),
             verifier=self._recorder,
             config=AgentConfig(target=TargetConfig(verify_until_step=NEVER, last_resort_step=NEVER)),
         )

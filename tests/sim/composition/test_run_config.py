@@ -11,7 +11,8 @@ import pytest
 from sim import cli
 from sim.analysis.report.facts import command_of
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of, record_of, verifier_of
+from sim.composition.record import record_of
+from sim.composition.setup import resolve
 from sim.configuration import as_json, field_paths, with_fields
 from sim.run import entry
 from stubborn import detection, exploration
@@ -24,7 +25,7 @@ def test_presets_then_the_file_then_the_command_line(tmp_path: Path) -> None:
     file = tmp_path / "settings.toml"
     file.write_text("[task]\nmax_steps = 300\n[task.success]\ndistance_m = 0.5\n[camera]\nwidth_px = 320\n")
     options = RunOptions(semantics="gt", noise="harsh", config_file=file, config=("camera.width_px=160",))
-    config = configuration_of(options)
+    config = resolve(options).config
     assert (config.task.max_steps, config.task.success.distance_m) == (300, 0.5)
     assert config.camera.width_px == 160
     assert config.noise.depth.axial_m == 0.003
@@ -34,7 +35,7 @@ def test_presets_then_the_file_then_the_command_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("agent", ["stubborn", "stubborn-plus", "frontier", "random", "oracle"])
 @pytest.mark.parametrize("semantics", ["gt", "noisy", "rednet"])
 def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semantics: str) -> None:
-    config = configuration_of(RunOptions(agent=agent, semantics=semantics))
+    config = resolve(RunOptions(agent=agent, semantics=semantics)).config
     content = as_json(config)
     json.dumps(content, allow_nan=False)
 
@@ -74,10 +75,10 @@ def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
 @pytest.mark.parametrize(("config", "bar"), [((), 0.8), (("verification.least_probability=0.6",), 0.6)])
 def test_the_bar_of_the_fit_holds_unless_another_one_is_set(config: tuple[str, ...], bar: float) -> None:
     options = RunOptions(semantics="rednet", verification="logistic", config=config)
-    verifier = verifier_of(options, configuration_of(options).verification)
+    verifier = resolve(options).verifier
     assert isinstance(verifier, FittedVerifier)
     assert verifier.least_probability == bar
-    assert configuration_of(options).verification.least_probability == bar
+    assert resolve(options).config.verification.least_probability == bar
 
 
 @pytest.mark.parametrize(
@@ -85,12 +86,12 @@ def test_the_bar_of_the_fit_holds_unless_another_one_is_set(config: tuple[str, .
 )
 def test_runs_from_before_the_bar_of_the_fit_go_on(semantics: str, method: str) -> None:
     options = RunOptions(semantics=semantics, verification=method)
-    assert configuration_of(options).verification.least_probability == 0.5
+    assert resolve(options).config.verification.least_probability == 0.5
 
 
 def test_the_record_holds_the_whole_tree_and_the_checksums_of_files() -> None:
     options = RunOptions(semantics="rednet", config=("agent.planning.dilation_m=0.1",))
-    record = record_of(options, configuration_of(options), SPLIT)
+    record = record_of(resolve(options), SPLIT)
     assert set(record["config"]) == {
         "agent", "detector", "verification", "robot", "camera", "sensors", "profile", "noise", "task",
     }  # fmt: skip
@@ -108,7 +109,7 @@ def test_the_record_has_a_checksum_of_each_file_that_the_agent_reads(tmp_path: P
     def checksums(fusion: Path) -> dict[str, str]:
         settings = (f"agent.seeker.tracks.evidence.fusion={fusion}", f"agent.explorer.weights={weights}")
         options = RunOptions(agent="stubborn-plus", semantics="gt", explorer="poni", config=settings)
-        return record_of(options, configuration_of(options), SPLIT)["files_sha256"]
+        return record_of(resolve(options), SPLIT)["files_sha256"]
 
     before, after = checksums(fusion), checksums(changed)
     assert set(before) == {"agent.seeker.tracks.evidence.fusion", "agent.explorer.weights"}
@@ -128,14 +129,14 @@ def test_a_run_is_resumed_only_with_the_same_tree(tmp_path: Path, capsys: pytest
 def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -> None:
     settings = ("task.max_steps=3", "camera.width_px=160", "camera.height_px=120", "agent.cell_m=0.1")
     options = RunOptions(semantics="gt", explorer="frontier", seed=3, config=settings)
-    command = command_of(record_of(options, configuration_of(options), SPLIT))
+    command = command_of(record_of(resolve(options), SPLIT))
     parsed = cli.parse(RunOptions, shlex.split(command)[3:])
-    assert configuration_of(parsed) == configuration_of(options)
+    assert resolve(parsed).config == resolve(options).config
     assert (parsed.seed, parsed.explorer, parsed.semantics) == (3, "frontier", "gt")
 
 
 def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:
     options = RunOptions(semantics="gt", only=("val_0003", "val_0001"), episodes=2)
-    command = command_of(record_of(options, configuration_of(options), SPLIT))
+    command = command_of(record_of(resolve(options), SPLIT))
     assert cli.parse(RunOptions, shlex.split(command)[3:]).only == options.only
     assert "--episodes" not in command

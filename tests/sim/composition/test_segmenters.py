@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 import torch
 
-from sim.composition.checks import check_options
 from sim.composition.options import RunOptions
-from sim.composition.run_config import configuration_of, record_of
-from sim.composition.segmenters import NetworkConfig, make_segmenter
+from sim.composition.record import record_of
+from sim.composition.segmenters import make_segmenter
+from sim.composition.setup import resolve
 from sim.interface import CameraModel, ConfigError
 from stubborn.segmentation.checkpoints import save_network
 from stubborn.segmentation.network import NetworkSegmenter
@@ -37,7 +37,7 @@ def weights(tmp_path: Path) -> Path:
 
 
 def test_rednet_is_made_of_the_weights_that_are_given(weights: Path) -> None:
-    segmenter = make_segmenter("rednet", Eyes(), NetworkConfig(weights=weights))  # type: ignore[arg-type]
+    segmenter = make_segmenter("rednet", Eyes(), weights)  # type: ignore[arg-type]
     assert isinstance(segmenter, NetworkSegmenter)
     assert segmenter.block_px == 4
     assert float(segmenter.calibration.scale[0]) == pytest.approx(1 / 1.5)
@@ -52,7 +52,7 @@ def test_the_network_of_a_run_has_one_thread_since_others_would_change_its_last_
     before = torch.get_num_threads()
     try:
         torch.set_num_threads(2)
-        make_segmenter("rednet", Eyes(), NetworkConfig(weights=weights))  # type: ignore[arg-type]
+        make_segmenter("rednet", Eyes(), weights)  # type: ignore[arg-type]
         assert torch.get_num_threads() == 1
     finally:
         torch.set_num_threads(before)
@@ -63,7 +63,7 @@ def test_the_checksum_of_the_weights_is_part_of_a_run(weights: Path, tmp_path: P
 
     def checksums(file: Path) -> dict[str, str]:
         options = RunOptions(semantics="rednet", weights=file)
-        return record_of(options, configuration_of(options), split)["files_sha256"]
+        return record_of(resolve(options), split)["files_sha256"]
 
     first = checksums(weights)
     other = tmp_path / "other.safetensors"
@@ -74,11 +74,11 @@ def test_the_checksum_of_the_weights_is_part_of_a_run(weights: Path, tmp_path: P
 
 def test_weights_that_are_not_there_and_weights_without_rednet_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="No weights at"):
-        check_options(RunOptions(semantics="rednet", weights=tmp_path / "none.safetensors"))
+        resolve(RunOptions(semantics="rednet", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match="--weights go with --semantics rednet, not with 'gt'"):
-        check_options(RunOptions(semantics="gt", weights=tmp_path / "none.safetensors"))
+        resolve(RunOptions(semantics="gt", weights=tmp_path / "none.safetensors"))
     with pytest.raises(ConfigError, match="Unknown --semantics 'dreams'"):
-        check_options(RunOptions(semantics="dreams"))
+        resolve(RunOptions(semantics="dreams"))
 
 
 def test_a_run_without_a_network_does_not_load_torch() -> None:

@@ -118,13 +118,15 @@ SHREDS = """
 import numpy as np
 
 from sim.composition.options import RunOptions
-from sim.composition.runner import EpisodeRunner, plan_episodes
+from sim.composition.environments import episodes_of
+from sim.composition.runner import EpisodeRunner
+from sim.composition.setup import resolve
 from tests.sim.env.test_memory import resident_mb
 
 options = RunOptions(agent="oracle", semantics="gt", only=("val_0000", "val_0030"))
-first, second = plan_episodes(options)[0]
+first, second = episodes_of(resolve(options))[0]
 assert first.house == second.house
-player = EpisodeRunner(options)
+player = EpisodeRunner(resolve(options))
 player.run(first)
 shreds = [np.ones(100_000, np.uint8) for _ in range(3000)]
 pins = shreds[::2]
@@ -144,7 +146,8 @@ def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
 @pytest.mark.parametrize("options", ["semantics='gt'", "semantics='noisy'", "agent='random'", "agent='oracle'"])
 def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
     imports = "from sim.composition.options import RunOptions; from sim.composition.runner import EpisodeRunner"
-    player = f"{imports}; player = EpisodeRunner(RunOptions({options})); player.close()"
+    imports += "; from sim.composition.setup import resolve"
+    player = f"{imports}; player = EpisodeRunner(resolve(RunOptions({options}))); player.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
     told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
     ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)

@@ -54,7 +54,7 @@ def test_a_look_shows_the_share_of_the_goal_the_floor_and_the_map_that_the_real_
         pose = Pose(START.x_m, START.y_m, yaw_rad)
         images = scene.camera.render(scene.world.data, pose, ("depth", "semantic"))
         floor.look(images["semantic"], pose)
-        mapper.add_depth(real, images["depth"], pose.relative_to(START))
+        mapper.add_depth(mapper.frame(real, pose.relative_to(START)), images["depth"])
         look = camera.look(pose, "bed", twin, pose.relative_to(START), step)
         assert look.goal_share == pytest.approx(goal_share(images["semantic"], "bed"), abs=0.004)
     scene.close()

@@ -20,7 +20,6 @@ from stubborn.detection.look import LookConfig
 from stubborn.detection.track_seeker import TrackSeeker, TrackSeekerConfig
 from stubborn.detection.tracks import TrackConfig, Tracks
 from stubborn.detection.viewpoints import LastResort
-from stubborn.plus import PlusConfig, plus_agent
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, Box, GridWorld, boxes_from_plan, run_episode
 
@@ -64,7 +63,7 @@ class Unsure:
 
 def agent_with(probability: float, look: LookConfig | None = None) -> tuple[StubbornAgent, TrackSeeker]:
     config = agents.SPECS["stubborn-plus"].config
-    assert isinstance(config, PlusConfig)
+    assert isinstance(config.seeker, TrackSeekerConfig)
     seeker = replace(config.seeker, tracks=TrackConfig(least_pixels_of_others=12), look=look or LookConfig())
     agent = agents.make(
         "stubborn-plus", camera=SMALL_CAMERA, robot=RobotModel(), segmenter=Unsure(probability), seeker=seeker
@@ -99,9 +98,10 @@ def test_a_last_resort_is_taken_so_many_steps_before_the_end_of_the_episode(
     monkeypatch: pytest.MonkeyPatch, max_steps: int
 ):
     agent, _ = agent_with(0.97)
-    config, camera, robot = PlusConfig(), SMALL_CAMERA, RobotModel()
-    parts: dict[str, Any] = {"camera": camera, "robot": robot, "segmenter": Unsure(0.97), "config": config}
-    seeker = plus_agent(**parts, max_steps=max_steps).seeker
+    parts: dict[str, Any] = {"camera": SMALL_CAMERA, "robot": RobotModel(), "segmenter": Unsure(0.97)}
+    other = agents.make("stubborn-plus", **parts, max_steps=max_steps)
+    assert isinstance(other, StubbornAgent)
+    seeker = other.seeker
     assert isinstance(seeker, TrackSeeker)
     resorts: list[LastResort] = []
     seeker._accepted = [1]

@@ -5,9 +5,9 @@ import pytest
 
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, RobotModel
+from sim.interface import GOAL_CATEGORIES, MPCAT40_ID, CameraModel, RobotModel
 from stubborn.agent import AgentConfig, StubbornAgent
-from stubborn.exploration.corners import CornerExplorer
+from stubborn.exploration.corners import CornerConfig, CornerExplorer
 from stubborn.exploration.explorer import Explorer
 from stubborn.exploration.patches import patch_around
 from stubborn.mapping.mapper import Mapper, MappingConfig
@@ -73,8 +73,8 @@ def test_goal_categories_are_entered_where_depth_saw_them():
     observation = world.observe("chair")
     navmap = NavMap.empty(FRAME)
     posteriors = GroundTruthSegmenter().posteriors(observation)
-    Mapper(SMALL_CAMERA, RobotModel(), MappingConfig()).add_goals(
-        navmap, observation["depth"], posteriors, Pose(0.0, 0.0, 0.0)
+    (mapper := Mapper(SMALL_CAMERA, RobotModel(), MappingConfig())).add_goals(
+        mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), observation["depth"], posteriors
     )
     rows, cols = np.nonzero(navmap.goals_seen == 1 << BED)
     x_m, y_m = FRAME.centres(rows, cols)
@@ -84,8 +84,8 @@ def test_goal_categories_are_entered_where_depth_saw_them():
     assert np.abs(y_m).max() <= 0.55
     unsure = np.zeros_like(posteriors)
     unsure[MPCAT40_ID["sofa"] - 1] = 0.5
-    Mapper(SMALL_CAMERA, RobotModel(), MappingConfig()).add_goals(
-        navmap, observation["depth"], unsure, Pose(0.0, 0.0, 0.0)
+    (mapper := Mapper(SMALL_CAMERA, RobotModel(), MappingConfig())).add_goals(
+        mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), observation["depth"], unsure
     )
     assert not (navmap.goals_seen & (1 << GOAL_CATEGORIES.index("sofa"))).any()
 
@@ -94,10 +94,20 @@ class _Reader(CornerExplorer):
     reads_semantics = True
 
 
+@dataclass(frozen=True)
+class _Made:
+    """A configuration that makes explorers of one class."""
+
+    kind: type[CornerExplorer]
+
+    def make(self, camera: CameraModel) -> Explorer:
+        return self.kind(CornerConfig())
+
+
 @pytest.mark.parametrize("kind", [CornerExplorer, _Reader])
 def test_only_an_explorer_that_reads_categories_gets_them(kind: type[CornerExplorer]):
-    explorer: Explorer = kind(AgentConfig().explorer)  # type: ignore[arg-type]
-    agent = StubbornAgent(camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), explorer=explorer)
+    config = AgentConfig(explorer=_Made(kind))
+    agent = StubbornAgent(camera=SMALL_CAMERA, robot=RobotModel(), segmenter=GroundTruthSegmenter(), config=config)
     world = GridWorld([Box((2.0, 2.4), (-0.5, 0.5), category="bed")], (0.0, 0.0, 0.0), camera=SMALL_CAMERA)
     run_episode(world, agent, "chair", max_steps=3)
     assert agent.navmap.goals_seen.any() == (kind is _Reader)

@@ -31,7 +31,7 @@ def mapped(*frames: tuple[np.ndarray, Pose], config: DropConfig | None = None) -
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(drops=config or DropConfig()))
     navmap = NavMap.empty(FRAME)
     for depth, pose in frames:
-        mapper.add_depth(navmap, depth, pose)
+        mapper.add_depth(mapper.frame(navmap, pose), depth)
     return navmap
 
 
@@ -68,7 +68,7 @@ def test_unseen_ground_before_a_drop_in_the_lowest_row_counts_as_missing_until_f
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
     back = Pose(-1.2, 0.0, 0.0)
     for _ in range(2):
-        mapper.add_depth(navmap, floor_with_edge(2.2, 0.6), back)
+        mapper.add_depth(mapper.frame(navmap, back), floor_with_edge(2.2, 0.6))
     assert not dropped(navmap, 0.5)
     assert dropped(navmap, 1.2)
 
@@ -76,7 +76,7 @@ def test_unseen_ground_before_a_drop_in_the_lowest_row_counts_as_missing_until_f
 def test_ground_that_was_driven_over_is_not_missing():
     mapper, navmap = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME)
     navmap.visited[navmap.frame.cell(0.0, 0.0)[0] - 3 : navmap.frame.cell(0.0, 0.0)[0] + 4, 195:215] = True
-    mapper.add_depth(navmap, floor_with_edge(1.0, 0.6), START)
+    mapper.add_depth(mapper.frame(navmap, START), floor_with_edge(1.0, 0.6))
     assert not navmap.seen_drop[navmap.visited].any()
 
 
@@ -88,6 +88,6 @@ def test_a_single_deep_pixel_is_noise():
 
 def test_a_drop_beyond_the_edge_of_the_map_is_not_entered_on_its_other_side():
     mapper, navmap = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(GridFrame.around_start(200, 0.05))
-    mapper.add_depth(navmap, floor_with_edge(2.0, 0.6), Pose(3.8, 0.0, 0.0))  # the map ends at x = 5 m
+    mapper.add_depth(mapper.frame(navmap, Pose(3.8, 0.0, 0.0)), floor_with_edge(2.0, 0.6))  # the map ends at x = 5 m
     x_m, _ = navmap.frame.centres(*np.nonzero(navmap.seen_drop))
     assert x_m.size == 0 or x_m.min() > 3.8

@@ -24,7 +24,7 @@ def wall_ahead(distance_m: float, yaw_rad: float = 0.0) -> np.ndarray:
 
 def mapped(depth: np.ndarray, pose: Pose, config: MappingConfig = EVERY_PIXEL) -> NavMap:
     navmap = NavMap.empty(FRAME)
-    Mapper(CAMERA, RobotModel(), config).add_depth(navmap, depth, pose)
+    (mapper := Mapper(CAMERA, RobotModel(), config)).add_depth(mapper.frame(navmap, pose), depth)
     return navmap
 
 
@@ -105,7 +105,9 @@ def scored(world: GridWorld, category_id: int, navmap: NavMap, step: int = 0, po
     depth, semantic = world.render()
     target = (semantic == category_id).astype(np.float32)
     mapper = Mapper(world.camera, RobotModel(), MappingConfig(score_stride_px=2))
-    return mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), pose or Pose(0.0, 0.0, 0.0), step)
+    return mapper.add_scores(
+        mapper.frame(navmap, pose or Pose(0.0, 0.0, 0.0)), depth, Scores(target, 1.0 - target), step
+    )
 
 
 PICTURE_ID, WALL_ID = 6, 1
@@ -149,7 +151,7 @@ def test_a_cell_takes_the_highest_score_of_its_pixels():
     target[200:210] = 0.8
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
-    mapper.add_scores(navmap, depth, Scores(target, target), Pose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), depth, Scores(target, target), 0)
     assert navmap.score_max[FRAME.cell(3.0, 0.0)] == pytest.approx(0.8)
 
 
@@ -161,8 +163,8 @@ def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction
     small = target[fraction // 2 :: fraction, fraction // 2 :: fraction]
     full, part = NavMap.empty(FRAME), NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(score_stride_px=2))
-    mapper.add_scores(full, depth, Scores(target, target), Pose(0.0, 0.0, 0.0), 0)
-    mapper.add_scores(part, depth, Scores(small, small), Pose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(mapper.frame(full, Pose(0.0, 0.0, 0.0)), depth, Scores(target, target), 0)
+    mapper.add_scores(mapper.frame(part, Pose(0.0, 0.0, 0.0)), depth, Scores(small, small), 0)
     assert (part.score_max > 0.5).sum() >= 0.8 * (full.score_max > 0.5).sum() > 0
     assert not ((part.score_max > 0.5) & (full.score_max <= 0.5)).any()
 
@@ -176,7 +178,7 @@ def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: 
     target = (semantic == PICTURE_ID).astype(np.float32)[middle, middle]
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(score_stride_px=stride_px))
-    mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), Pose(0.0, 0.0, 0.0), 0)
+    mapper.add_scores(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), depth, Scores(target, 1.0 - target), 0)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.size > 0
     assert x_m.max() < 1.7
@@ -185,11 +187,10 @@ def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: 
 def test_scores_of_another_shape_are_refused_with_both_shapes():
     wrong = np.zeros((100, 100), np.float32)
     with pytest.raises(ConfigError, match="480 x 640 image, got 100 x 100"):
-        Mapper(CAMERA, RobotModel(), MappingConfig()).add_scores(
-            NavMap.empty(FRAME),
+        (mapper := Mapper(CAMERA, RobotModel(), MappingConfig())).add_scores(
+            mapper.frame(NavMap.empty(FRAME), Pose(0.0, 0.0, 0.0)),
             np.ones((480, 640), np.float32),
             Scores(wrong, wrong),
-            Pose(0.0, 0.0, 0.0),
             0,
         )
 
@@ -205,7 +206,9 @@ def test_a_rim_of_the_target_does_not_count_and_its_inside_does():
     for rim_px in (0, 3):
         navmap = NavMap.empty(FRAME)
         mapper = Mapper(full, RobotModel(), MappingConfig(score_stride_px=1))
-        mapper.add_scores(navmap, depth, Scores(target, 1.0 - target), Pose(0.0, 0.0, 0.0), 0, rim_px=rim_px)
+        mapper.add_scores(
+            mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), depth, Scores(target, 1.0 - target), 0, rim_px=rim_px
+        )
         layers[rim_px] = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))[0]
     assert layers[0].min() < 1.1
     assert layers[3].min() > 3.9
@@ -217,7 +220,9 @@ def test_a_depth_image_is_exact_as_long_as_it_shows_no_noise(noise_m: float):
     depth, _ = GridWorld([Box((2.0, 2.1), (-3.0, 3.0))], (0.0, 0.0, 0.0), camera=CAMERA).render()
     noise = np.random.default_rng(0).normal(0.0, noise_m, depth.shape).astype(np.float32)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
-    exact = mapper.add_depth(NavMap.empty(FRAME), np.where(depth > 0, depth + noise, 0), Pose(0.0, 0.0, 0.0))
+    exact = mapper.add_depth(
+        mapper.frame(NavMap.empty(FRAME), Pose(0.0, 0.0, 0.0)), np.where(depth > 0, depth + noise, 0)
+    )
     assert exact == (noise_m == 0.0)
 
 
@@ -244,7 +249,7 @@ def test_goals_beyond_the_edge_of_the_map_are_left_out_and_do_not_stop_the_agent
     depth = GridWorld([Box((6.0, 6.1), (-9.0, 9.0))], (3.5, 0.0, 0.0), camera=CAMERA).render()[0]
     posteriors = np.zeros((40, 120, 160), np.float32)
     posteriors[MPCAT40_ID["bed"] - 1] = 1.0
-    mapper.add_goals(navmap, depth, posteriors, pose)
+    mapper.add_goals(mapper.frame(navmap, pose), depth, posteriors)
     x_m, _ = navmap.frame.centres(*np.nonzero(navmap.goals_seen))
     assert x_m.size > 0
     assert x_m.min() > 3.5
@@ -254,5 +259,7 @@ def test_the_observation_stays_as_it_is_when_every_pixel_is_used():
     depth, scores = wall_ahead(2.0), Scores(np.ones((480, 640), np.float32), np.zeros((480, 640), np.float32))
     depth += np.random.default_rng(0).normal(0.0, 0.01, depth.shape).astype(np.float32)
     before = depth.copy()
-    Mapper(CAMERA, RobotModel(), EVERY_PIXEL).add_scores(NavMap.empty(FRAME), depth, scores, Pose(0, 0, 0), 0, rim_px=0)
+    (mapper := Mapper(CAMERA, RobotModel(), EVERY_PIXEL)).add_scores(
+        mapper.frame(NavMap.empty(FRAME), Pose(0, 0, 0)), depth, scores, 0, rim_px=0
+    )
     np.testing.assert_array_equal(depth, before)

@@ -72,7 +72,7 @@ def test_the_four_layers_are_what_projecting_every_pixel_gives(distance_m: float
     config = MappingConfig(score_stride_px=1, occupancy=OccupancyConfig(neighbours=0))  # lone pixels count
     mapper = Mapper(CAMERA, RobotModel(), config)
     for step, (depth, scores, pose) in enumerate(frames):
-        mapper.add_scores(navmap, depth, scores, pose, step)
+        mapper.add_scores(mapper.frame(navmap, pose), depth, scores, step)
     expected = layers_by_brute_force(frames)
     for name, layer in expected.items():
         ours = np.asarray(getattr(navmap, name), np.float64)
@@ -89,7 +89,9 @@ def test_a_target_on_a_wall_lands_within_a_cell_of_it(distance_m: float, pose: P
     height_m = FULL.height_m + depth * up[:, None]
     target = (height_m > 0.3).astype(np.float32)  # all of the wall but its foot
     navmap = NavMap.empty(FRAME)
-    Mapper(FULL, RobotModel(), MappingConfig()).add_scores(navmap, depth, Scores(target, 1 - target), pose, 0)
+    (mapper := Mapper(FULL, RobotModel(), MappingConfig())).add_scores(
+        mapper.frame(navmap, pose), depth, Scores(target, 1 - target), 0
+    )
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.size > 5
     assert np.abs(x_m - distance_m).max() <= 0.05 + 1e-6
@@ -102,13 +104,13 @@ def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
     no = np.full(depth.shape, 0.1, np.float32)
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(), LatestFrame(0.5))
-    mapper.add_scores(navmap, depth, Scores(yes, no), pose, 3)
+    mapper.add_scores(mapper.frame(navmap, pose), depth, Scores(yes, no), 3)
     seen = navmap.score_max > 0.5
     assert seen.any()
     assert (navmap.found_step[seen] == 3).all()
     half = depth.copy()
     half[:, :80] = 0.0  # no return on the left
-    mapper.add_scores(navmap, half, Scores(no, yes), pose, 4)
+    mapper.add_scores(mapper.frame(navmap, pose), half, Scores(no, yes), 4)
     left, right = FRAME.cell(2.0, 0.3), FRAME.cell(2.0, -0.3)
     assert navmap.score_max[left] == pytest.approx(0.8)
     assert navmap.other_max[left] == pytest.approx(0.1)
@@ -116,7 +118,7 @@ def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
     assert navmap.score_sum[right] == pytest.approx(0.1)
     assert navmap.other_max[right] == pytest.approx(0.8)
     assert navmap.frames_in_view[right] == 2
-    mapper.add_scores(navmap, depth, Scores(yes, no), pose, 9)
+    mapper.add_scores(mapper.frame(navmap, pose), depth, Scores(yes, no), 9)
     assert navmap.found_step[right] == 9
     assert navmap.found_step[left] == 3
 
@@ -127,6 +129,6 @@ def test_a_frame_without_a_trace_of_the_target_clears_what_it_looks_at():
     ones, zeros = np.ones_like(depth), np.zeros_like(depth)
     navmap = NavMap.empty(FRAME)
     mapper = Mapper(CAMERA, RobotModel(), MappingConfig(), LatestFrame(0.5))
-    mapper.add_scores(navmap, depth, Scores(ones, zeros), pose, 0)
-    mapper.add_scores(navmap, depth, Scores(zeros, ones), pose, 1)
+    mapper.add_scores(mapper.frame(navmap, pose), depth, Scores(ones, zeros), 0)
+    mapper.add_scores(mapper.frame(navmap, pose), depth, Scores(zeros, ones), 1)
     assert not (navmap.score_max > 0).any()

@@ -40,7 +40,7 @@ def look_around(
         x_m, y_m = (poses or [(0.0, 0.0)])[i % len(poses or [0])]
         yaw_rad = math.radians(30.0 * i)
         depth, _ = GridWorld(boxes, (x_m, y_m, yaw_rad), camera=CAMERA).render()
-        mapper.add_depth(navmap, noisy(depth, preset, rng), Pose(x_m, y_m, yaw_rad))
+        mapper.add_depth(mapper.frame(navmap, Pose(x_m, y_m, yaw_rad)), noisy(depth, preset, rng))
     cell_x_m, cell_y_m = FRAME.mesh()
     gaps = [
         np.hypot(
@@ -83,7 +83,7 @@ def test_a_leg_of_two_centimetres_is_mapped(preset: str, distance_m: float):
         navmap, rng = NavMap.empty(FRAME), np.random.default_rng(1)
         mapper = Mapper(CAMERA, RobotModel(), MappingConfig())
         for _ in range(3):
-            mapper.add_depth(navmap, noisy(depth, preset, rng), Pose(0.0, 0.0, 0.0))
+            mapper.add_depth(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), noisy(depth, preset, rng))
         row, col = FRAME.cell(distance_m, offset_m)
         assert navmap.seen_obstacle[row - 1 : row + 2, col - 1 : col + 2].any()
 
@@ -97,7 +97,7 @@ def test_exact_depth_never_takes_an_obstacle_away_again():
     for i, (x_m, y_m) in enumerate(places * 3):
         yaw_rad = math.radians(10.0 * i)
         depth, _ = GridWorld(boxes, (x_m, y_m, yaw_rad), camera=CAMERA).render()
-        mapper.add_depth(navmap, depth, Pose(x_m, y_m, yaw_rad))
+        mapper.add_depth(mapper.frame(navmap, Pose(x_m, y_m, yaw_rad)), depth)
         seen |= navmap.seen_obstacle
     assert (seen & ~navmap.seen_obstacle).sum() <= 0.01 * seen.sum()
 
@@ -107,7 +107,7 @@ def test_what_was_moved_away_is_forgotten_when_the_place_is_seen_through():
     mapper, navmap, pose = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), Pose(0.0, 0.0, 0.0)
     for boxes, frames, there in (([*ROOM, chair], 8, True), (ROOM, 10, False)):
         for _ in range(frames):
-            mapper.add_depth(navmap, GridWorld(boxes, (0.0, 0.0, 0.0), camera=CAMERA).render()[0], pose)
+            mapper.add_depth(mapper.frame(navmap, pose), GridWorld(boxes, (0.0, 0.0, 0.0), camera=CAMERA).render()[0])
         assert navmap.seen_obstacle[FRAME.cell(1.8, 0.0)] == there
 
 
@@ -118,7 +118,7 @@ def test_what_is_seen_over_or_under_is_not_seen_through(z: tuple[float, float]):
     mapper, navmap = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME)
     for x_m in np.linspace(0.4, -2.0, 40):
         depth, _ = GridWorld([*ROOM, slab], (x_m, 0.0, 0.0), camera=CAMERA).render()
-        mapper.add_depth(navmap, depth, Pose(float(x_m), 0.0, 0.0))
+        mapper.add_depth(mapper.frame(navmap, Pose(float(x_m), 0.0, 0.0)), depth)
     assert navmap.seen_obstacle[FRAME.cell(1.81, 0.0)]
     assert navmap.seen_obstacle[FRAME.cell(2.1, 0.0)]
 
@@ -131,7 +131,7 @@ def test_target_pixels_at_the_rim_do_not_put_candidates_behind_or_before_the_tar
     mapper, navmap, rng = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), np.random.default_rng(2)
     for step in range(20):
         seen = noisy(depth, preset, rng)
-        mapper.add_scores(navmap, seen, Scores(target, 1.0 - target), Pose(0.0, 0.0, 0.0), step)
+        mapper.add_scores(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), seen, Scores(target, 1.0 - target), step)
     x_m, _ = FRAME.centres(*np.nonzero(navmap.score_max > 0.5))
     assert x_m.min() > 1.5 - 0.12
     assert x_m.max() < 1.9 + 0.12
@@ -146,7 +146,7 @@ def test_a_candidate_in_free_air_goes_when_the_target_is_seen_behind_it_and_only
     depth, semantic = GridWorld([*ROOM, chair], (0.0, 0.0, 0.0), camera=CAMERA).render()
     for category_id, goes in ((99, False), (CHAIR_ID, True)):
         score = (semantic == category_id).astype(np.float32)
-        mapper.add_scores(navmap, depth, Scores(score, 1.0 - score), Pose(0.0, 0.0, 0.0), 0)
+        mapper.add_scores(mapper.frame(navmap, Pose(0.0, 0.0, 0.0)), depth, Scores(score, 1.0 - score), 0)
         assert (navmap.score_max[before] == 0.0) == goes
         assert navmap.score_max[beside] == 1.0
     assert navmap.score_max[target] == 1.0

@@ -1,4 +1,4 @@
-"""Plays the episodes of a run that its folder does not hold yet, and writes their lines."""
+"""Runs the episodes of a run that its folder does not hold yet, and writes their lines."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from typing import Any
 from rich.console import Console
 
 from sim.analysis import display
-from sim.composition.agents import find_agent
 from sim.composition.options import RunOptions
-from sim.composition.run_config import code_of, configuration_of, record_of
-from sim.composition.runner import error_line
+from sim.composition.record import code_of, error_line, record_of
+from sim.composition.setup import Setup
 from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
 from sim.evaluation.results import RunDirectory
@@ -22,14 +21,14 @@ from sim.houses.load import load_house
 
 
 def run_missing(
-    options: RunOptions, episodes: Sequence[Episode], split: dict[str, Any], console: Console
+    setup: Setup, episodes: Sequence[Episode], split: dict[str, Any], console: Console
 ) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Runs the episodes that the folder `options.out` does not hold yet.
+    """Runs the episodes that the folder of the run, `--out`, does not hold yet.
 
     Args:
-        options: checked options; the folder may hold a run with the same ones, except for the number of episodes.
-        episodes: those of `plan_episodes`, or some of them.
-        split: what identifies their source, from `plan_episodes`.
+        setup: of the run; the folder may hold a run with the same options, except for the number of episodes.
+        episodes: those of `episodes_of`, or some of them.
+        split: identity of their source, from `episodes_of`.
         console: for progress.
 
     Returns:
@@ -38,9 +37,10 @@ def run_missing(
     Raises:
         ConfigError: the folder cannot be written, or holds a run with another configuration.
     """
+    options = setup.options
     assert options.out is not None
     executor = make_executor(options.executor, workers=options.workers, address=options.address)
-    record = record_of(options, configuration_of(options), split)
+    record = record_of(setup, split)
     run = RunDirectory(options.out, record)
     try:
         if run.healed:
@@ -51,7 +51,7 @@ def run_missing(
             console.print(f"{again} episodes that ended with an error are run again.")
         done = {line["episode_id"] for line in run.lines}
         todo = [episode for episode in episodes if episode.episode_id not in done]
-        segmentation = f" with {options.semantics} segmentation" if find_agent(options.agent).uses_segmentation else ""
+        segmentation = f" with {options.semantics} segmentation" if setup.spec.uses_segmentation else ""
         console.print(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
@@ -59,11 +59,9 @@ def run_missing(
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
-        spec = RunnerSpec("sim.composition.runner:EpisodeRunner", options)
+        spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
         progress = display.ProgressReport(console, total=len(todo))
-        lines = executor.run(
-            spec, todo, on_death=lambda episode: _lost_line(options, episode), on_start=progress.started
-        )
+        lines = executor.run(spec, todo, on_death=lambda episode: _lost_line(setup, episode), on_start=progress.started)
         for line in progress.over(lines) if todo else ():
             run.append(line)
         return run.lines, run.write_summary({"split": split})
@@ -112,5 +110,5 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console
         )
 
 
-def _lost_line(options: RunOptions, episode: Episode) -> dict[str, Any]:
-    return error_line(options, episode, f"House '{episode.house}': the worker died twice in this episode.")
+def _lost_line(setup: Setup, episode: Episode) -> dict[str, Any]:
+    return error_line(setup, episode, f"House '{episode.house}': the worker died twice in this episode.")

@@ -1,0 +1,104 @@
+"""The environment of a run, and its episodes."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any
+
+import numpy as np
+
+from sim.composition.options import RunOptions
+from sim.composition.setup import Setup
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode, Split
+from sim.errors import ConfigError
+from sim.interface import GOAL_CATEGORIES
+from sim.sensors.sensor import Sensor
+
+
+def make_env(setup: Setup, *, sensors: tuple[str | Sensor, ...], truth: tuple[str, ...] = ()) -> ObjectNavEnv:
+    """Returns the environment of a run.
+
+    Args:
+        setup: of the run.
+        sensors: sensors in the observation.
+        truth: further images, without noise, that are rendered.
+    """
+    options, config = setup.options, setup.config
+    return ObjectNavEnv(
+        split=options.split,
+        house=options.house,
+        labels=options.labels,
+        root=options.root,
+        goal=options.goal if options.house is not None else None,
+        start=setup.start,
+        sensors=sensors,
+        truth=truth,
+        profile=config.profile,
+        noise=config.noise,
+        robot=config.robot,
+        camera=config.camera,
+        task=config.task,
+    )
+
+
+def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
+    """Returns the episodes of a run, and what identifies the split or house they come from.
+
+    Raises:
+        ConfigError, EpisodeError, HouseError: the split, house, goal or start does not exist.
+    """
+    options = setup.options
+    env = make_env(setup, sensors=())
+    try:
+        split = env.split
+        if options.house is None:
+            episodes = _named_episodes(split, options) if options.only else _first_episodes(split, options)
+        else:
+            episodes = [
+                env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}")
+                for i in range(options.episodes)
+            ]
+    finally:
+        env.close()
+    return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the episodes that the option `only` names, in the order of the split.
+
+    Raises:
+        ConfigError: the split has no such episode, or it has another goal than the one that the options name.
+    """
+    of_goal = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    ids = [episode.episode_id for episode in of_goal]
+    for name in options.only:
+        if name not in ids:
+            near = difflib.get_close_matches(name, ids, n=1)
+            hint = f" Did you mean '{near[0]}'?" if near else ""
+            with_goal = f" with goal '{options.goal}'" if options.goal else ""
+            raise ConfigError(f"--only '{name}': split '{split.name}' has no such episode{with_goal}.{hint}")
+    return [episode for episode in of_goal if episode.episode_id in options.only]
+
+
+def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
+    """Returns the first episodes of a split, as many as the options ask for, with their goal if they name one.
+
+    Raises:
+        ConfigError: the split has fewer, or none with this goal.
+    """
+    goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
+    if options.goal is not None and options.goal not in goals:
+        near = difflib.get_close_matches(options.goal, goals, n=1)
+        hint = f" Did you mean '{near[0]}'?" if near else ""
+        raise ConfigError(
+            f"--goal '{options.goal}': split '{split.name}' has no such episode.{hint} It has: {', '.join(goals)}."
+        )
+    episodes = [episode for episode in split.episodes if options.goal in (None, episode.goal)]
+    if options.episodes > len(episodes):
+        with_goal = f" with goal '{options.goal}'" if options.goal else ""
+        raise ConfigError(
+            f"Split '{split.name}' has {len(episodes)} episodes{with_goal}, and {options.episodes} were asked for "
+            f"(--episodes, by default {RunOptions.episodes}); give --episodes {len(episodes)}."
+        )
+    return episodes[: options.episodes]

@@ -1,0 +1,95 @@
+"""What a run records: `config.json`, versions, and the part of a result line that identifies its episode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from sim.composition.options import RunOptions
+from sim.composition.segmenters import NetworkConfig, file_sha256
+from sim.composition.setup import Setup
+from sim.configuration import as_json
+from sim.episodes.splits import Episode
+from sim.evaluation.own_code import hash_of_own
+from sim.evaluation.rollout import broken_metrics
+from sim.paths import code_hash
+from sim.robot.foreign import robot_sha256
+from sim.sensors.opengl import describe_gl
+
+NOT_RECORDED = ("list_agents", "retry_errors", "config", "config_file")
+"""Options that the tree itself records, or that start no run."""
+
+
+def record_of(setup: Setup, split: dict[str, Any]) -> dict[str, Any]:
+    """Returns the content of `config.json`: options, configuration tree, checksums of files, split and versions."""
+    flat = {name: value for name, value in as_json(setup.options).items() if name not in NOT_RECORDED}
+    return flat | {
+        "settings": as_json(setup.settings),
+        "config": as_json(setup.config),
+        "files_sha256": _checksums(setup),
+        "split_identity": split,
+        "versions": versions(setup.options),
+    }
+
+
+def versions(options: RunOptions) -> dict[str, str]:
+    """Returns the versions that a result depends on: packages, the GL renderer, and what `code_of` gives."""
+    packages = ("stubborn-objectnav", "mujoco", "numpy")
+    return {name: version(name) for name in packages} | {"gl_renderer": describe_gl(), "code": code_of(options)}
+
+
+def code_of(options: RunOptions) -> str:
+    """Returns a hash of the code of a run, such as "3353e768d2c2".
+
+    With an agent or explorer of the user, whose modules are imported by now, "+" and a hash of these follow.
+    """
+    names = [name for name in (options.agent, options.explorer) if name is not None]
+    own = hash_of_own(module for module, separator, _ in (name.partition(":") for name in names) if separator)
+    return f"{code_hash()}+{own}" if own else code_hash()
+
+
+def _checksums(setup: Setup) -> dict[str, str]:
+    """Returns the SHA-256 of the user's or shipped files that the result depends on."""
+    found, config = {}, setup.config
+    if isinstance(config.detector, NetworkConfig):
+        found["weights"] = file_sha256(config.detector.weights)
+    if config.verification.parameters is not None:
+        found["verifier"] = file_sha256(config.verification.parameters)
+    if setup.options.robot is not None:
+        found["robot"] = robot_sha256(setup.options.robot)
+    return found | {name: file_sha256(file) for name, file in _files_in(config.agent, "agent")}
+
+
+def _files_in(tree: Any, name: str) -> Iterator[tuple[str, Path]]:
+    """Yields path and file of each field of a configuration that names a file, such as weights of an explorer."""
+    if is_dataclass(tree) and not isinstance(tree, type):
+        for field in fields(tree):
+            yield from _files_in(getattr(tree, field.name), f"{name}.{field.name}")
+    elif isinstance(tree, (str, Path)) and Path(tree).suffix and Path(tree).is_file():
+        yield name, Path(tree)
+
+
+def error_line(setup: Setup, episode: Episode, error: str) -> dict[str, Any]:
+    """Returns the result line of an episode that could not be run to its end."""
+    nothing = {"distance_to_goal": None, "shortest_path": episode.shortest_path_m, "trapped": None, "failure": None}
+    counts = {"num_steps": 0, "path_length": 0.0, "collisions": 0, "wall_time_s": 0.0}
+    nothing |= dict.fromkeys(
+        ("gt_explored", "first_seen_step", "steps_to_first_sight", "area_seen_m2", "area_per_metre")
+    )
+    return identity_of(setup, episode) | nothing | counts | {"steps_per_s": 0.0} | broken_metrics(error)
+
+
+def identity_of(setup: Setup, episode: Episode) -> dict[str, Any]:
+    """Returns the part of a result line that names episode, agent and segmentation."""
+    return {
+        "episode_id": episode.episode_id,
+        "house": episode.house,
+        "goal": episode.goal,
+        "agent": setup.options.agent,
+        "uses_ground_truth": setup.spec.uses_ground_truth,
+        "semantics": setup.options.semantics,
+        "seed": setup.options.seed,
+    }

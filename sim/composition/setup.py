@@ -1,0 +1,190 @@
+"""From the options of a run to its `Setup`: every name is looked up once, here, and nowhere after.
+
+Environment, agent, viewers, results and workers are made from the setup (`sim.composition.runner`, `record`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from sim.composition.agents import find_agent, find_explorer
+from sim.composition.checks import check_options
+from sim.composition.options import RunOptions, start_pose
+from sim.composition.segmenters import SegmentationKind, detector_config, find_segmentation
+from sim.configuration import parse_assignments, read_settings, with_fields
+from sim.errors import ConfigError
+from sim.geometry.pose import Pose
+from sim.interface import AgentSpec, CameraModel
+from sim.robot.config import RobotConfig
+from sim.robot.foreign import load_robot
+from sim.sensors.noise import NoiseConfig, get_noise
+from sim.sensors.profiles import RenderProfile, get_profile
+from sim.sensors.sensor import Sensor
+from sim.task.config import TaskConfig
+from stubborn.agent import AgentConfig
+from stubborn.detection.verification import FittedVerifier, Verifier, verifier_for
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerificationConfig:
+    """How the agent verifies a candidate before it stops."""
+
+    method: str = "naive-bayes"
+    """naive-bayes (the paper's), logistic, threshold or none."""
+    parameters: Path | None = None
+    """File of fitted parameters; None takes those shipped for the kind of segmentation."""
+    least_probability: float | None = None
+    """A candidate is accepted when it is true with a higher probability than this; None: that of the fit, which the
+    configuration of a run holds in its place."""
+
+    def __post_init__(self) -> None:
+        if self.least_probability is not None and not 0.0 <= self.least_probability < 1.0:
+            raise ConfigError(f"VerificationConfig.least_probability must lie in [0, 1), got {self.least_probability}.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunConfig:
+    """The tree that `config.json` records under "config" and whose fields `--config FIELD=VALUE` sets."""
+
+    agent: Any
+    """Configuration of the agent (`AgentSpec.config`); None: it has none."""
+    detector: Any
+    """Configuration of the segmentation (`SegmentationKind.config`); None: it has none."""
+    verification: VerificationConfig
+    robot: RobotConfig
+    camera: CameraModel
+    sensors: tuple[str, ...]
+    """Sensors in the agent's observation, by name: those that agent and segmentation declare."""
+    profile: RenderProfile
+    noise: NoiseConfig
+    task: TaskConfig
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """Everything that determines the results of a run besides episode and seed, resolved once from its options.
+
+    A worker gets it as its options and resolves them again in its own process: agents of users cannot be copied.
+    """
+
+    options: RunOptions
+    spec: AgentSpec
+    """The agent that `options.agent` names."""
+    segmentation: SegmentationKind
+    """The segmentation that `options.semantics` names."""
+    config: RunConfig
+    settings: Mapping[str, Any]
+    """Path and value of each field that the settings file or `--config` sets."""
+    verifier: Verifier
+    start: Pose | None
+    """With `--house`, the start of every episode; None: drawn."""
+
+    def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
+        """Pickles the setup as its options."""
+        return resolve, (self.options,)
+
+    @property
+    def sensors(self) -> tuple[str | Sensor, ...]:
+        """The sensors of the observation: the agent's own objects, and names of standard sensors."""
+        own = {each.name: each for each in self.spec.sensors if not isinstance(each, str)}
+        return tuple(own.get(name, name) for name in self.config.sensors)
+
+    @property
+    def truth(self) -> tuple[str, ...]:
+        """The true images that the agent's segmentation reads in the environment."""
+        return self.segmentation.spec.truth if self.spec.uses_segmentation else ()
+
+
+def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
+    """Returns the setup of a run: presets by name, then the settings file, then `--config`.
+
+    Args:
+        options: of the run.
+        spec: the agent's specification; None: that of `options.agent`.
+
+    Raises:
+        ConfigError: options contradict each other, a name does not exist, or a value is not allowed.
+    """
+    check_options(options)
+    segmentation = find_segmentation(options.semantics, options.weights)
+    spec = spec or find_agent(options.agent)
+    settings = {} if options.config_file is None else read_settings(options.config_file)
+    settings |= parse_assignments(options.config)
+    config = with_fields(_presets(options, spec, segmentation), settings)
+    verifier = _verifier(options, segmentation, config.verification)
+    config = replace(config, verification=_with_least_probability(config.verification, verifier))
+    _check_sensors(options, spec, segmentation, config.sensors)
+    return Setup(
+        options=options,
+        spec=spec,
+        segmentation=segmentation,
+        config=config,
+        settings=settings,
+        verifier=verifier,
+        start=start_pose(options.start_deg),
+    )
+
+
+def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
+    """Returns the configuration tree before the user's settings."""
+    robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
+    return RunConfig(
+        agent=_agent_config(options, spec),
+        detector=detector_config(segmentation, options.weights),
+        verification=VerificationConfig(method=options.verification, parameters=options.verifier),
+        robot=robot,
+        camera=camera,
+        sensors=_sensor_names(spec, segmentation),
+        profile=get_profile(options.profile),
+        noise=get_noise(options.noise),
+        task=TaskConfig(),
+    )
+
+
+def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
+    """Returns the default configuration of the agent, with the explorer of `--explorer`."""
+    if options.explorer is None:
+        return spec.config
+    explorer = find_explorer(options.explorer)
+    if not isinstance(spec.config, AgentConfig):
+        raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
+    return replace(spec.config, explorer=explorer)
+
+
+def _sensor_names(spec: AgentSpec, segmentation: SegmentationKind) -> tuple[str, ...]:
+    """Returns the names of the sensors that an agent and its segmentation declare."""
+    own = [each if isinstance(each, str) else each.name for each in spec.sensors]
+    read = (*own, *(("depth", *segmentation.spec.sensors) if spec.uses_segmentation else ()))
+    return tuple(dict.fromkeys(read))
+
+
+def _check_sensors(
+    options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind, sensors: tuple[str, ...]
+) -> None:
+    """Raises ConfigError where a sensor is missing, or shows the truth to an agent that does not declare it."""
+    missing = [name for name in _sensor_names(spec, segmentation) if name not in sensors]
+    if missing:
+        raise ConfigError(f"sensors: agent '{options.agent}' with {options.semantics} needs {', '.join(missing)}.")
+    if "semantic" in sensors and not spec.uses_ground_truth:
+        raise ConfigError(
+            f"sensors: 'semantic' is ground truth, and agent '{options.agent}' does not declare uses_ground_truth."
+        )
+
+
+def _verifier(options: RunOptions, segmentation: SegmentationKind, config: VerificationConfig) -> Verifier:
+    """Returns the verifier of a run; raises ConfigError where there are no such parameters, or no such method."""
+    verifier = verifier_for(options.semantics, segmentation.spec, config.parameters, config.method)
+    if isinstance(verifier, FittedVerifier) and config.least_probability is not None:
+        return replace(verifier, least_probability=config.least_probability)
+    return verifier
+
+
+def _with_least_probability(config: VerificationConfig, verifier: Verifier) -> VerificationConfig:
+    """Returns the configuration with the probability that a candidate needs; that of the fit where none is set."""
+    if config.least_probability is not None:
+        return config
+    fitted = verifier if isinstance(verifier, FittedVerifier) else FittedVerifier
+    return replace(config, least_probability=fitted.least_probability)

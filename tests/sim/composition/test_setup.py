@@ -1,0 +1,73 @@
+"""Options are resolved once: no name is looked up and no verifier is built a second time."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from sim.composition import setup as composition
+from sim.composition.options import RunOptions
+from sim.composition.setup import resolve
+from sim.interface import CameraModel, RobotModel
+from sim.run import entry
+from stubborn import agents
+from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.seeker import Seeker, SeekerParts, TargetSeekerConfig
+from stubborn.segmentation.ground_truth import GroundTruthSegmenter
+
+SMALL = ("camera.width_px=160", "camera.height_px=120", "task.max_steps=3")
+
+
+def test_each_name_of_a_run_is_looked_up_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[str] = []
+    for name in ("find_agent", "find_explorer", "find_segmentation", "verifier_for"):
+        original = getattr(composition, name)
+
+        def counted(*args: object, name: str = name, original: object = original) -> object:
+            calls.append(name)
+            return original(*args)  # type: ignore[operator]
+
+        monkeypatch.setattr(composition, name, counted)
+    options = ["--agent", "stubborn", "--explorer", "frontier", "--semantics", "noisy", "--episodes", "1"]
+    assert entry([*options, "--out", str(tmp_path), "--config", *SMALL]) == 0
+    assert sorted(calls) == ["find_agent", "find_explorer", "find_segmentation", "verifier_for"]
+
+
+def test_a_setup_is_pickled_as_its_options() -> None:
+    setup = resolve(RunOptions(agent="tests.helpers.agents:SPY", semantics="gt", config=SMALL))
+    again = pickle.loads(pickle.dumps(setup))
+    assert again.options == setup.options
+    assert again.config == setup.config
+    assert again.spec is setup.spec
+
+
+def test_an_agent_takes_a_seeker_of_the_users() -> None:
+    made: list[SeekerParts] = []
+
+    @dataclass(frozen=True)
+    class Mine:
+        def make(self, parts: SeekerParts) -> Seeker:
+            made.append(parts)
+            return TargetSeekerConfig().make(parts)
+
+    agent = agents.make(
+        "stubborn",
+        camera=CameraModel(),
+        robot=RobotModel(),
+        segmenter=GroundTruthSegmenter(),
+        seeker=Mine(),
+        max_steps=77,
+    )
+    assert isinstance(agent, StubbornAgent)
+    assert [parts.max_steps for parts in made] == [77]
+    assert made[0].planner is agent.planner
+
+
+def test_presets_are_configurations_of_one_agent() -> None:
+    for name, (description, config) in agents.PRESETS.items():
+        assert type(config) is AgentConfig, name
+        assert agents.SPECS[name].description == description
+        assert agents.SPECS[name].make is StubbornAgent
