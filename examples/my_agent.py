@@ -1,4 +1,4 @@
-"""An agent of your own: `python -m sim.run --agent examples.my_agent:AGENT --config agent.keep_m=1.0`.
+"""An agent of your own: `stubborn run --agent examples.my_agent:AGENT --config agent.keep_m=1.0`.
 
 It drives until something is near, turns to the side with more room, and stops when the goal fills the view. A plain
 factory does as well: `--agent examples.my_agent:make`.

@@ -15,6 +15,7 @@ import pytest
 import torch
 
 from sim.commands.evaluate.network_card import training_stages
+from sim.commands.train import segmentation
 from sim.commands.train.segmentation import Args, Trainer, main
 from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
@@ -83,7 +84,7 @@ def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
     write_views(tmp_path / "train", 6)
     write_views(tmp_path / "val", 2)
     out = tmp_path / "out"
-    monkeypatch.setattr(train_rednet, "LOG_EVERY_STEPS", 1)
+    monkeypatch.setattr(segmentation, "LOG_EVERY_STEPS", 1)
     train_on = Trainer._train_on
 
     def killed_at_4(trainer: Trainer, *batch: torch.Tensor) -> float:

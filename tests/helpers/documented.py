@@ -154,7 +154,7 @@ def commands() -> dict[str, str]:
 
 
 def unmarked_commands() -> dict[str, str]:
-    """Commands outside of `sh` blocks: in running text and in blocks of `text`. `stubborn` is an agent there as well."""
+    """Commands outside of `sh` blocks: in running text, where `stubborn` is an agent too, and in blocks of `text`."""
     started = "|".join(sorted({name.split()[0] for name in COMMANDS}))
     begins = re.compile(
         rf"(?:\.venv/bin/)?(?:python (?:-m (?:sim|tools|stubborn)\b|tools/|examples/)|stubborn (?:{started})\b)"
@@ -374,8 +374,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     (
         f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train "
-        "--houses held-back-poni --episodes 72 --explorers frontier corners tour poni poni:goal=wrong poni:semantics=shuffled "
-        "poni:semantics=none"
+        "--houses held-back-poni --episodes 72 --explorers frontier corners tour poni poni:goal=wrong "
+        "poni:semantics=shuffled poni:semantics=none"
     ): (
         *_PLANS,
         f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 "
@@ -663,11 +663,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views {tmp}/views"
         " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
     ),
-    f"{PYTHON} -m tools.training.compare_networks --views views_small views_wide --val-views views_val --hours 1 --seeds 0 1 "
-    "--out runs/networks": (
+    f"{PYTHON} -m tools.training.compare_networks --views views_small views_wide --val-views views_val "
+    "--hours 1 --seeds 0 1 --out runs/networks": (
         _VIEWS,
-        f"{PYTHON} -m tools.training.compare_networks --views {{tmp}}/views --val-views {{tmp}}/views --hours 0 --seeds 0 "
-        "--out {tmp}/networks",
+        f"{PYTHON} -m tools.training.compare_networks --views {{tmp}}/views --val-views {{tmp}}/views "
+        "--hours 0 --seeds 0 --out {tmp}/networks",
     ),
     # docs/results.md and the pages of results beside it
     f"{_RUN} --agent stubborn-plus --split val --episodes 100 --config "
