@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import logging
+import pickle
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
@@ -40,16 +41,33 @@ class Runner(Protocol):
 
 
 @dataclass(frozen=True)
+class _Packed:
+    """A pickled argument."""
+
+    content: bytes
+
+
+@dataclass(frozen=True)
 class RunnerSpec:
-    """How to build a `Runner` in any process: `module:function` and its one argument (picklable)."""
+    """How to build a `Runner` in any process: `module:function` and its one argument (picklable).
+
+    In another process the argument is read by `build`, not before: a worker first enters the folder of the user's code,
+    and an error is then reported as that of an item.
+    """
 
     entry: str
     config: Any
 
+    def __reduce__(self) -> tuple[Callable[..., RunnerSpec], tuple[Any, ...]]:
+        """Pickles the argument as bytes."""
+        packed = self.config if isinstance(self.config, _Packed) else _Packed(pickle.dumps(self.config))
+        return RunnerSpec, (self.entry, packed)
+
     def build(self) -> Runner:
         """Imports the function and returns its result."""
         module, function = self.entry.split(":")
-        return getattr(importlib.import_module(module), function)(self.config)
+        config = pickle.loads(self.config.content) if isinstance(self.config, _Packed) else self.config
+        return getattr(importlib.import_module(module), function)(config)
 
 
 class WorkerLost(Exception):

@@ -13,6 +13,7 @@ from sim.interface import GOAL_CATEGORIES, MAX_STEPS, CameraModel, ConfigError, 
 from sim.plans.episode import PlanEpisode
 from sim.plans.sight import PlanCamera
 from stubborn.agent import AgentConfig, StubbornAgent
+from stubborn.detection.seeker import TargetSeekerConfig
 from stubborn.mapping.mapper import MappingConfig, Sighting, note_sighting
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 
@@ -108,8 +109,11 @@ def twin_config(config: AgentConfig) -> AgentConfig:
     """Returns the configuration without what a plan has no data for: drops of the floor.
 
     Raises:
-        ConfigError: another setting of `mapping` is changed, which the camera of a plan (`SightConfig`) does not read.
+        ConfigError: another setting of `mapping` is changed, which the camera of a plan (`SightConfig`) does not read,
+            or the seeker reads images.
     """
+    if not isinstance(config.seeker, TargetSeekerConfig):
+        raise ConfigError("The twin has no images, which the agent's seeker reads; give it agent.seeker of stubborn.")
     default = MappingConfig(drops=config.mapping.drops, candidate_score=config.mapping.candidate_score)
     changed = [each.name for each in fields(default) if vars(config.mapping)[each.name] != vars(default)[each.name]]
     if changed:
