@@ -3,6 +3,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# `make setup TORCH_INDEX=URL` installs torch from this package index, such as PyTorch's index of CPU wheels, which need
+# no CUDA packages; all else comes from the default index. Empty: torch comes from the default index, too.
+TORCH_INDEX :=
+TORCH := $(shell grep '^torch==' constraints.txt)
 
 .PHONY: setup system-libraries run test test-all lint types docs clean
 
@@ -11,6 +15,9 @@ setup: system-libraries $(STAMP)
 $(STAMP): pyproject.toml setup.py constraints.txt
 	@echo "== creating $(VENV) and installing the pinned packages of constraints.txt"
 	$(PYTHON) -m venv $(VENV)
+ifneq ($(TORCH_INDEX),)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --index-url '$(TORCH_INDEX)' '$(TORCH)'
+endif
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 

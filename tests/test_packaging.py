@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -54,6 +55,11 @@ def test_the_wheel_holds_the_shipped_houses(tmp_path: Path) -> None:
         assert f"sim/analysis/report/page/{file.name}" in packed
     for file in (ROOT / "sim/web/page").iterdir():
         assert f"sim/web/page/{file.name}" in packed
+
+
+def test_the_citation_names_the_version_of_the_package() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
 
 
 def test_importing_the_agent_leaves_mujoco_out() -> None:

@@ -32,7 +32,7 @@ def test_a_public_name_is_the_object_of_its_module(package: ModuleType, name: st
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
 def test_type_checkers_see_the_names_of_the_table(package: ModuleType) -> None:
     tree = ast.parse(Path(str(package.__file__)).read_text())
-    (guarded,) = (node for node in tree.body if isinstance(node, ast.If))
+    guarded = next(node for node in tree.body if isinstance(node, ast.If))
     seen = {
         alias.name: node.module for node in guarded.body if isinstance(node, ast.ImportFrom) for alias in node.names
     }
