@@ -13,6 +13,9 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
+
+from msgspec import Meta
 
 from sim import cli, invocation
 from sim.analysis import display
@@ -26,7 +29,7 @@ HERE = frozenset(("127.0.0.1", "localhost", "::1"))
 class Args:
     """Watch an agent, or drive the robot, in the browser."""
 
-    port: int = 8008
+    port: Annotated[int, Meta(ge=0, le=65535)] = 8008
     """Port of the page; 0 takes a free one."""
     host: str = "127.0.0.1"
     """Address to listen on. Everybody who can reach it can see and drive the robot: there is no password."""
@@ -43,8 +46,6 @@ def main(args: Args) -> int:
     missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
     if missing:
         raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
-    if not 0 <= args.port <= 65535:
-        raise ConfigError(f"--port must lie between 0 and 65535, got {args.port}.")
     if args.weights is not None:
         from sim.composition.segmenters import weights_file
 
