@@ -29,7 +29,7 @@ from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreac
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_atomically
 from sim.geometry.pose import Pose
-from sim.housegen.house_list import CACHE_VARIABLE
+from sim.housegen.splits.house_list import CACHE_VARIABLE
 from sim.houses.house import read_rooms
 from sim.houses.labels import Labels, read_labels, rendered_geoms
 from sim.interface import GOAL_CATEGORIES, SENSORS, CameraModel, ConfigError

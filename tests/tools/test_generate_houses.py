@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.housegen.split_recipes import Recipe
+from sim.housegen.splits.recipes import Recipe
 from tools import generate_houses
 
 

@@ -17,7 +17,7 @@ from sim.evaluation.rollout import play_episode
 from sim.evaluation.workers import RunnerSpec, run_in_pool
 from sim.gl import mujoco
 from sim.housegen.generator import HouseConfig
-from sim.housegen.house_list import copy_textures
+from sim.housegen.splits.house_list import copy_textures
 from tools.benchmarks.figures import Figure, Goal
 from tools.benchmarks.making import write_house
 from tools.benchmarks.stages import SENSORS, Rig, Setting, stubborn_agent

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.floor_plan.room_queue import RoomQueue
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect
 
 CORE_KINDS = frozenset(("bathroom", "closet", "laundry"))
 """Rooms of the core."""

@@ -9,10 +9,10 @@ import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.plan import PlanError
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.floor_plan.room_queue import RoomQueue
+from sim.housegen.floor_plan.rooms import ROOM_RULES
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import ROOM_RULES
 
 MIN_SHARED_M = 1.7
 """Shortest wall between two zones that gets an opening."""

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from sim.housegen.floor_plan.plan import PlanError
+from sim.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.housegen.floor_plan.rows import Row
-from sim.housegen.rooms import GAP, ROOM_RULES, Column
 
 Group = tuple[Column, ...]
 _ENSUITE: Group = (Column("bedroom"), Column("closet", "bathroom"))

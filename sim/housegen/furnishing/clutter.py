@@ -10,14 +10,14 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import lay_flat, put_against_wall
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.housegen.furnishing.steps import top_uses
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import lay_flat, put_against_wall
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.rectangles import Rect
 
 PER_TOP, PER_TOP_M2, MOST_ON_TOP = 1.0, 4.0, 7
 """Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""

@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import math
 
+from sim.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall, put_at, put_near
+from sim.housegen.furnishing.placement.free_standing import SeatSpot, put_in_middle
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall, put_at, put_near
-from sim.housegen.placement.free_standing import SeatSpot, put_in_middle
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.placement.walls import WALL_GAP_M
-from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 
 
 def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:

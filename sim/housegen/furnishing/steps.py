@@ -9,14 +9,14 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from sim.housegen.floor_plan.rectangles import Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.housegen.furnishing.placement.walls import Along
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.placement.walls import Along
-from sim.housegen.rectangles import Side
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""

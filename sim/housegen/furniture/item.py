@@ -31,7 +31,7 @@ class Look:
 
     rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
     texture: str | None = None
-    """Name of a texture in `sim.housegen.materials`; None for a plain colour."""
+    """Name of a texture in `sim.housegen.surfaces.materials`; None for a plain colour."""
     repeat_m: float = 1.0
     """Edge length of one tile of the texture on the surface; 0: one image over the whole face."""
     specular: float = 0.2

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.fast_marching import distances
 from sim.gl import mujoco
-from sim.housegen.openings import Opening
+from sim.housegen.structure.openings import Opening
 from sim.houses.hazards import steepest_path
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import collidable_geoms, read_labels

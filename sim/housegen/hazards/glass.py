@@ -7,7 +7,7 @@ import math
 from sim.housegen.furniture.item import Geom, Look
 from sim.housegen.hazards.floor_map import FloorMap
 from sim.housegen.hazards.hazard import Sketch, box
-from sim.housegen.openings import HALF_WALL_M
+from sim.housegen.structure.openings import HALF_WALL_M
 
 GLASS_M, HIGH_M, PROFILE_M = 0.012, 2.05, 0.03
 """Thickness and height of panes, and the thickness of their frames."""
