@@ -25,6 +25,7 @@ from sim.houses.labels import geoms_of
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.robot.body import PREFIX
 from sim.run import entry
+from sim.task.explanations import Outcome, explain_end
 from sim.task.ground_truth import GroundTruth
 from sim.viewers import overlay, video
 from sim.viewers.chase import ChaseView
@@ -41,7 +42,6 @@ from sim.viewers.topview import (
 )
 from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, perceive, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
-from sim.viewers.words import Outcome, explain_end
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
 from tests.helpers import browser

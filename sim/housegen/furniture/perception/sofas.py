@@ -13,13 +13,8 @@ from sim.housegen.furniture.workbench import Workbench
 
 
 def _loose_cushions(w: Workbench, face: float, inner: float, seat: float) -> None:
-    """Adds up to three throw cushions whose backs lean at x = `face`; hint `cushions` sets their number."""
-    hinted = w.hints.get("cushions")
-    count = int(hinted) if hinted is not None else w.choice((0, 0, 1, 2, 3))
-    places = (0.5 * inner - 0.26, -0.5 * inner + 0.26, 0.06)
-    for y in places[: min(count, 3 if inner > 1.5 else 2)]:
-        cushion = w.make("cushion", use="throw")
-        w.put(cushion, (face + 0.5 * cushion.size_m[0] - 0.02, y, seat - 0.015), w.length(-0.15, 0.15))
+    """Adds throw cushions that lean at x = `face`."""
+    parts.throw_cushions(w, face, inner, seat, (0, 0, 1, 2, 3), margin=0.26, middle=0.06)
 
 
 def _sofa_size(w: Workbench, low: float = 1.45, high: float = 2.30) -> tuple[float, float, float]:

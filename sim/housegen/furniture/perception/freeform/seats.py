@@ -179,7 +179,7 @@ def _upholstered(w: Workbench, wide: float, deep: float, *, places: int) -> None
     face = _sofa_back(w, x0, inner, back, (foot, z, high), w.choice((1, places, 2 * places)), cover)
     w.top((face, x1), (-0.5 * inner, 0.5 * inner), z, "seat")
     if places > 1:
-        _throw_cushions(w, face, inner, z)
+        parts.throw_cushions(w, face, inner, z, (0, 0, 1, 2, 3), margin=0.26, middle=0.05)
 
 
 def _sofa_arms(
@@ -232,16 +232,6 @@ def _sofa_back(
             depth = 0.6 * back
             parts.pad(w, (depth, each - 0.004, tall + 0.02), at, cover, 0.4 * min(depth, each), tilt=-lean)
     return x0 + back + 0.03
-
-
-def _throw_cushions(w: Workbench, face: float, inner: float, seat: float) -> None:
-    """Adds up to three throw cushions; hint `cushions` sets their number."""
-    hinted = w.hints.get("cushions")
-    count = int(hinted) if hinted is not None else w.choice((0, 0, 1, 2, 3))
-    places = (0.5 * inner - 0.26, -0.5 * inner + 0.26, 0.05)
-    for y in places[: min(count, 3 if inner > 1.5 else 2)]:
-        cushion = w.make("cushion", use="throw")
-        w.put(cushion, (face + 0.5 * cushion.size_m[0] - 0.02, y, seat - 0.015), w.length(-0.15, 0.15))
 
 
 STYLES: tuple[Style, ...] = (
