@@ -30,7 +30,7 @@ _LARGE_HOME: tuple[Group, ...] = (
 _MORE: tuple[Group, ...] = (_BEDROOM, _BATHROOM, _OFFICE, _CLOSET, _LAUNDRY)
 """Groups that are added when no group of the queue fits."""
 _SHARES = {"bedroom": 4.0, "bathroom": 1.5, "office": 1.5, "closet": 1.2, "laundry": 0.5}
-"""How many rooms of these kinds a home usually has, relative to each other."""
+"""Usual numbers of rooms of these kinds in a home, relative to each other."""
 WITHOUT_DAYLIGHT = frozenset(("bathroom", "closet", "laundry", "office", "gym"))
 """Rooms that may lie in the core of a home, without windows."""
 

@@ -1,7 +1,7 @@
-"""Small objects of a furnished room: on tops, on the walls of bathrooms, and on the floor beside walls and furniture.
+"""Small objects of a furnished room: on tops, on the walls of bathrooms, and on the floor next to walls and furniture.
 
-Their number depends on `FurnitureSource.clutter`: 0 gives none, 1 many. Objects on tops and flat things on the floor do
-not collide; shoes, bags, toys and boxes do, and stand at walls, where the room stays walkable.
+Their number depends on `FurnitureSource.clutter`: 0 gives no objects, 1 many. Objects on tops and flat objects on
+the floor do not collide; shoes, bags, toys and boxes do. They are placed at walls, where the room stays walkable.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> 
 
 
 def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs toilet paper beside the toilet, and perhaps a rack of bottles."""
+    """Hangs toilet paper next to the toilet, and perhaps a rack of bottles."""
     for toilet in [p for p in layout.placements if p.item.category == "toilet"]:
         paper = source.make("objects", "toilet_paper")
         if paper is None or toilet.side is None or not source.clutter_chance(0.7):
@@ -89,7 +89,7 @@ def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Placement | None:
-    """Puts a small object on the floor: flat ones beside furniture, the others at a wall."""
+    """Puts a small object on the floor: flat ones next to furniture, the others at a wall."""
     item = source.make("objects", use)
     if item is None or item.mount != "floor":
         return None
@@ -99,7 +99,7 @@ def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Plac
 
 
 def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> Placement | None:
-    """Lays a flat object on free floor beside a piece of furniture."""
+    """Lays a flat object on free floor next to a piece of furniture."""
     hosts = [
         p for p in layout.placements if p.item.mount == "floor" and not p.item.walk_over and p.item.size_m[2] > 0.3
     ]

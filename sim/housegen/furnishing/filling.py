@@ -24,7 +24,7 @@ PICTURES_PER_M2 = 0.02
 
 @dataclass(frozen=True)
 class FillRule:
-    """How full a kind of room gets, and which furniture is added to it."""
+    """The furniture that is added to a kind of room, and the amount of it."""
 
     share: float
     """Share of the floor under furniture at clutter 1; half of it at clutter 0."""

@@ -1,6 +1,6 @@
 """Selects and makes the furniture of one home, so that no design is seen more than twice unless it belongs to a set.
 
-A design is a style with certain looks and a certain size. The source counts what stands in the rooms and chooses the
+A design is a style with certain looks and a certain size. The source counts the items in the rooms and chooses the
 style with the fewest items. Where the pool has no style left that the home has fewer than `MOST_ALIKE` times, it makes
 a variant of one: the same structure in other colours, or in a clearly different size, is a different design.
 """

@@ -42,7 +42,7 @@ def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Pl
 
 
 def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
-    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall beside it."""
+    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall next to it."""
     widths_m = (source.pick((1.4, 1.6, 1.8)), 1.2, 0.9) if large else (0.9, 0.9, 1.2)
     for width_m in widths_m:
         item = source.make("bed", width_m=width_m)

@@ -1,4 +1,4 @@
-"""Hallways: furniture at intervals along the walls where the path beside it stays wide enough."""
+"""Hallways: furniture at intervals along the walls where the path next to it stays wide enough."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sim.housegen.furnishing.steps import hang, hang_above, lay_rug, put_on_top
 from sim.housegen.furniture.item import Item
 
 PATH_M = 0.9
-"""Width kept free beside furniture."""
+"""Width kept free next to furniture."""
 INTERVAL_M = 2.4
 """Usual distance between two pieces of furniture."""
 KINDS = (

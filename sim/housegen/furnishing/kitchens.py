@@ -35,7 +35,7 @@ class Units:
     looks: dict[str, Look]
     """Materials of all of them."""
     sides: list[Side]
-    """Walls they stand against."""
+    """Walls against which they are placed."""
     placed: list[Placement]
 
 

@@ -102,4 +102,4 @@ MIDDLES: Mapping[str, tuple[Callable[[RoomLayout, FurnitureSource, Spot], Placem
         "hallway": (_bench, _plant, _low_table),
     }
 )
-"""What is placed in the middle of large rooms, by kind of room."""
+"""Furniture for the middle of large rooms, by kind of room."""

@@ -75,7 +75,7 @@ def _place_armchairs(layout: RoomLayout, source: FurnitureSource, sofa: Placemen
 
 
 def _place_side_table(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> None:
-    """Perhaps places a small table beside a sofa."""
+    """Perhaps places a small table next to a sofa."""
     item = source.make("table", "side")
     if item is not None and source.chance(0.6) and sofa.side is not None:
         table = place_beside(layout, sofa, item, 1.0 if source.chance(0.5) else -1.0)
@@ -125,7 +125,7 @@ def has_chair(source: FurnitureSource) -> bool:
 
 
 def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places an armchair in a corner with a small table and a lamp beside it."""
+    """Places an armchair in a corner with a small table and a lamp next to it."""
     chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5) if has_chair(source) else None
     if chair is None:
         return None

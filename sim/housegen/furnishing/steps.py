@@ -80,7 +80,7 @@ def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, cat
 def place_beside(
     layout: RoomLayout, host: Placement, item: Item, towards: float, gap_m: float = 0.05
 ) -> Placement | None:
-    """Places an item next to another one at the same wall: `towards` +1 further along the side, -1 the other way."""
+    """Places an item next to another one at the same wall: `towards` is +1 or -1 along the side."""
     if host.side is None:
         return None
     lo, hi = host.rect.span(host.side)
@@ -90,7 +90,7 @@ def place_beside(
 
 
 def place_in_front(layout: RoomLayout, host: Placement, item: Item, gap_m: float, *, facing: bool) -> Placement | None:
-    """Places an item in front of another one, turned towards it (`facing`) or the same way."""
+    """Places an item in front of another one, turned towards it (`facing`) or in the same direction."""
     x, y = host.to_world(host.item.size_m[0] / 2 + gap_m + item.size_m[0] / 2, 0.0)
     yaw = host.placed.yaw_rad
     return put_at(layout, item, x, y, yaw + math.pi if facing else yaw)

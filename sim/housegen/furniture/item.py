@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Shape = Literal["box", "cylinder", "sphere", "capsule", "ellipsoid", "mesh"]
 Mount = Literal["floor", "wall", "ceiling", "top"]
-"""Where the origin of an item is: on the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
+"""The support on which the origin of an item lies: the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
 Pool = Literal["train", "heldout", "wide"]
 """The styles, sizes, colours and textures that may be drawn. `heldout` (val and test houses) shares none with `train`.
 

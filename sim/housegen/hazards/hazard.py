@@ -64,7 +64,7 @@ class PlacedHazard:
         return [outline for part in self.parts for outline in part.footprints()]
 
     def add_to(self, builder: HouseBuilder, number: int) -> None:
-        """Adds the objects and the site `hazard_<kind>_<number>` that tells where they are."""
+        """Adds the objects and the site `hazard_<kind>_<number>` that marks their position."""
         for part in self.parts:
             if part.movable is not None:
                 builder.add_movable_body(part.movable, part.placed)

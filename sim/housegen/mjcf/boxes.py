@@ -29,14 +29,14 @@ def overlap(a: Box, b: Box) -> Box:
     return x, y, z, max(x, min(a[3], b[3])), max(y, min(a[4], b[4])), max(z, min(a[5], b[5]))
 
 
-def plan_m2(box: Box) -> float:
+def base_m2(box: Box) -> float:
     """Returns the area of a box in plan."""
     return (box[3] - box[0]) * (box[4] - box[1])
 
 
 def volume_m3(box: Box) -> float:
     """Returns the volume of a box."""
-    return plan_m2(box) * (box[5] - box[2])
+    return base_m2(box) * (box[5] - box[2])
 
 
 def box_geom(box: Box) -> Geom:

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sim.housegen.furniture.item import Geom, Item, Surface
-from sim.housegen.mjcf.boxes import Box, box_geom, geom_box, overlap, plan_m2, union, volume_m3
+from sim.housegen.mjcf.boxes import Box, base_m2, box_geom, geom_box, overlap, union, volume_m3
 
 SMALL_ITEM_M = 0.8
 """Items no wider than this collide as a block under their largest plate: the robot is 0.88 m high."""
 OVERHANG_M = 0.05
-"""How far legs may extend beyond the plate that they carry."""
+"""Largest distance by which legs may extend beyond the plate that they carry."""
 MAX_FILLED_M3 = 0.012
 """Largest volume that one box may add to the two parts that it replaces."""
 MAX_FILLED_M2 = 0.02
@@ -56,7 +56,7 @@ def _join_under_plate(parts: list[_Part], item: Item) -> list[_Part]:
     """Returns the parts of a small item with its largest plate and everything under it joined into one block."""
     if max(item.size_m[:2]) > SMALL_ITEM_M:
         return parts
-    top = max((geom for geom in item.geoms if geom.solid), key=lambda geom: plan_m2(geom_box(geom)))
+    top = max((geom for geom in item.geoms if geom.solid), key=lambda geom: base_m2(geom_box(geom)))
     x0, y0, z0, x1, y1, z1 = geom_box(top)
     shelves = any(0.03 < surface.centre_m[2] < z1 - 0.02 for surface in item.surfaces)
     if shelves or top.shape in ("sphere", "ellipsoid") or z1 < 0.1 or z0 > ROBOT_HEIGHT_M:
@@ -105,7 +105,7 @@ def _filled_m3(a: Box, b: Box, item: Item) -> float:
     joined = union(a, b)
     filled_m3 = volume_m3(joined) - volume_m3(a) - volume_m3(b)
     if item.mount == "floor":
-        filled_m2 = plan_m2(joined) - plan_m2(a) - plan_m2(b) + plan_m2(overlap(a, b))
+        filled_m2 = base_m2(joined) - base_m2(a) - base_m2(b) + base_m2(overlap(a, b))
         if filled_m3 >= MAX_FILLED_M3 or filled_m2 >= MAX_FILLED_M2:
             return math.inf
     return math.inf if _covers_a_top(joined, (a, b), item.surfaces) else filled_m3

@@ -33,7 +33,7 @@ class StructureLooks:
     door_frame: Look
     handle: Look
     views: Mapping[Side, Look]
-    """What is visible through the windows of each side."""
+    """Pictures that are visible through the windows of each side."""
     time: str
     """Time of day, a key of `sim.housegen.surfaces.lighting.DAYLIGHT`."""
 

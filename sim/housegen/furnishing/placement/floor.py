@@ -58,7 +58,7 @@ def put_against_wall(
 def put_near(
     layout: RoomLayout, item: Item, side: Side, at: float, *, front_m: float = 0.6, slide_m: float = 0.8
 ) -> Placement | None:
-    """Puts an item against a wall at a position along it, or up to `slide_m` beside that position."""
+    """Puts an item against a wall at a position along it, or at most `slide_m` away from that position."""
     lo, hi = layout.inner.span(side)
     half = item.size_m[1] / 2
     for position in _shifted(at, slide_m):

@@ -157,7 +157,7 @@ class RoomLayout:
     # ---- inside --------------------------------------------------------------------------------------------------
 
     def _standing(self) -> list[Placement]:
-        """Returns what stands on the floor and cannot be walked over."""
+        """Returns the items on the floor that cannot be walked over."""
         return [p for p in self.placements if p.item.mount == "floor" and not p.item.walk_over]
 
     def _add_opening(self, index: int, rect: Rect, opening: Opening) -> None:

@@ -1,4 +1,4 @@
-"""A grid of one room's floor that tells whether the robot can still reach doorways and furniture."""
+"""A grid of one room's floor that shows whether the robot can still reach doorways and furniture."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REACH_M = 0.8
 POCKET_CELLS = 60
 """Largest floor area that may be free but unreachable, in cells: 0.15 m2."""
 _GATE_CELLS = 6
-"""Cells around a doorway that count as free: the walls beside it do not stop a robot that passes through."""
+"""Cells around a doorway that count as free: the walls next to it do not stop a robot that passes through."""
 _RADIUS_CELLS = round(ROBOT_M / CELL_M)
 _DISC = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * _RADIUS_CELLS + 1, 2 * _RADIUS_CELLS + 1))
 

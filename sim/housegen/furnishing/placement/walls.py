@@ -1,4 +1,4 @@
-"""The walls of one room with their openings: where along them an item can stand or hang."""
+"""The walls of one room with their openings, and the positions along them at which an item can be placed."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ _FRONTS: tuple[FrontKind, ...] = ("flat", "flat", "frame", "raised", "cane", "sl
 
 @dataclass(frozen=True)
 class Fronts:
-    """What the fronts of one piece have in common."""
+    """The design that the fronts of one piece share."""
 
     look: Look
     metal: Look
