@@ -25,3 +25,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_report_header() -> str:
     return f"cases: {'all' if sampling.ALL_CASES else f'samples of commit {sampling.commit()[:12]}'}"
+
+
+@pytest.fixture(scope="module")
+def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of a house of one room of 6 x 6 m with a sofa (`tests.helpers.worlds.sofa_room`)."""
+    from tests.helpers.worlds import sofa_room
+
+    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
+    file.write_text(sofa_room().spec.to_xml())
+    return file

@@ -35,8 +35,8 @@ from sim.episodes.splits import LABELS_FILE, Episode, labels_of, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_together
-from sim.housegen.house_list import has_house_list, read_house_list
-from sim.housegen.split_recipes import SPLIT_VERSION
+from sim.housegen.splits.house_list import has_house_list, read_house_list
+from sim.housegen.splits.recipes import SPLIT_VERSION
 from sim.houses.house import House
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house

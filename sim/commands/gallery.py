@@ -22,7 +22,7 @@ from sim.housegen.furniture.catalogue import Catalogue, Style
 from sim.housegen.furniture.item import Geom, Item, Look, Pool
 from sim.housegen.imported.catalogue import style_of
 from sim.housegen.imported.library import read_index
-from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem
+from sim.housegen.mjcf.builder import HouseBuilder, Lamp, PlacedItem
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.interface import ConfigError

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
 from sim.interface import MPCAT40, MPCAT40_ID, Action, AgentSpec, Observation
+from sim.task.explanations import ACTION_WORDS, in_words
 from sim.viewers.overlay import colour_depth
 from sim.viewers.palette import colour_segmentation
 from sim.viewers.terminal import Colours, beside, fitted, half_blocks
-from sim.viewers.words import ACTION_WORDS, in_words
 from stubborn.agent import StubbornAgent
 from stubborn.drawing.map_painter import AgentMapPainter, describe_intention
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter

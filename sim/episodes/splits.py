@@ -2,7 +2,8 @@
 
 A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see
 `sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it
-may have a list of recipes, `train/houses.json` (see `sim.housegen.house_list`); such houses are generated on first use.
+may have a list of recipes, `train/houses.json` (see `sim.housegen.splits.house_list`), whose houses are generated on
+first use.
 
 `labels.json` in the folder holds label rules for its houses (docs/worlds.md).
 `val/unreachable.json` names the objects that no episode asks for, because no place of the free space reaches them.
@@ -23,7 +24,7 @@ from sim.episodes import habitat
 from sim.errors import EpisodeError, HouseError
 from sim.files import inside, write_together
 from sim.geometry.pose import Pose
-from sim.housegen.house_list import HouseList, has_house_list, read_house_list
+from sim.housegen.splits.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path

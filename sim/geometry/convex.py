@@ -100,7 +100,7 @@ class ConvexPolygon:
         return (leave - entry) * np.linalg.norm(step, axis=1) > MIN_CROSSING_M
 
 
-def plan_polygon(body: Polytope, low_m: float = -math.inf, high_m: float = math.inf) -> ConvexPolygon | None:
+def polygon_from_above(body: Polytope, low_m: float = -math.inf, high_m: float = math.inf) -> ConvexPolygon | None:
     """Returns the plan projection of the part of a body between two heights, which may be equal; None if empty."""
     z = body.vertices_m[:, 2]
     if float(z.max()) < low_m or float(z.min()) > high_m:

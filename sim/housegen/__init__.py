@@ -1,8 +1,10 @@
 """Generates furnished apartments in MJCF from seeds. `generate(seed)` returns a new one.
 
-The order of the work: floor_plan and openings, structure (walls, doors, windows), furnishing (by means of furniture and
-placement), then mjcf writes the specification. `split_recipes` lists how each shipped house is generated; `house_list`
-reads and writes `houses.json`, the list of a split whose houses are not shipped as files.
+`generator` draws and checks a house. The folders are its steps: `floor_plan` (rooms), `structure` (openings, walls,
+doors, windows, stairs), `furnishing` (chooses `furniture` and places it in rooms), `surfaces` (materials, textures,
+light), `hazards`, and `mjcf` (writes the specification). `upper_storey` repeats some steps for a second storey.
+`imported` adds models that the user has installed, `traps` builds trap scenes, and `splits` lists how each shipped
+house is generated.
 """
 
 from __future__ import annotations

@@ -16,22 +16,23 @@ import numpy as np
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
-from sim.housegen.decoration import draw_structure_looks
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
+from sim.housegen.floor_plan.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
 from sim.housegen.furnishing import FurnishError, furnish
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import RoomLayout
+from sim.housegen.furnishing.placement.surfaces import supports_items
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
 from sim.housegen.furniture.item import Item, Pool
-from sim.housegen.furniture_source import FurnitureSource
 from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
-from sim.housegen.lighting import DAYLIGHT, draw_lamps
-from sim.housegen.merging import Assembler
-from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
-from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
-from sim.housegen.placement import RoomLayout
-from sim.housegen.placement.surfaces import supports_items
-from sim.housegen.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
-from sim.housegen.structure import build_structure
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.merging import Assembler
+from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.housegen.structure.building import build_structure
+from sim.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.housegen.surfaces.lighting import DAYLIGHT, draw_lamps
+from sim.housegen.surfaces.structure_looks import draw_structure_looks
 from sim.housegen.upper_storey import Stairs, UpperStorey, draw_stairs, draw_upper_storey, lifted
 from sim.houses.writing import house_text
 from sim.world.check import check_house
@@ -75,7 +76,7 @@ class HouseConfig:
     name: str = "house"
     """The model's name in the file."""
     movable: bool = False
-    """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.movables`)."""
+    """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.mjcf.movables`)."""
     storeys: int = 1
     """1, or 2: some rooms again above, with a flight of stairs between (needs the room kind `stair_hall`)."""
     hazards: tuple[str, ...] = ()

@@ -7,21 +7,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sim.housegen.decoration import draw_structure_looks
 from sim.housegen.floor_plan import FloorPlan, Join, PlanError
 from sim.housegen.floor_plan.plan import Room
+from sim.housegen.floor_plan.rectangles import Rect, frame_around
+from sim.housegen.floor_plan.rooms import ROOM_RULES
 from sim.housegen.furnishing import furnish
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import RoomLayout
 from sim.housegen.furniture.item import Pool
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.lighting import draw_lamps
-from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
-from sim.housegen.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
-from sim.housegen.placement import RoomLayout
-from sim.housegen.rectangles import Rect, frame_around
-from sim.housegen.rooms import ROOM_RULES
-from sim.housegen.stairs import Flight, place_flight
-from sim.housegen.structure import build_structure
-from sim.housegen.structure_parts import StructureLooks
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
+from sim.housegen.structure.building import build_structure
+from sim.housegen.structure.openings import HALF_WALL_M, OUTER_WALL_M, Opening, cut_openings
+from sim.housegen.structure.parts import StructureLooks
+from sim.housegen.structure.stairs import Flight, place_flight
+from sim.housegen.surfaces.lighting import draw_lamps
+from sim.housegen.surfaces.structure_looks import draw_structure_looks
 
 STOREY_GAP_M = 0.25
 """From the lower ceiling to the upper floor."""

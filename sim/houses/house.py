@@ -50,7 +50,7 @@ class Room:
     @property
     def area_m2(self) -> float:
         """Area of the union of the boxes in plan."""
-        edges = [_plan(box) for box in self.boxes]
+        edges = [_sides_m(box) for box in self.boxes]
         xs = sorted({x for edge in edges for x in edge[0:2]})
         ys = sorted({y for edge in edges for y in edge[2:4]})
         return sum(
@@ -62,7 +62,7 @@ class Room:
 
     def contains(self, x_m: float, y_m: float) -> bool:
         """Returns whether a position lies in the room in plan, its edge included."""
-        return any(x0 <= x_m <= x1 and y0 <= y_m <= y1 for x0, x1, y0, y1 in map(_plan, self.boxes))
+        return any(x0 <= x_m <= x1 and y0 <= y_m <= y1 for x0, x1, y0, y1 in map(_sides_m, self.boxes))
 
 
 def read_rooms(model: mujoco.MjModel) -> tuple[Room, ...]:
@@ -86,7 +86,7 @@ def _site_box(model: mujoco.MjModel, site: int) -> Box:
     return (x, y, z), (hx, hy, hz)
 
 
-def _plan(box: Box) -> tuple[float, float, float, float]:
+def _sides_m(box: Box) -> tuple[float, float, float, float]:
     """Returns the smallest and largest x, the smallest and largest y."""
     (x, y, _), (hx, hy, _) = box
     return x - hx, x + hx, y - hy, y + hy

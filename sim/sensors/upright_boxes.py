@@ -57,13 +57,6 @@ class UprightBoxes:
             self.centre[chosen], self.axis[chosen], self.half[chosen], self.bottom[chosen], self.top[chosen]
         )
 
-    def corners(self) -> tuple[NDArray, NDArray]:
-        """Returns x and y of the corners in plan, each (n, 4)."""
-        along = self.half[:, :1] * np.array([-1.0, -1.0, 1.0, 1.0])
-        across = self.half[:, 1:] * np.array([-1.0, 1.0, -1.0, 1.0])
-        ax, ay = self.axis[:, :1], self.axis[:, 1:]
-        return self.centre[:, :1] + ax * along - ay * across, self.centre[:, 1:] + ay * along + ax * across
-
     def tall(self, eye_z_m: float) -> UprightBoxes:
         """Returns the boxes that extend as high and as low as most of the wall length: they hide most.
 
@@ -75,21 +68,6 @@ class UprightBoxes:
         high = _highest(spanning.top - eye_z_m, length)
         spanning, length = spanning.take(high), length[high]
         return spanning.take(_highest(eye_z_m - spanning.bottom, length))
-
-    def in_fan(self, eye_m: NDArray, yaw: tuple[float, float], right_max: float) -> UprightBoxes:
-        """Returns the boxes that may have a part within the horizontal field of view.
-
-        Args:
-            eye_m: (3,) optical centre.
-            yaw: cosine and sine of the heading.
-            right_max: slope of the image's right edge, metres to the right per metre of depth.
-        """
-        c, s = yaw
-        dx, dy = self.centre[:, 0] - eye_m[0], self.centre[:, 1] - eye_m[1]
-        depth, right = c * dx + s * dy, s * dx - c * dy
-        radius = np.hypot(self.half[:, 0], self.half[:, 1])
-        slant = np.hypot(1.0, right_max) * radius
-        return self.take((depth > -radius) & (np.abs(right) < right_max * depth + slant))
 
     def cross(self, eye_m: NDArray, ray: NDArray) -> tuple[NDArray, NDArray]:
         """Returns where rays in plan from the eye enter and leave each box, (n, rays), in lengths of `ray` (2, rays).

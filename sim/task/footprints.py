@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.geometry.convex import ConvexPolygon, polygon_from_above
 from sim.gl import mujoco
 from sim.houses.geoms import PLANE_DEPTH_M, geom_polytope, mesh_is_convex, mesh_triangles
 from sim.houses.labels import Instance, Labels, collidable_geoms, rendered_geoms
@@ -87,7 +87,7 @@ def house_floors(model: mujoco.MjModel, data: mujoco.MjData, labels: Labels) -> 
     """Returns the floors of all storeys that wheels can stand on."""
     geoms = np.flatnonzero((labels.geom_category == MPCAT40_ID["floor"]) & collidable_geoms(model))
     bodies = [geom_polytope(model, data, geom) for geom in geoms.tolist()]
-    return tuple(Floor(float(body.vertices_m[:, 2].max()), plan_polygon(body)) for body in bodies)
+    return tuple(Floor(float(body.vertices_m[:, 2].max()), polygon_from_above(body)) for body in bodies)
 
 
 def _floor_under(floors: Sequence[Floor], xy_m: NDArray[np.float64], bottom_m: float) -> float:
@@ -100,7 +100,7 @@ def _floor_under(floors: Sequence[Floor], xy_m: NDArray[np.float64], bottom_m: f
 def _rendered_parts(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> list[ConvexPolygon]:
     """Returns the plan projection of a rendered geom: one convex polygon, or the triangles of a hollow mesh."""
     body = geom_polytope(model, data, geom, rendered=True)
-    whole = plan_polygon(body)
+    whole = polygon_from_above(body)
     if whole is None:
         return [_upright_polygon(body.vertices_m[:, :2])]
     if not is_hollow(model, geom):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import ConvexPolygon, lines_blocked, plan_polygon
+from sim.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
 from sim.houses.labels import Labels, rendered_geoms
@@ -153,7 +153,7 @@ def sight_blockers(
             sections += _mesh_section(mesh_triangles(model, data, geom), height_m)
         else:
             body = geom_polytope(model, data, geom, rendered=True)
-            sections.append(plan_polygon(body, height_m, height_m))
+            sections.append(polygon_from_above(body, height_m, height_m))
     return tuple(section for section in sections if section is not None)
 
 

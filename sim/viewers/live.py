@@ -23,8 +23,8 @@ from sim.env.scene import Scene
 from sim.gl import mujoco
 from sim.interface import MPCAT40_ID, ConfigError
 from sim.robot.body import PREFIX, ROBOT_GROUP
+from sim.task.explanations import ACTION_WORDS, in_words
 from sim.viewers.viewer import Moment
-from sim.viewers.words import ACTION_WORDS, in_words
 
 ACTION_S = 0.3
 """Display time of an action; in the simulation it takes up to two seconds."""

@@ -26,10 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Scores
+from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
 from sim.viewers.palette import PALETTE, colour_segmentation
 from sim.viewers.text import BOLD, NORMAL, text_width, wrapped, write
 from sim.viewers.viewer import Colour, Moment
-from sim.viewers.words import ACTION_WORDS, Outcome, in_words, with_article
 
 Picture = NDArray[np.uint8]
 WIDTH_PX, HEIGHT_PX = 1280, 720

@@ -37,10 +37,10 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.files import part_file
 from sim.geometry.pose import Pose
 from sim.interface import MPCAT40, CameraModel, ConfigError
+from sim.task.explanations import ACTION_WORDS, in_words
 from sim.viewers.palette import PALETTE
 from sim.viewers.topview import TopView
 from sim.viewers.viewer import MapPainter, Moment
-from sim.viewers.words import ACTION_WORDS, in_words
 
 FOLDER = "rerun"
 PORT = 9876

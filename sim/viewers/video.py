@@ -27,11 +27,11 @@ from sim.errors import ConfigError
 from sim.files import part_file
 from sim.interface import NamesCategories, Segmenter
 from sim.reading import reason_of
+from sim.task.explanations import explain_end
 from sim.viewers import overlay
 from sim.viewers.chase import ChaseView
 from sim.viewers.topview import TopView
 from sim.viewers.viewer import MapPainter, Moment
-from sim.viewers.words import explain_end
 
 FOLDER = "videos"
 FRAMES_PER_S = 5.0

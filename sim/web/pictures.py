@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from sim.composition.runner import Parts
 from sim.env.scene import Scene
 from sim.interface import MPCAT40, MPCAT40_ID
+from sim.task.explanations import in_words
 from sim.viewers import overlay
 from sim.viewers.chase import ChaseView
 from sim.viewers.palette import PALETTE
 from sim.viewers.topview import TopView
 from sim.viewers.video import perceive
 from sim.viewers.viewer import Colour, Moment
-from sim.viewers.words import in_words
 
 NAMES = ("camera", "chase", "predicted", "score", "map", "plan", "semantic", "depth")
 """The pictures by name."""

@@ -18,8 +18,8 @@ from sim.episodes.splits import Episode
 from sim.errors import EpisodeError
 from sim.evaluation.rollout import episode_seed, play_episode
 from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
+from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 from sim.viewers.viewer import Moment
-from sim.viewers.words import ACTION_WORDS, explain_end, in_words, with_article
 from sim.web.controls import Controls, Interrupted, Wish
 from sim.web.pictures import Pictures, in_sight
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.geometry.convex import ConvexPolygon, polygon_from_above
 from sim.geometry.convex_kernels import mark_inside
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
@@ -63,7 +63,7 @@ def _low_floors(
     near = sorted((floor for floor in near if abs(floor[0] - floor_z_m) <= STEP_HEIGHT_M), key=lambda floor: floor[0])
     if not near or near[-1][0] - near[0][0] <= CLIMB_M:  # no edge between them is too high
         return []
-    plans = [(top_m, plan_polygon(body)) for top_m, body in near]
+    plans = [(top_m, polygon_from_above(body)) for top_m, body in near]
     return [(top_m, plan) for top_m, plan in plans if plan is not None]
 
 

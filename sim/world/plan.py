@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import HouseError
-from sim.geometry.convex import ConvexPolygon, plan_polygon
+from sim.geometry.convex import ConvexPolygon, polygon_from_above
 from sim.gl import mujoco
 from sim.houses.geoms import UNBOUNDED_M, geom_polytope, geoms_between
 from sim.houses.house import Room
@@ -34,7 +34,7 @@ def polygons_between(
 ) -> list[ConvexPolygon]:
     """Returns the plan projections of those geoms that have a part between two heights."""
     near = geoms_between(model, data, geoms, *heights_m).tolist()
-    polygons = (plan_polygon(geom_polytope(model, data, geom), *heights_m) for geom in near)
+    polygons = (polygon_from_above(geom_polytope(model, data, geom), *heights_m) for geom in near)
     return [polygon for polygon in polygons if polygon is not None]
 
 
@@ -54,7 +54,7 @@ def floor_polygons(
             if not (model.geom_size[geom, :2] > 0.0).all():
                 return None
             body = geom_polytope(model, data, int(geom), rendered=True)
-        polygon = plan_polygon(body)
+        polygon = polygon_from_above(body)
         if polygon is not None:
             polygons.append(polygon)
     return polygons

@@ -17,8 +17,8 @@ from sim import cli
 from sim.commands.houses.generate import Args, main
 from sim.commands.main import COMMANDS
 from sim.episodes.splits import load_split, shipped_splits
-from sim.housegen.house_list import house_bytes
-from sim.housegen.split_recipes import SPLIT_VERSION, SPLITS
+from sim.housegen.splits.house_list import house_bytes
+from sim.housegen.splits.recipes import SPLIT_VERSION, SPLITS
 from sim.interface import ConfigError
 from tests.helpers import documented
 from tests.helpers.documented import PYTHON, TRIALS, Only

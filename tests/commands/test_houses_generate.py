@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sim.commands.houses import generate as generate_houses
-from sim.housegen.split_recipes import Recipe
+from sim.housegen.splits.recipes import Recipe
 
 
 def test_each_train_seed_is_tried_in_order_even_if_some_give_no_house(

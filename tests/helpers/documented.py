@@ -248,82 +248,26 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{_RUN} --goal bed --episodes 2 --workers 2 --record --agent random --out {{tmp}}/mine",
     ),
     "stubborn report runs/mine": (_RECORDED, "stubborn report {tmp}/mine"),
-    f"{_RUN} --agent examples.my_agent:AGENT --video": (
-        f"{_RUN} --agent examples.my_agent:AGENT --video {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics noisy --noise realsense": (
-        f"{_RUN} --semantics noisy --noise realsense {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    "stubborn teleop --house examples/my_house.xml": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
-    "stubborn reproduce ablation --episodes 200 --workers 2": (
-        "stubborn reproduce ablation --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
-    ),
     # docs/index.md
     f"{_RUN} --episodes 20 --workers 2": (f"{_RUN} --episodes 2 --workers 2 --agent random --out {{tmp}}/run",),
     f"{_RUN} --list-agents": (f"{_RUN} --list-agents",),
-    f"{_RUN} --agent oracle --goal toilet": (f"{_RUN} --agent oracle --goal toilet --episodes 1 --out {{tmp}}/run",),
-    f"{_RUN} --semantics gt --goal toilet": (f"{_RUN} --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",),
     f"{_RUN} --house examples/my_house.xml --goal sofa --start-deg '1.0 2.5 90'": (
         f"{_RUN} {_SMALL} --start-deg '1.0 2.5 90' --episodes 2 --out {{tmp}}/run",
     ),
     # docs/agents.md
-    f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 --episodes 5": (
-        f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 --episodes 5": (
-        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 --episodes 1"
-        f" {_SMALL} --out {{tmp}}/run",
-    ),
-    f"{_RUN} --explorer thorough --episodes 5": (
-        f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --semantics gt --episodes 100 --workers 2 --out runs/before": (
-        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/before",
-    ),
-    f"{_RUN} --semantics gt --explorer thorough --episodes 100 --workers 2 --out runs/after": (
-        f"{_RUN} --explorer thorough --semantics gt {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/after",
-    ),
     "stubborn compare runs/before runs/after": (
         f"{_RUN} --agent oracle {_SMALL} --episodes 1 --out {{tmp}}/before",
         f"{_RUN} --agent random {_SMALL} --episodes 1 --out {{tmp}}/after",
         "stubborn compare {tmp}/before {tmp}/after",
-    ),
-    # docs/configuration.md
-    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300 --episodes 5": (
-        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=30 --episodes 1 {_SMALL}"
-        " --out {tmp}/run",
-    ),
-    f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 5": (
-        f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7 --episodes 1"
-        f" {_SMALL} --out {{tmp}}/run",
-    ),
-    f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 5": (
-        f"{_RUN} --noise realsense --config noise.depth.hole_share=1.0 task.success.distance_m=0.5 --episodes 1"
-        f" {_SMALL} --semantics gt --out {{tmp}}/run",
-    ),
-    f"{_RUN} --config-file my_settings.toml --episodes 5": (
-        f"{PYTHON} -c 'from pathlib import Path; "
-        'Path("{tmp}/my.toml").write_text("[agent.planning]\\ndilation_m = 0.10\\n[task]\\nmax_steps = 30\\n")\'',
-        f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
     ),
     # docs/gymnasium.md
     f"{PYTHON} examples/gym_agents.py": (f"{PYTHON} examples/gym_agents.py",),
     f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
         f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
-    "stubborn bench --parts j": ("stubborn bench --quick --parts j",),
     # docs/plans.md
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
-    ),
-    "stubborn houses plans --pool train --first-seed 0 --houses 500 --out runs/plans/many --workers 2": (
-        "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
-    ),
-    "stubborn houses plans --pool train --kind large --area-m2 280 --houses 50 --out runs/plans/large": Only(
-        "a large house takes long; the command before it is tried with a small one"
-    ),
-    f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
-        f"{_RUN} --agent frontier-avoid --semantics gt --record --episodes 1 --workers 1 --out {{tmp}}/real",
     ),
     f"{PYTHON} -m tools.research.check_twin --plans runs/plans/val --runs runs/real --explore": (
         "stubborn houses plans --split val --houses 1 --out {tmp}/plans",
@@ -335,87 +279,13 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
-    (
-        "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 5000 --houses 42 "
-        "--out runs/plans/large_train"
-    ): Only("a large house takes long; the command before it is tried with a small one"),
-    f"{_RUN} --agent semexp --semantics gt --episodes 5": (
-        f"{_RUN} --agent semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt --episodes 5": (
-        f"{_RUN} --agent stubborn-plus --explorer semexp --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    (
-        "stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 0 "
-        "--out runs/semexp_0"
-    ): (
-        *_PLANS,
-        "stubborn train semexp --plans {tmp}/plans --minutes 0.05 --seed 0 --out {tmp}/semexp",
-    ),
-    (
-        "stubborn train semexp --plans runs/plans/train runs/plans/large_train --minutes 90 --seed 1 "
-        "--out runs/semexp_1"
-    ): Only("the command before it with another seed"),
     **{
         f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} --episodes 5": (
             f"{_RUN} --agent semexp --semantics gt --config agent.explorer.{control} {_SMALL} --episodes 1 "
             "--out {tmp}/run",
         )
-        for control in ("semantics=shuffled", "goal=wrong", "semantics=none")
+        for control in ("semantics=shuffled", "goal=wrong")
     },
-    (
-        f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train --episodes 120 "
-        "--explorers random-goals corners semexp semexp:sampled=false semexp:semantics=shuffled semexp:goal=wrong "
-        "semexp:semantics=none"
-    ): (
-        *_PLANS,
-        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 "
-        "--explorers random-goals",
-    ),
-    (
-        f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train "
-        "--houses held-back-poni --episodes 72 --explorers frontier corners tour poni poni:goal=wrong "
-        "poni:semantics=shuffled poni:semantics=none"
-    ): (
-        *_PLANS,
-        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 "
-        "--explorers poni:goal=wrong",
-    ),
-    "stubborn train poni --plans runs/plans/train runs/plans/large_train --minutes 30 --out runs/poni": (
-        *_PLANS,
-        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
-    ),
-    f"{PYTHON} -m tools.research.draw_potentials --samples runs/poni/samples --out potentials.png": (
-        *_PLANS,
-        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
-        f"{PYTHON} -m tools.research.draw_potentials --samples {{tmp}}/poni/samples --out {{tmp}}/potentials.png",
-    ),
-    f"{_RUN} --agent poni --semantics gt": (
-        f"{_RUN} --agent poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt": (
-        f"{_RUN} --agent stubborn-plus --explorer poni --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 6300 --houses 24 "
-    "--out runs/plans/large_new": (
-        "stubborn houses plans --pool train --kind large --area-m2 280 --first-seed 6300 --houses 1 --out {tmp}/plans",
-    ),
-    f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/large_new --houses all --episodes 96 --seed 11 "
-    "--explorers corners tour poni informed-tour informed-tour:potentials.goal=wrong "
-    "informed-tour:potentials.semantics=none": (
-        *_PLANS,
-        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1 --seed 11 "
-        "--explorers informed-tour:potentials.goal=wrong",
-    ),
-    f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt": (
-        f"{_RUN} --agent stubborn-plus --explorer informed-tour --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent cloned --semantics gt": (
-        f"{_RUN} --agent cloned --semantics gt {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
-    f"{_RUN} --agent cloned --semantics gt --split val --episodes 200 --workers 2": (
-        f"{_RUN} --agent cloned --semantics gt --split val --episodes 1 --workers 1 --out {{tmp}}/run",
-    ),
     f"{_RUN} --agent oracle --split train --episodes 2000 --record --out runs/shown/oracle": (_SHOWN,),
     f"{PYTHON} -m tools.training.render_demonstrations runs/shown/oracle --out runs/demonstrations": (
         _SHOWN,
@@ -442,9 +312,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
     "stubborn houses generate --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
-    "stubborn houses check --pool heldout --seeds 200 --workers 2": (
-        "stubborn houses check --pool heldout --seeds 1 --workers 1 --kind studio --views 2",
-    ),
     "stubborn episodes --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
         _HOUSES,
@@ -459,40 +326,12 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
         "stubborn gallery --houses {tmp}/my_house.xml --out {tmp}/gallery",
     ),
-    f"{_RUN} --house runs/my_house.xml --goal stool --episodes 2": (
-        f"{PYTHON} examples/my_furniture.py {{tmp}}/my_house.xml",
-        f"{_RUN} --house {{tmp}}/my_house.xml --goal stool --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
-    "stubborn import furniture --source /usr/share/sweethome3d/furniture --out runs/models": Only(
-        "needs Debian's package; a catalogue of its form is read in tests/sim/housegen/test_imported.py"
-    ),
-    "stubborn import furniture --source my_models --out runs/my_models": _MODELS,
-    "stubborn gallery --sheet --furniture runs/models --out runs/models_sheets": (
-        *_MODELS,
-        "stubborn gallery --sheet --furniture {tmp}/models --categories table --out {tmp}/sheets",
-    ),
     "stubborn houses generate --furniture runs/models --houses 4 --out runs/furnished": (
         *_MODELS,
         "stubborn houses generate --furniture {tmp}/models --houses 1 --out {tmp}/furnished",
     ),
-    "stubborn views --pool wide --furniture runs/models --views 20000 --shrink 2 --out views_models": (
-        *_MODELS,
-        "stubborn views --pool wide --furniture {tmp}/models --views 1 --shrink 4 --profile fast"
-        " --out {tmp}/views --workers 1",
-    ),
     "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
     "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
-    "stubborn views --split runs/transfer --views 2000 --shrink 2 --profile fast --out views_transfer": (
-        *_TRANSFER,
-        "stubborn views --split {tmp}/transfer --views 1 --shrink 4 --profile fast --out {tmp}/views --workers 1",
-    ),
-    f"{_RUN} --split runs/transfer --episodes 20 --workers 2": (
-        *_TRANSFER,
-        f"{_RUN} --split {{tmp}}/transfer --episodes 1 --agent oracle --workers 1 --out {{tmp}}/run",
-    ),
-    "stubborn gallery --sheet --categories stool --pool train --out runs/gallery": (
-        "stubborn gallery --sheet --categories fireplace --pool train --out {tmp}/gallery",
-    ),
     # docs/report.md
     f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
@@ -504,10 +343,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         "stubborn report {tmp}/before {tmp}/mine",
     ),
-    "stubborn report runs/may runs/june runs/july": (
-        _RECORDED,
-        "stubborn report {tmp}/mine {tmp}/mine {tmp}/mine",
-    ),
     # docs/gallery.md
     **{
         f"stubborn gallery --houses assets/mjcf_houses/{house}.xml --out runs/gallery": (
@@ -515,90 +350,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         )
         for house in ("val/val_03", "large/large_10", "hazards/hazards_02")
     },
-    "stubborn traps report --out runs/traps --agents stubborn --traps glass_maze --headings 1": (
-        "stubborn traps report --out {tmp}/traps --agents oracle --traps glass_pane --headings 1",
-    ),
-    f"{_RUN} --semantics noisy --episodes 6 --record --video --out runs/six": (
-        f"{_RUN} --semantics noisy {_SMALL} --agent oracle --episodes 1 --record --video --out {{tmp}}/six",
-    ),
-    "stubborn report runs/six": (_RECORDED, "stubborn report {tmp}/mine"),
-    # docs/performance.md
-    "stubborn bench --out runs/bench.json": ("stubborn bench --quick --parts c --out {tmp}/bench.json",),
-    "stubborn bench --parts a,b,d": ("stubborn bench --quick --parts a,b,d",),
     # docs/scale.md
-    f"{_RUN} --episodes 200 --workers 2 --out runs/two": (
-        f"{_RUN} {_SMALL} --agent oracle --episodes 2 --workers 2 --out {{tmp}}/two",
-    ),
-    f"{_RUN} --episodes 1000 --shard 0/4 --out runs/big": (_SHARDS[0],),
-    f"{_RUN} --episodes 1000 --shard 1/4 --out runs/big": (_SHARDS[1],),
     "stubborn merge runs/big": (*_SHARDS, "stubborn merge {tmp}/big"),
-    # docs/reproduce.md
-    "stubborn reproduce ablation": (
-        "stubborn reproduce ablation --episodes 1 --agents random oracle --out {tmp}/paper",
-    ),
-    "stubborn reproduce splits --splits val --semantics rednet --agents stubborn stubborn-plus --episodes 200"
-    " --workers 2": (
-        "stubborn reproduce splits --splits val --semantics rednet --agents stubborn stubborn-plus"
-        " --episodes 1 --workers 1 --out {tmp}/tables",
-    ),
-    "stubborn reproduce splits --splits val --semantics noisy --agents stubborn stubborn-plus --episodes 200"
-    " --workers 2": (
-        "stubborn reproduce splits --splits val --semantics noisy --agents stubborn stubborn-plus"
-        " --episodes 1 --workers 1 --out {tmp}/tables",
-    ),
-    "stubborn reproduce splits --splits val --agents stubborn stubborn-plus --episodes 200 --workers 2": (
-        "stubborn reproduce splits --splits val --agents stubborn stubborn-plus --episodes 1 --workers 1"
-        " --out {tmp}/tables",
-    ),
-    "stubborn reproduce splits --splits hazards large runs/transfer --semantics rednet --agents stubborn"
-    " stubborn-plus --episodes 100": (
-        *_TRANSFER,
-        "stubborn reproduce splits --splits {tmp}/transfer --semantics rednet --agents"
-        " 'random --config task.max_steps=5' --episodes 1 --out {tmp}/tables",
-    ),
-    "stubborn reproduce splits --splits test --semantics rednet --agents stubborn stubborn-plus --episodes"
-    " 500 --workers 2": (
-        "stubborn reproduce splits --splits test --semantics rednet --agents"
-        " 'random --config task.max_steps=5' --episodes 1 --workers 1 --out {tmp}/tables",
-    ),
-    "stubborn reproduce splits --splits val large hazards --episodes 200 --workers 2": (
-        "stubborn reproduce splits --splits val large --episodes 1 --workers 1 --agents random oracle "
-        "--out {tmp}/paper",
-    ),
-    (
-        "stubborn reproduce splits --splits val hazards --episodes 200 --workers 2 --agents stubborn "
-        "'stubborn --config agent.planning.dilation_m=0.10' 'stubborn --explorer tour'"
-    ): (
-        "stubborn reproduce splits --splits val --episodes 1 --workers 1 --agents random "
-        "'stubborn --config agent.planning.dilation_m=0.10 task.max_steps=3' --out {tmp}/paper",
-    ),
-    "stubborn reproduce explorers --episodes 200 --workers 2": (
-        "stubborn reproduce explorers --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
-    ),
-    "stubborn reproduce explorers --split large --episodes 300 --workers 2": (
-        "stubborn reproduce explorers --split large --episodes 1 --workers 1 --agents oracle random --out {tmp}/paper",
-    ),
-    "stubborn reproduce all --episodes 1000 --workers 2 --out runs/paper": (
-        "stubborn reproduce all --episodes 1 --workers 1 --agents random oracle --out {tmp}/paper",
-    ),
-    f"{PYTHON} -m tools.research.draw_trajectories runs/paper/stubborn_gt_none_val": (
-        _RECORDED,
-        f"{PYTHON} -m tools.research.draw_trajectories {{tmp}}/mine",
-    ),
-    f"{PYTHON} -m tools.research.draw_trajectories runs/paper/stubborn_gt_none_val runs/paper/poni_gt_none_val": (
-        _RECORDED,
-        f"{PYTHON} -m tools.research.draw_trajectories {{tmp}}/mine {{tmp}}/mine",
-    ),
-    # docs/datasets.md
-    "stubborn views --split val --views 500 --shrink 2 --profile fast"
-    " --extras instances normals poses --out views_objects": (f"{_VIEWS} --extras instances normals poses",),
-    "stubborn views --split val --views 800 --sequence 40 --extras poses --out views_along": (
-        f"{_VIEWS} --sequence 4 --extras poses",
-    ),
-    f"{PYTHON} examples/read_views.py views_val/views-000000.tar": (
-        _VIEWS,
-        f"{PYTHON} examples/read_views.py {{tmp}}/views/views-000000.tar",
-    ),
     # docs/segmentation.md
     "stubborn views --split train --views 100000 --out views --workers 2": (
         "stubborn views --split train --views 1 --out {tmp}/views --workers 1",
@@ -606,13 +359,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn views --split train --views 20000 --shrink 2 --profile fast --out views_small": (
         "stubborn views --split train --views 1 --shrink 2 --profile fast --out {tmp}/views",
     ),
-    "stubborn views --pool wide --views 20000 --shrink 2 --profile fast --out views_wide": (
-        "stubborn views --pool wide --views 1 --shrink 2 --profile fast --out {tmp}/views",
-    ),
     "stubborn views --split val --views 2000 --shrink 2 --profile fast --out views_val": (_VIEWS,),
-    "stubborn views --split val --views 500 --out views_val_whole": (
-        "stubborn views --split val --views 1 --out {tmp}/views --workers 1",
-    ),
     "stubborn views show --views views_objects --out views.png": (
         _VIEWS,
         "stubborn views show --views {tmp}/views --out {tmp}/views.png",
@@ -634,109 +381,29 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f'{PYTHON} -c \'import shutil; shutil.copy("stubborn/segmentation/weights/rednet.safetensors", "{{tmp}}")\'',
         "stubborn evaluate --views {tmp}/views --calibrate --card {tmp}/card.md --weights {tmp}/rednet.safetensors",
     ),
-    "stubborn evaluate --count 400 --views runs/v/train runs/v/wide runs/v/imported runs/v/imported2 "
-    "runs/v/val runs/v/transfer": (
-        _VIEWS.replace("shard 4", "shard 2"),
-        "stubborn evaluate --count 3 --views {tmp}/views",
-    ),
     "stubborn evaluate objects --views views_val --out worst.png": (
         _VIEWS,
         "stubborn evaluate objects --views {tmp}/views --out {tmp}/worst.png",
-    ),
-    f"{_RUN} --episodes 50 --record --out runs/looked": (
-        f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
     ),
     "stubborn evaluate mistakes runs/looked --out runs/false.png": (
         f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
-    "stubborn evaluate mistakes runs/looked --cause missed_detection --out runs/missed.png": Only(
-        "a small run has none; tests/commands/test_evaluate_mistakes.py"
-    ),
-    "stubborn train segmentation --size published --init rednet_semmap_mp3d_40.pth --views views "
-    "--val-views views_val_whole --out runs/finetuned --steps 20000": Only("needs the published checkpoint"),
-    f"stubborn train segmentation --init {_SHIPPED} --window-px 160 --whole-share 0.5 --focus-share 0.5 "
-    "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views views_small --val-views views_val --out runs/finer "
-    "--hours 1": (
-        _VIEWS,
-        f"stubborn train segmentation --init {_SHIPPED} --window-px 64 --whole-share 0.5 --focus-share 0.5 "
-        "--rare-share 0.15 --val-block-px 2 --rate 6e-4 --views {tmp}/views"
-        " --val-views {tmp}/views --out {tmp}/finer --hours 0.01 --steps 2 --batch 2 --val-count 2",
-    ),
-    f"{PYTHON} -m tools.training.compare_networks --views views_small views_wide --val-views views_val "
-    "--hours 1 --seeds 0 1 --out runs/networks": (
-        _VIEWS,
-        f"{PYTHON} -m tools.training.compare_networks --views {{tmp}}/views --val-views {{tmp}}/views "
-        "--hours 0 --seeds 0 --out {tmp}/networks",
-    ),
-    # docs/results.md and the pages of results beside it
-    f"{_RUN} --agent stubborn-plus --split val --episodes 100 --config "
-    "'agent.seeker.look.bar=[[0,0.05],[40,0.05],[100,0.35],[200,0.45],[300,0.55],[400,0.64],[500,0.7]]'": (
-        f"{_RUN} --agent stubborn-plus --split val --episodes 1 --out {{tmp}}/run --config task.max_steps=5 "
-        "'agent.seeker.look.bar=[[0,0.05],[40,0.05],[100,0.35],[200,0.45],[300,0.55],[400,0.64],[500,0.7]]'",
-    ),
-    "stubborn reproduce verification --semantics rednet --episodes 200 --workers 2": (
-        "stubborn reproduce verification --semantics rednet --episodes 1 --workers 1 --agents random oracle "
-        "--out {tmp}/paper",
-    ),
-    f"{PYTHON} -m tools.maintenance.bench_against --against 'HEAD~10'": (
-        f"{PYTHON} -m tools.maintenance.bench_against --against HEAD --parts start --rounds 1",
-    ),
-    f"{PYTHON} -m tools.maintenance.bench_against --against 'HEAD~10' --parts step --rounds 60": (
-        f"{PYTHON} -m tools.maintenance.bench_against --against HEAD --parts start --rounds 1",
-    ),
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
-    ),
-    "stubborn traps report --out runs/traps": (
-        "stubborn traps report --out {tmp}/traps --agents oracle --traps glass_pane --headings 1",
     ),
     # docs/watching.md
     f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
     f"{_RUN} --only val_0018 val_0003 --video --out runs/two": (
         f"{_RUN} --only chair_legs_0 --split traps --agent oracle --semantics gt --video --out {{tmp}}/two",
     ),
-    f"{_RUN} --video --noise harsh --split traps --episodes 2": (
-        f"{_RUN} --video --noise harsh --split traps --episodes 1 --agent oracle --out {{tmp}}/traps",
-    ),
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
     "stubborn web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
-    "stubborn teleop --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
-    "stubborn teleop --goal sofa --noise realsense --video": Only("needs a terminal, as above"),
-    # docs/verification.md
-    "stubborn train verifier --semantics noisy --split train --episodes 2000 --workers 2": Only(
-        "plays until there are candidates enough; tests/commands/test_train_verifier.py plays a few"
-    ),
-    "stubborn train verifier --semantics noisy --split val --episodes 200 --workers 2 --judge": (
-        "stubborn train verifier --semantics noisy --split val --episodes 1 --workers 1 --judge"
-        " --max-steps 20 --log {tmp}/log",
-    ),
-    "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported"
-    " --first-seed 8000 --houses 60 --area-m2 100 --out runs/unseen3": _UNSEEN[:-1],
-    "stubborn episodes --split runs/unseen3 --recipe val --episodes 720": _UNSEEN,
-    "stubborn train verifier --semantics rednet --split runs/unseen3 --episodes 720": Only(
-        "plays until there are candidates enough; tests/commands/test_train_verifier.py plays a few"
-    ),
-    "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported"
-    " --first-seed 7000 --houses 24 --area-m2 100 --out runs/unseen": _UNSEEN[:-1],
-    "stubborn episodes --split runs/unseen --recipe val --episodes 72": _UNSEEN,
-    "stubborn train fusion --split runs/unseen --episodes 72": (
-        *_UNSEEN,
-        "stubborn train fusion --split {tmp}/unseen --episodes 3 --max-steps 60 --log {tmp}/log"
-        " --out {tmp}/fusion.json",
-    ),
-    "stubborn train fusion --split val --episodes 15 --judge": (
-        "stubborn train fusion --split val --episodes 1 --judge --max-steps 20 --log {tmp}/log",
-    ),
-    f"{_RUN} --semantics noisy --verification logistic": (
-        f"{_RUN} --semantics noisy --verification logistic {_SMALL} --episodes 1 --out {{tmp}}/run",
-    ),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
-    "stubborn report runs/flat": (_SCENE, _IN_SCENE, "stubborn report {tmp}/run"),
     "stubborn label --house flat.xml --out labels.json --picture runs/flat.png": (
         _SCENE,
         "stubborn label --house {tmp}/s/flat.xml --out {tmp}/flat.json --picture {tmp}/flat.png",
@@ -744,14 +411,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn label --house flat.xml --labels labels.json --picture runs/flat.png": (
         _SCENE,
         f"stubborn label {_OF_SCENE} --picture {{tmp}}/flat.png",
-    ),
-    "stubborn gallery --house flat.xml --labels labels.json --out runs/flat_gallery": (
-        _SCENE,
-        f"stubborn gallery {_OF_SCENE} --out {{tmp}}/gallery",
-    ),
-    "stubborn views --house flat.xml --labels labels.json --views 500 --out runs/flat_views": (
-        _SCENE,
-        f"stubborn views {_OF_SCENE} --views 4 --shrink 4 --profile fast --out {{tmp}}/views",
     ),
     "stubborn episodes --house flat.xml --labels labels.json --episodes 20 --out runs/flat_split": (
         _SCENE,
@@ -764,15 +423,114 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     f"{_RUN} --root {_KITCHEN} --house {_KITCHEN}/kitchen_assets/kitchen_env_model.xml"
     " --labels examples/worlds/kitchen.json --goal counter --semantics gt --episodes 2": _PACKAGE,
-    f"{_RUN} --house runs/worlds/robosuite/models/assets/arenas/pegs_arena.xml"
-    " --labels examples/worlds/pegs_arena.json --goal table --semantics gt --episodes 2": _PACKAGE,
-    f"{_RUN} --house runs/pitch/pitch.xml --labels examples/worlds/pitch.json --goal gym_equipment --semantics gt"
-    " --episodes 2": _PACKAGE,
-    f"{_RUN} --robot runs/car/car.xml --house examples/my_house.xml --goal sofa --semantics gt --episodes 1"
-    " --video": _PACKAGE,
     f"{_RUN} --robot carrier.xml --episodes 20": (
         _ROBOT,
         f"{_RUN} --robot {{tmp}}/r/carrier.xml {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    "stubborn reproduce splits --agents stubborn stubborn-plus oracle": (
+        "stubborn reproduce splits --agents random oracle --episodes 1 --out {tmp}/paper",
+    ),
+    "stubborn reproduce splits --agents stubborn stubborn-plus --semantics rednet": (
+        "stubborn reproduce splits --agents random --semantics rednet --episodes 1 --out {tmp}/paper",
+    ),
+    f"{_RUN} --agent my_agent:make --video": (
+        f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --agent stubborn-plus --semantics gt --goal toilet": (
+        f"{_RUN} --agent oracle --semantics gt --goal toilet --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=300": (
+        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 task.max_steps=3 {_SMALL}"
+        f" --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5 camera.hfov_rad=1.7": (
+        f"{_RUN} --semantics gt --config robot.body.radius_m=0.20 camera.height_m=0.5"
+        " camera.hfov_rad=1.7 task.max_steps=3"
+        f" {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --config-file my_settings.toml": (
+        f'{PYTHON} -c \'from pathlib import Path; Path("{{tmp}}/my.toml").write_text("[task]\\nmax_steps = 3\\n")\'',
+        f"{_RUN} --config-file {{tmp}}/my.toml --semantics gt --episodes 1 {_SMALL} --out {{tmp}}/run",
+    ),
+    f"{_RUN} --semantics gt --episodes 100 --out runs/before": (
+        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --agent oracle --out {{tmp}}/before",
+    ),
+    f"{_RUN} --semantics gt --episodes 100 --explorer tour --out runs/after": (
+        f"{_RUN} --semantics gt {_SMALL} --episodes 1 --explorer tour --out {{tmp}}/after",
+    ),
+    "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
+        "stubborn reproduce splits --splits val hazards --agents oracle random --episodes 1 --out {tmp}/paper",
+    ),
+    f"{_RUN} --episodes 1000 --shard 0/2 --out runs/big": (_SHARDS[0],),
+    f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[1],),
+    "stubborn teleop --goal sofa --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
+    f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
+        f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
+        f" --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35": (
+        f"{_RUN} --semantics gt --config agent.planning.dilation_m=0.10 agent.collisions.wide_m=0.35 {_SMALL}"
+        " --episodes 1 --out {tmp}/run",
+    ),
+    f"{_RUN} --semantics gt --explorer informed-tour": (
+        f"{_RUN} --semantics gt --explorer informed-tour {_SMALL} --episodes 1 --out {{tmp}}/run",
+    ),
+    "stubborn houses generate --furniture runs/models --furniture-split transfer --only-imported --houses 60"
+    " --out runs/unseen": _UNSEEN[:-1],
+    "stubborn episodes --split runs/unseen --recipe val --episodes 720": _UNSEEN,
+    "stubborn train verifier --semantics rednet --weights runs/rednet/rednet.safetensors --split runs/unseen"
+    " --episodes 720 --out runs/verifier.json": Only(
+        "runs until there are enough candidates; tests/commands/test_train_verifier.py runs a few episodes"
+    ),
+    f"{_RUN} --weights runs/rednet/rednet.safetensors --verifier runs/verifier.json": (
+        f"{_RUN} --weights {_SHIPPED} --verifier stubborn/detection/verifiers/rednet.json {_SMALL} --episodes 1"
+        " --out {tmp}/run",
+    ),
+    "stubborn train fusion --weights runs/rednet/rednet.safetensors --split runs/unseen --episodes 72"
+    " --out runs/fusion.json": (
+        *_UNSEEN,
+        f"stubborn train fusion --weights {_SHIPPED} --split {{tmp}}/unseen --episodes 3 --max-steps"
+        f" 60 --log {{tmp}}/log"
+        " --out {tmp}/fusion.json",
+    ),
+    f"{_RUN} --agent stubborn-plus --weights runs/rednet/rednet.safetensors --config"
+    " agent.seeker.tracks.evidence.fusion=runs/fusion.json": (
+        f"{_RUN} --agent stubborn-plus --weights {_SHIPPED} --config"
+        f" agent.seeker.tracks.evidence.fusion=stubborn/detection/fusions/rednet.json {_SMALL} --episodes 1"
+        " --out {tmp}/run",
+    ),
+    f"{_RUN} --explorer informed-tour --semantics gt --record --episodes 100 --workers 2 --out runs/real": (
+        f"{_RUN} --explorer informed-tour --semantics gt --record {_SMALL} --episodes 1 --workers 1 --out {{tmp}}/real",
+    ),
+    "stubborn train poni --plans runs/plans/train --minutes 30 --out runs/poni": (
+        *_PLANS,
+        "stubborn train poni --plans {tmp}/plans --minutes 0.05 --out {tmp}/poni",
+    ),
+    "stubborn train semexp --plans runs/plans/train --minutes 90 --out runs/semexp": (
+        *_PLANS,
+        "stubborn train semexp --plans {tmp}/plans --minutes 0.05 --out {tmp}/semexp",
+    ),
+    f"{_RUN} --agent semexp --config agent.explorer.weights=runs/semexp/semexp.safetensors --episodes 5": (
+        f"{_RUN} --agent semexp --config agent.explorer.weights=stubborn/exploration/weights/semexp.safetensors"
+        f" {_SMALL} --semantics gt --episodes 1 --out {{tmp}}/run",
+    ),
+    f"{PYTHON} -m tools.research.compare_explorers --plans runs/plans/train --episodes 120"
+    " --explorers corners tour poni"
+    " informed-tour poni:goal=wrong semexp": (
+        *_PLANS,
+        f"{PYTHON} -m tools.research.compare_explorers --plans {{tmp}}/plans --houses all --episodes 1"
+        " --explorers corners poni:goal=wrong",
+    ),
+    "stubborn import furniture --source my_models --out runs/models": _MODELS,
+    "stubborn houses check --split runs/mine/houses": (_HOUSES, "stubborn houses check --split {tmp}/houses"),
+    "stubborn views --split val --views 500 --extras instances normals poses --out views_objects": (
+        "stubborn views --split val --views 4 --views-per-shard 4 --extras instances normals poses --out {tmp}/views",
+    ),
+    "stubborn bench --parts a,b,d --out runs/bench.json": Only(
+        "takes minutes; tests/commands/test_bench.py runs its parts"
+    ),
+    "stubborn traps report --out runs/traps --agents stubborn --headings 1": (
+        "stubborn traps report --out {tmp}/traps --agents stubborn --traps glass_maze --headings 1",
     ),
 }
 """Each documented command: the commands to try, the last of them the same tool with the same options, or why not.

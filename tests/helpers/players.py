@@ -12,6 +12,19 @@ from typing import Any
 from sim.interface import Action, Observation
 
 
+@dataclass
+class Script:
+    """An agent that reads its actions from a list."""
+
+    actions: list[Action]
+
+    def reset(self, goal: str, seed: int) -> None:
+        self.goal, self.left = goal, list(self.actions)
+
+    def act(self, observation: object) -> Action:
+        return self.left.pop(0)
+
+
 @dataclass(frozen=True)
 class Job:
     """A work item; `kill` is a file that gets a letter from each worker that the item kills (only the first)."""

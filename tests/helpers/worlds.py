@@ -48,6 +48,18 @@ def room(width_m: float = 4.0, depth_m: float = 4.0, *, height_m: float = 2.5, b
     return House("room", spec)
 
 
+def sofa_room() -> House:
+    """A room of 6 x 6 m with a sofa whose middle is at x = 2.5 m."""
+    return with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+
+
+def bed_behind_a_wall(wall_from_y_m: float = -0.1) -> House:
+    """A room of 9 x 5 m, cut at x = 0.5 m by a wall from `wall_from_y_m` to y = 2.5 m; a bed at larger x."""
+    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
+    middle_m, half_m = 0.5 * (wall_from_y_m + 2.5), 0.5 * (2.5 - wall_from_y_m)
+    return with_box(house, "wall_10", centre_m=(0.5, middle_m, 1.25), half_m=(0.05, half_m, 1.25))
+
+
 def two_storeys() -> House:
     """Two rooms of 6 x 4 m, one above the other, floors at 0 and 3 m, and no stairs: a bed below, a sofa above."""
     house = with_box(room(6, 4), "bed_00", centre_m=(2.4, 0, 0.25), half_m=(0.5, 1.0, 0.25))

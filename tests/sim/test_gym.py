@@ -19,20 +19,11 @@ from gymnasium.utils.env_checker import check_env
 import sim.gym
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel, ConfigError
-from tests.helpers.worlds import ledge, room, with_box
+from tests.helpers.worlds import ledge
 
 ROOT = Path(__file__).resolve().parents[2]
 ENV_ID = "stubborn/ObjectNav-v0"
 SMALL = CameraModel(width_px=64, height_px=48)
-
-
-@pytest.fixture(scope="module")
-def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A room of 6 x 6 m with a sofa."""
-    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
-    file.write_text(furnished.spec.to_xml())
-    return file
 
 
 @pytest.fixture

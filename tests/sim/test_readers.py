@@ -28,9 +28,9 @@ from sim.errors import ConfigError, ObjectNavError
 from sim.evaluation.results import read_record, read_result_lines
 from sim.geometry.grid import GridFrame
 from sim.geometry.pose import Pose
-from sim.housegen.house_list import read_house_list, write_house_list
 from sim.housegen.imported.library import Model, read_index, read_shape
-from sim.housegen.split_recipes import train_recipe
+from sim.housegen.splits.house_list import read_house_list, write_house_list
+from sim.housegen.splits.recipes import train_recipe
 from sim.houses.load import load_house, read_rules
 from sim.houses.sidecar import Sidecar, read_sidecar, write_sidecar
 from sim.interface import GOAL_CATEGORIES

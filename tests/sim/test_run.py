@@ -23,17 +23,8 @@ from sim.run import entry
 from sim.task.failures import cause_of_failure
 from sim.task.metrics import EXPLORED_SHARE
 from sim.task.trajectory import read_trajectory, trajectory_file
-from tests.helpers.worlds import room, two_storeys, with_box
-
-TIMES = ("wall_time_s", "steps_per_s")
-
-
-@pytest.fixture(scope="module")
-def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
-    file.write_text(furnished.spec.to_xml())
-    return file
+from tests.helpers.results import lines_of
+from tests.helpers.worlds import two_storeys
 
 
 def command(*options: object) -> list[str]:
@@ -44,14 +35,6 @@ def command(*options: object) -> list[str]:
 
 def run(*options: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command(*options), capture_output=True, text=True, check=False)
-
-
-def lines_of(out: Path) -> list[dict]:
-    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
-    for line in lines:
-        for key in TIMES:
-            del line[key]
-    return sorted(lines, key=lambda line: line["episode_id"])
 
 
 def test_results_are_the_same_twice_and_with_two_workers(house: Path, tmp_path: Path) -> None:

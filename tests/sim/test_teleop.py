@@ -24,7 +24,7 @@ from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel, ConfigError
 from sim.task.trajectory import read_trajectory, trajectory_file
 from sim.viewers.terminal import HALF_BLOCK, Colours, Terminal, fitted, half_blocks
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import sofa_room
 
 START = Pose(0.0, 0.0, 0.0)
 STYLE = re.compile(r"\x1b\[[0-9;]*m")
@@ -49,7 +49,7 @@ class Script:
 @pytest.fixture(scope="module")
 def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("tiny")
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    furnished = sofa_room()
     (folder / "sofa_room.xml").write_text(furnished.spec.to_xml())
     write_split(
         folder, [Episode(f"e{i}", "sofa_room", "sofa", START) for i in range(2)], {"sofa_room": {}}, version="1"

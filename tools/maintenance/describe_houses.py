@@ -22,9 +22,9 @@ from sim import cli
 from sim.episodes.splits import UNREACHABLE_FILE, Split, load_split, read_unreachable
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_together
-from sim.housegen.house_list import CACHE_VARIABLE
-from sim.housegen.split_recipes import SPLITS as RECIPES
-from sim.housegen.split_recipes import Recipe
+from sim.housegen.splits.house_list import CACHE_VARIABLE
+from sim.housegen.splits.recipes import SPLITS as RECIPES
+from sim.housegen.splits.recipes import Recipe
 from sim.houses.house import read_rooms
 from sim.houses.labels import read_labels, rendered_geoms
 from sim.interface import GOAL_CATEGORIES, ConfigError, SuccessRule

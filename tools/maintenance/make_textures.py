@@ -13,8 +13,8 @@ import cv2
 
 from sim import cli
 from sim.files import write_atomically
-from sim.housegen.materials import texture_file
-from sim.housegen.textures import TEXTURES
+from sim.housegen.surfaces.materials import texture_file
+from sim.housegen.surfaces.textures import TEXTURES
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,9 @@ from sim.datasets.demonstrations import demonstrate, write_demonstration
 from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import inside, write_atomically
+from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import GENERATOR_VERSION, HouseConfig
-from sim.housegen.rooms import PlanKind
 from sim.interface import Action, CameraModel, ConfigError
 from sim.plans.episode import draw_goal_and_start
 from sim.plans.export import export_plans

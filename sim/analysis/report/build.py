@@ -19,9 +19,9 @@ from sim.analysis.report.facts import facts_of
 from sim.analysis.report.figures import Group, Runs, causes, grouped, groups, interval_note, means, verdict
 from sim.analysis.report.media import link_to, picture_of, thumbnail, video_of
 from sim.analysis.report.trend import trend
-from sim.analysis.report.words import explain
 from sim.errors import ConfigError
 from sim.evaluation.bootstrap import MIN_PAIRS
+from sim.task.explanations import explain
 
 MOST_RUNS = len(LETTERS)
 

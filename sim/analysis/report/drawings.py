@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from sim.analysis.comparison import Run
 from sim.analysis.report.plans import PX_M, Sheet, draw_area, draw_plan, sheet_around, shortest_path
-from sim.analysis.report.words import marks
 from sim.configuration import with_fields
 from sim.episodes.splits import Split, load_split, one_house
 from sim.errors import EpisodeError, HouseError
@@ -20,6 +19,7 @@ from sim.houses.house import House, read_rooms
 from sim.interface import CameraModel, ConfigError, RobotModel, SuccessRule
 from sim.robot.config import RobotConfig
 from sim.robot.foreign import load_robot
+from sim.task.explanations import marks
 from sim.task.ground_truth import GroundTruth
 from sim.task.metrics import EXPLORED_SHARE
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sim.analysis.comparison import LETTERS, Line
-from sim.analysis.report.words import outcome
+from sim.task.explanations import outcome
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,10 @@ from sim.analysis.metrics import (
     Metric,
     houses_of,
 )
-from sim.analysis.report.words import MEANING, outcome
 from sim.analysis.tables import Cell
 from sim.evaluation.bootstrap import MIN_PAIRS, Estimate, estimate, paired_difference
 from sim.interface import GOAL_CATEGORIES
+from sim.task.explanations import MEANING, outcome
 from sim.task.failures import CAUSES
 
 METRICS = (

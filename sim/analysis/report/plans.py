@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.geometry.convex import plan_polygon
+from sim.geometry.convex import polygon_from_above
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, mesh_is_convex, mesh_triangles
@@ -149,7 +149,7 @@ def _cut(
         triangles = mesh_triangles(model, data, geom)
         reach = (triangles[..., 2].min(axis=1) <= high_m) & (triangles[..., 2].max(axis=1) >= low_m)
         return list(triangles[reach][..., :2])
-    polygon = plan_polygon(geom_polytope(model, data, geom, rendered=True), low_m, high_m)
+    polygon = polygon_from_above(geom_polytope(model, data, geom, rendered=True), low_m, high_m)
     return [] if polygon is None else [polygon.vertices_m]
 
 

@@ -20,7 +20,7 @@ from sim.evaluation.rollout import play_episode
 from sim.evaluation.workers import RunnerSpec, run_in_pool
 from sim.gl import mujoco
 from sim.housegen.generator import HouseConfig
-from sim.housegen.house_list import copy_textures
+from sim.housegen.splits.house_list import copy_textures
 
 AREAS_M2 = (50.0, 100.0, 200.0, 400.0)
 GEOMS = (100, 500, 1000, 2000)

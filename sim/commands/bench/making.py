@@ -17,7 +17,7 @@ from sim.datasets.views import View, sample_views
 from sim.env.scene import Scene
 from sim.episodes.splits import load_split
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.house_list import copy_textures
+from sim.housegen.splits.house_list import copy_textures
 from sim.houses.house import House
 from sim.houses.load import load_house
 from sim.houses.writing import house_text

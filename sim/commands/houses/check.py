@@ -26,9 +26,9 @@ from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
+from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.rooms import PlanKind
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.interface import CameraModel

@@ -10,7 +10,7 @@ Houses with models that `stubborn import furniture` has imported, and the ten ho
     stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer
 
 The houses of a split use the folder `textures` beside their own; it is created if it is missing. The generated train
-houses are kept in the cache of `sim.housegen.house_list`, where `stubborn episodes` reads them.
+houses are kept in the cache of `sim.housegen.splits.house_list`, where `stubborn episodes` reads them.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from sim import cli
 from sim.errors import HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.files import write_atomically
+from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.house_list import cache_dir, copy_textures, write_house_list
 from sim.housegen.imported.catalogue import ImportedFurniture
 from sim.housegen.imported.library import ModelSplit
 from sim.housegen.imported.transfer import TRANSFER_TEST
-from sim.housegen.rooms import PlanKind
-from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
+from sim.housegen.splits.house_list import cache_dir, copy_textures, write_house_list
+from sim.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
 from sim.invocation import command

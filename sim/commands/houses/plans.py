@@ -24,9 +24,9 @@ from sim.episodes.splits import load_split
 from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.gl import mujoco
+from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import GENERATOR_VERSION, HouseConfig, generate_house
-from sim.housegen.rooms import PlanKind
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.paths import assets_dir

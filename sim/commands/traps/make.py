@@ -18,8 +18,8 @@ from sim.episodes.reachable_goals import find_reachable_goals
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
 from sim.files import write_atomically
-from sim.housegen.mjcf import TEXTURE_DIR
-from sim.housegen.split_recipes import SPLIT_VERSION
+from sim.housegen.mjcf.builder import TEXTURE_DIR
+from sim.housegen.splits.recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
 from sim.housegen.traps.trap import START_TURNS_RAD, Trap
 from sim.houses.load import load_house

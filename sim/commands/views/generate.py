@@ -41,7 +41,7 @@ from sim.housegen.furniture import CATALOGUE
 from sim.housegen.generator import GeneratedHouse
 from sim.housegen.imported.catalogue import ImportedFurniture
 from sim.housegen.imported.library import sha256_of_models
-from sim.housegen.split_recipes import Recipe, train_recipe
+from sim.housegen.splits.recipes import Recipe, train_recipe
 from sim.houses.house import House
 from sim.interface import CameraModel, ConfigError
 from sim.robot.config import RobotConfig

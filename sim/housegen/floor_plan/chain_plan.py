@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
-from sim.housegen.floor_plan.room_queue import RoomQueue
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect
 
 CORE_KINDS = frozenset(("bathroom", "closet", "laundry"))
 """Rooms of the core."""
@@ -47,15 +47,7 @@ def draw_chain(
         rng, draft, hall, row, at - living_m, corridor_m,
         lambda s0, s1, t0, t1: Rect(living_m + s0, corridor_m + t0, living_m + s1, corridor_m + t1),
     )  # fmt: skip
-    row = queue.fill_row(rng, length_m, deep_m[0], scale)
-    add_row(rng, draft, hall, row, length_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, -t1, s1, -t0))
-    if most_m < length_m:
-        rest_m = length_m - most_m
-        row = queue.fill_row(rng, rest_m, deep_m[1], scale)
-        add_row(
-            rng, draft, hall, row, rest_m, corridor_m,
-            lambda s0, s1, t0, t1: Rect(most_m + s0, corridor_m + t0, most_m + s1, corridor_m + t1),
-        )  # fmt: skip
+    add_private_rows(rng, draft, hall, queue, (most_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
     return draft, hall
 
 

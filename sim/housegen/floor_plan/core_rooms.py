@@ -8,9 +8,9 @@ import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.frames import Frame
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.floor_plan.room_queue import WITHOUT_DAYLIGHT, RoomQueue
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect
 
 PAIR_DEPTH_M = 4.4
 """Depth from which a core has two rows of rooms back to back."""

@@ -10,8 +10,8 @@ from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.frames import Frame
 from sim.housegen.floor_plan.plan import JoinKind
 from sim.housegen.floor_plan.room_queue import RoomQueue
+from sim.housegen.floor_plan.rooms import ROOM_RULES
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rooms import ROOM_RULES
 
 END_ROOMS = ("living_room", "gym", "office", "bedroom")
 """Rooms that may lie at the end of a wing."""

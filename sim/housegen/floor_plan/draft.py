@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from sim.housegen.floor_plan.plan import FloorPlan, Join, JoinKind, PlanError, Room
-from sim.housegen.rectangles import Rect, shared_side
-from sim.housegen.rooms import ROOM_RULES, PlanKind
+from sim.housegen.floor_plan.rectangles import Rect, shared_side
+from sim.housegen.floor_plan.rooms import ROOM_RULES, PlanKind
 
 MIN_GAP_M = 0.5
 """Smallest distance between two outer walls that face each other."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sim.housegen.floor_plan.rectangles import Rect, Side
 from sim.housegen.floor_plan.rows import ToRect
-from sim.housegen.rectangles import Rect, Side
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.plan import PlanError
-from sim.housegen.floor_plan.room_queue import RoomQueue
-from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import ROOM_RULES
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.room_queue import RoomQueue, add_private_rows
+from sim.housegen.floor_plan.rooms import ROOM_RULES
+from sim.housegen.floor_plan.rows import draw_length_m
 
 MIN_SHARED_M = 1.7
 """Shortest wall between two zones that gets an opening."""
@@ -37,15 +37,7 @@ def draw_great_room(
     zones = _add_zones(rng, draft, Rect(0.0, corridor_m, great_m, corridor_m + block_m))
     _join_zones(rng, draft, hall, zones)
     queue = RoomQueue(rng, 0.85 * (length_m * deep_m[0] + (length_m - great_m) * deep_m[1]), wanted, large=False)
-    row = queue.fill_row(rng, length_m, deep_m[0], scale)
-    add_row(rng, draft, hall, row, length_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, -t1, s1, -t0))
-    if share < 1.0:
-        rest_m = length_m - great_m
-        row = queue.fill_row(rng, rest_m, deep_m[1], scale)
-        add_row(
-            rng, draft, hall, row, rest_m, corridor_m,
-            lambda s0, s1, t0, t1: Rect(great_m + s0, corridor_m + t0, great_m + s1, corridor_m + t1),
-        )  # fmt: skip
+    add_private_rows(rng, draft, hall, queue, (great_m, length_m), corridor_m, (deep_m[0], deep_m[1]), scale)
     return draft, hall
 
 

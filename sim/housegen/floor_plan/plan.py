@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import PlanKind
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.rooms import PlanKind
 
 JoinKind = Literal["door", "opening", "partial", "open"]
 """A door of 0.8-1.0 m, a wide opening under a lintel, a wall that leaves a wide gap up to the ceiling, or no wall."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.plan import JoinKind, PlanError
-from sim.housegen.rectangles import Interval, Rect
-from sim.housegen.rooms import ROOM_RULES, PlanKind
+from sim.housegen.floor_plan.rectangles import Interval, Rect
+from sim.housegen.floor_plan.rooms import ROOM_RULES, PlanKind
 
 WIDTH_M = (3.6, 7.5)
 """Smallest and largest width of the block along the corridor."""

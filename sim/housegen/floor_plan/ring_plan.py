@@ -17,9 +17,9 @@ from sim.housegen.floor_plan.corridor_wing import Wing, add_wing
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.frames import Frame
 from sim.housegen.floor_plan.plan import PlanError
+from sim.housegen.floor_plan.rectangles import Rect, Side
 from sim.housegen.floor_plan.room_queue import RoomQueue
 from sim.housegen.floor_plan.rows import add_row, draw_length_m
-from sim.housegen.rectangles import Rect, Side
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,9 +8,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.plan import PlanError
-from sim.housegen.floor_plan.rows import Row
-from sim.housegen.rooms import GAP, ROOM_RULES, Column
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
+from sim.housegen.floor_plan.rows import Row, add_row
 
 Group = tuple[Column, ...]
 _ENSUITE: Group = (Column("bedroom"), Column("closet", "bathroom"))
@@ -28,7 +30,7 @@ _LARGE_HOME: tuple[Group, ...] = (
 _MORE: tuple[Group, ...] = (_BEDROOM, _BATHROOM, _OFFICE, _CLOSET, _LAUNDRY)
 """Groups that are added when no group of the queue fits."""
 _SHARES = {"bedroom": 4.0, "bathroom": 1.5, "office": 1.5, "closet": 1.2, "laundry": 0.5}
-"""How many rooms of these kinds a home usually has, relative to each other."""
+"""Usual numbers of rooms of these kinds in a home, relative to each other."""
 WITHOUT_DAYLIGHT = frozenset(("bathroom", "closet", "laundry", "office", "gym"))
 """Rooms that may lie in the core of a home, without windows."""
 
@@ -121,6 +123,42 @@ class RoomQueue:
         if gap_m:
             groups.insert(int(rng.integers(0, len(groups) + 1)), (Column(GAP),))
         return Row(tuple(column for group in groups for column in group), depth_m, scale)
+
+
+def add_private_rows(
+    rng: np.random.Generator,
+    draft: Draft,
+    hall: int,
+    queue: RoomQueue,
+    span_m: tuple[float, float],
+    corridor_m: float,
+    deep_m: tuple[float, float],
+    scale: float,
+) -> None:
+    """Adds rows of private rooms to a corridor along +x that has public rooms at the beginning of its north side.
+
+    Args:
+        rng: source of the order of the rooms and of their doors.
+        draft: the plan.
+        hall: index of the corridor.
+        queue: rooms that are taken.
+        span_m: x at which the public rooms end, and the length of the corridor, which begins at x = 0.
+        corridor_m: width of the corridor.
+        deep_m: depth of the south row, which is as long as the corridor, and of the north row behind the public rooms.
+        scale: size of the rooms relative to the usual one.
+
+    Raises:
+        PlanError: no rooms fit.
+    """
+    begin_m, end_m = span_m
+    row = queue.fill_row(rng, end_m, deep_m[0], scale)
+    add_row(rng, draft, hall, row, end_m, corridor_m, lambda s0, s1, t0, t1: Rect(s0, -t1, s1, -t0))
+    if begin_m < end_m:
+        row = queue.fill_row(rng, end_m - begin_m, deep_m[1], scale)
+        add_row(
+            rng, draft, hall, row, end_m - begin_m, corridor_m,
+            lambda s0, s1, t0, t1: Rect(begin_m + s0, corridor_m + t0, begin_m + s1, corridor_m + t1),
+        )  # fmt: skip
 
 
 def _widths_m(groups: Sequence[Group], depth_m: float, scale: float, gap_m: float) -> tuple[float, float, float]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.plan import PlanError
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.rooms import GAP, ROOM_RULES, Column
 from sim.housegen.floor_plan.wings import PUBLIC_KINDS
-from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import GAP, ROOM_RULES, Column
 
 ToRect = Callable[[float, float, float, float], Rect]
 """Turns s0, s1 along a corridor and t0, t1 away from it into a rectangle in the frame of the plan."""

@@ -9,9 +9,9 @@ import numpy as np
 from sim.housegen.floor_plan.corridor_wing import Wing, add_wing
 from sim.housegen.floor_plan.draft import Draft
 from sim.housegen.floor_plan.frames import Frame
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.floor_plan.room_queue import RoomQueue
 from sim.housegen.floor_plan.rows import draw_length_m
-from sim.housegen.rectangles import Rect
 
 
 def draw_split(

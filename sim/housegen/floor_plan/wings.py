@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sim.housegen.floor_plan.plan import PlanError
-from sim.housegen.rooms import GAP, Column, PlanKind, Program
+from sim.housegen.floor_plan.rooms import GAP, Column, PlanKind, Program
 
 PUBLIC_KINDS = frozenset(("living_room", "kitchen", "dining_room"))
 Group = tuple[Column, ...]

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
 from sim.housegen.furnishing.steps import hang, hang_above, lay_rug, place
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
 from sim.world.room_requirements import GUEST_TOILET_M2
 
 SMALL_M2 = 5.2

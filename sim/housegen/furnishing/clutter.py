@@ -1,7 +1,7 @@
-"""Small objects of a furnished room: on tops, on the walls of bathrooms, and on the floor beside walls and furniture.
+"""Small objects of a furnished room: on tops, on the walls of bathrooms, and on the floor next to walls and furniture.
 
-Their number depends on `FurnitureSource.clutter`: 0 gives none, 1 many. Objects on tops and flat things on the floor do
-not collide; shoes, bags, toys and boxes do, and stand at walls, where the room stays walkable.
+Their number depends on `FurnitureSource.clutter`: 0 gives no objects, 1 many. Objects on tops and flat objects on
+the floor do not collide; shoes, bags, toys and boxes do. They are placed at walls, where the room stays walkable.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import lay_flat, put_against_wall
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.housegen.furnishing.steps import top_uses
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import lay_flat, put_against_wall
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.rectangles import Rect
 
 PER_TOP, PER_TOP_M2, MOST_ON_TOP = 1.0, 4.0, 7
 """Objects on a top at clutter 1: on any, more by its area in square metres, and the largest number."""
@@ -73,7 +73,7 @@ def _fill_tops(layout: RoomLayout, source: FurnitureSource, host: Placement) -> 
 
 
 def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
-    """Hangs toilet paper beside the toilet, and perhaps a rack of bottles."""
+    """Hangs toilet paper next to the toilet, and perhaps a rack of bottles."""
     for toilet in [p for p in layout.placements if p.item.category == "toilet"]:
         paper = source.make("objects", "toilet_paper")
         if paper is None or toilet.side is None or not source.clutter_chance(0.7):
@@ -89,7 +89,7 @@ def _equip_bathroom(layout: RoomLayout, source: FurnitureSource) -> None:
 
 
 def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Placement | None:
-    """Puts a small object on the floor: flat ones beside furniture, the others at a wall."""
+    """Puts a small object on the floor: flat ones next to furniture, the others at a wall."""
     item = source.make("objects", use)
     if item is None or item.mount != "floor":
         return None
@@ -99,7 +99,7 @@ def _put_on_floor(layout: RoomLayout, source: FurnitureSource, use: str) -> Plac
 
 
 def _lay_beside(layout: RoomLayout, source: FurnitureSource, item: Item) -> Placement | None:
-    """Lays a flat object on free floor beside a piece of furniture."""
+    """Lays a flat object on free floor next to a piece of furniture."""
     hosts = [
         p for p in layout.placements if p.item.mount == "floor" and not p.item.walk_over and p.item.size_m[2] > 0.3
     ]

@@ -7,14 +7,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from sim.housegen.furnishing.furniture_source import FurnitureSource
 from sim.housegen.furnishing.groups import desk_group
 from sim.housegen.furnishing.middles import fill_middle
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall
+from sim.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.housegen.furnishing.seating_groups import armchair_circle, reading_corner
 from sim.housegen.furnishing.steps import hang, hang_above, lay_rug, place, put_on_top
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall
-from sim.housegen.placement.free_standing import put_in_middle
 
 Addition = Callable[[RoomLayout, FurnitureSource], object]
 """Adds something to a room; returns a false value where it found no position."""
@@ -24,7 +24,7 @@ PICTURES_PER_M2 = 0.02
 
 @dataclass(frozen=True)
 class FillRule:
-    """How full a kind of room gets, and which furniture is added to it."""
+    """The furniture that is added to a kind of room, and the amount of it."""
 
     share: float
     """Share of the floor under furniture at clutter 1; half of it at clutter 0."""

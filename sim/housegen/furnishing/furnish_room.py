@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 from sim.housegen.furnishing.clutter import add_clutter
 from sim.housegen.furnishing.filling import fill_room
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import RoomLayout
+from sim.housegen.furnishing.placement.on_walls import hang_before_window, hang_from_ceiling
 from sim.housegen.furnishing.room_rules import RULES
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import RoomLayout
-from sim.housegen.placement.on_walls import hang_before_window, hang_from_ceiling
 from sim.world.room_requirements import Piece, missing_pieces
 
 MAX_TRIES = 6

@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall, put_partly_under
+from sim.housegen.furnishing.placement.free_standing import put_in_middle
+from sim.housegen.furnishing.placement.on_walls import hang_from_ceiling
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
 from sim.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall, put_partly_under
-from sim.housegen.placement.free_standing import put_in_middle
-from sim.housegen.placement.on_walls import hang_from_ceiling
-from sim.housegen.placement.surfaces import put_on_surface
 
 Seat = tuple[float, float, float]
 """x, y where a chair meets the table's edge, in the table's frame, and the heading of its front."""
@@ -42,7 +42,7 @@ def bed_group(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Pl
 
 
 def _place_bed(layout: RoomLayout, source: FurnitureSource, *, large: bool) -> Placement | None:
-    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall beside it."""
+    """Places a bed against a wall, a narrower one where a wide one does not fit, with less and less wall next to it."""
     widths_m = (source.pick((1.4, 1.6, 1.8)), 1.2, 0.9) if large else (0.9, 0.9, 1.2)
     for width_m in widths_m:
         item = source.make("bed", width_m=width_m)

@@ -1,4 +1,4 @@
-"""Hallways: furniture at intervals along the walls where the path beside it stays wide enough."""
+"""Hallways: furniture at intervals along the walls where the path next to it stays wide enough."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import math
 
 import numpy as np
 
+from sim.housegen.floor_plan.rectangles import Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_near
+from sim.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.housegen.furnishing.steps import hang, hang_above, lay_rug, put_on_top
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_near
-from sim.housegen.placement.walls import WALL_GAP_M
-from sim.housegen.rectangles import Side
 
 PATH_M = 0.9
-"""Width kept free beside furniture."""
+"""Width kept free next to furniture."""
 INTERVAL_M = 2.4
 """Usual distance between two pieces of furniture."""
 KINDS = (

@@ -7,15 +7,15 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from sim.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
 from sim.housegen.furnishing.groups import breakfast_group, dining_group
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall, put_at
+from sim.housegen.furnishing.placement.free_standing import put_in_middle
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.housegen.furnishing.steps import AISLE_M, place, place_row, put_on_top
 from sim.housegen.furniture.item import Item, Look
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall, put_at
-from sim.housegen.placement.free_standing import put_in_middle
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 
 LONG_RUN_M = 3.2
 """Longest worktop along a second wall."""
@@ -35,7 +35,7 @@ class Units:
     looks: dict[str, Look]
     """Materials of all of them."""
     sides: list[Side]
-    """Walls they stand against."""
+    """Walls against which they are placed."""
     placed: list[Placement]
 
 

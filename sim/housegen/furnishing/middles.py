@@ -6,12 +6,12 @@ import math
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from sim.housegen.furnishing.furniture_source import FurnitureSource
 from sim.housegen.furnishing.groups import dining_group
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.free_standing import put_in_middle
 from sim.housegen.furnishing.seating_groups import armchair_circle
 from sim.housegen.furnishing.steps import lay_rug, put_on_top
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.free_standing import put_in_middle
 
 Spot = tuple[float, float]
 """x and y of the middle of bare floor."""
@@ -102,4 +102,4 @@ MIDDLES: Mapping[str, tuple[Callable[[RoomLayout, FurnitureSource, Spot], Placem
         "hallway": (_bench, _plant, _low_table),
     }
 )
-"""What is placed in the middle of large rooms, by kind of room."""
+"""Furniture for the middle of large rooms, by kind of room."""

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
+from sim.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
 from sim.housegen.furnishing.bathrooms import furnish_bathroom
 from sim.housegen.furnishing.filling import middle_rug
+from sim.housegen.furnishing.furniture_source import FurnitureSource
 from sim.housegen.furnishing.groups import bed_group, desk_group, dining_group
 from sim.housegen.furnishing.hallways import furnish_hallway
 from sim.housegen.furnishing.kitchens import furnish_kitchen, kitchen_units
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall
 from sim.housegen.furnishing.seating_groups import armchair_circle, reading_corner, sofa_group
 from sim.housegen.furnishing.steps import hang, hang_above, place, place_row, put_on_top
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall
-from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 
 BOXES_ON_FLOOR = frozenset(("bedroom", "closet", "studio"))
 """Rooms where suitcases and crates may stand; other rooms have bins and baskets."""

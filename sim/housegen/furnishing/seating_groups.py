@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import math
 
+from sim.housegen.floor_plan.rectangles import OPPOSITE, SIDES, Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall, put_at, put_near
+from sim.housegen.furnishing.placement.free_standing import SeatSpot, put_in_middle
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.housegen.furnishing.placement.walls import WALL_GAP_M
 from sim.housegen.furnishing.steps import hang_above, lay_rug, place, place_beside, place_in_front, put_on_top
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import put_against_wall, put_at, put_near
-from sim.housegen.placement.free_standing import SeatSpot, put_in_middle
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.placement.walls import WALL_GAP_M
-from sim.housegen.rectangles import OPPOSITE, SIDES, Side
 
 
 def sofa_group(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
@@ -75,7 +75,7 @@ def _place_armchairs(layout: RoomLayout, source: FurnitureSource, sofa: Placemen
 
 
 def _place_side_table(layout: RoomLayout, source: FurnitureSource, sofa: Placement) -> None:
-    """Perhaps places a small table beside a sofa."""
+    """Perhaps places a small table next to a sofa."""
     item = source.make("table", "side")
     if item is not None and source.chance(0.6) and sofa.side is not None:
         table = place_beside(layout, sofa, item, 1.0 if source.chance(0.5) else -1.0)
@@ -125,7 +125,7 @@ def has_chair(source: FurnitureSource) -> bool:
 
 
 def reading_corner(layout: RoomLayout, source: FurnitureSource) -> Placement | None:
-    """Places an armchair in a corner with a small table and a lamp beside it."""
+    """Places an armchair in a corner with a small table and a lamp next to it."""
     chair = place(layout, source, "chair", "arm", along="corner", front_m=0.5) if has_chair(source) else None
     if chair is None:
         return None

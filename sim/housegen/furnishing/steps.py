@@ -9,14 +9,14 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from sim.housegen.floor_plan.rectangles import Side
+from sim.housegen.furnishing.furniture_source import FurnitureSource
+from sim.housegen.furnishing.placement import Placement, RoomLayout
+from sim.housegen.furnishing.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
+from sim.housegen.furnishing.placement.surfaces import put_on_surface
+from sim.housegen.furnishing.placement.walls import Along
 from sim.housegen.furniture.item import Item
-from sim.housegen.furniture_source import FurnitureSource
-from sim.housegen.placement import Placement, RoomLayout
-from sim.housegen.placement.floor import find_row_start, lay_flat, put_against_wall, put_at, put_near
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.placement.surfaces import put_on_surface
-from sim.housegen.placement.walls import Along
-from sim.housegen.rectangles import Side
 
 RUNNER_M = 1.0
 """Rugs narrower than this are runners."""
@@ -80,7 +80,7 @@ def hang_above(layout: RoomLayout, source: FurnitureSource, host: Placement, cat
 def place_beside(
     layout: RoomLayout, host: Placement, item: Item, towards: float, gap_m: float = 0.05
 ) -> Placement | None:
-    """Places an item next to another one at the same wall: `towards` +1 further along the side, -1 the other way."""
+    """Places an item next to another one at the same wall: `towards` is +1 or -1 along the side."""
     if host.side is None:
         return None
     lo, hi = host.rect.span(host.side)
@@ -90,7 +90,7 @@ def place_beside(
 
 
 def place_in_front(layout: RoomLayout, host: Placement, item: Item, gap_m: float, *, facing: bool) -> Placement | None:
-    """Places an item in front of another one, turned towards it (`facing`) or the same way."""
+    """Places an item in front of another one, turned towards it (`facing`) or in the same direction."""
     x, y = host.to_world(host.item.size_m[0] / 2 + gap_m + item.size_m[0] / 2, 0.0)
     yaw = host.placed.yaw_rad
     return put_at(layout, item, x, y, yaw + math.pi if facing else yaw)

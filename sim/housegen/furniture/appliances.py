@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import chamfered_box
@@ -17,7 +18,7 @@ def fridge(w: Workbench) -> None:
     """Builds a fridge with a freezer above or below it, and long handles."""
     width, depth, height = w.width(0.58, 0.70), w.depth(0.60, 0.68), w.height(1.60, 1.90)
     look, metal = w.look("appliance"), w.look("chrome")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     split = height * w.choice((0.36, 0.68))
     w.box((x[0], x[1] - 0.06), y, (0.04, height), look)
     w.box((x[0] + 0.03, x[1] - 0.08), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.04), w.look("dark"))
@@ -77,7 +78,7 @@ def stove(w: Workbench) -> None:
     """Builds a free-standing cooker with four rings, knobs and an oven door with a window."""
     width, depth, height = w.width(0.58, 0.62), w.depth(0.60, 0.64), w.height(0.87, 0.91)
     look, dark, metal = w.look("appliance"), w.look("screen"), w.look("chrome")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[1] - 0.025), y, (0.05, height - 0.01), look)
     w.box((x[0] + 0.03, x[1] - 0.06), (y[0] + 0.02, y[1] - 0.02), (0.0, 0.05), w.look("dark"))
     w.box((x[0], x[1]), y, (height - 0.012, height), dark)
@@ -117,7 +118,7 @@ def range_cooker(w: Workbench) -> None:
     """Builds a wide range with two ovens, a towel rail, four burners and a low splashback."""
     width, depth, height = w.width(0.60, 0.62), w.depth(0.60, 0.66), 0.90
     look, iron, brass = w.look("appliance"), w.look("iron"), w.look("brass")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[1] - 0.02), y, (0.08, height), look)
     w.legs((x[0] + 0.03, x[1] - 0.05), (y[0] + 0.03, y[1] - 0.03), (0.0, 0.08), 0.04, iron)
     w.box((x[0], x[0] + 0.02), y, (height, height + 0.10), look)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.shapes import Ring, arc_wall, chamfered_box, loft
@@ -122,10 +123,69 @@ def tub(w: Workbench) -> None:
     w.top((-0.5 * r, 0.6 * r), (-0.5 * r, 0.5 * r), seat, "seat")
 
 
+def channel_chair(w: Workbench) -> None:
+    """Builds a round easy chair whose back is a half ring of upright padded rolls, on a plinth."""
+    r, height, seat = 0.5 * w.width(0.70, 0.80), w.length(0.70, 0.80), w.length(0.40, 0.44)
+    cloth = w.look("fabric")
+    w.cylinder((0.0, 0.0), (0.0, 0.06), r - 0.10, w.look("dark"))
+    w.cylinder((0.0, 0.0), (0.05, seat), r - 0.04, cloth)
+    for n in range(9):
+        a = math.pi + (n - 4) * 0.36
+        x, y, top = (r - 0.075) * math.cos(a), (r - 0.075) * math.sin(a), height - 0.02 * abs(n - 4)
+        w.rod((x, y, 0.14), (x, y, top - 0.075), 0.075, cloth, round_ends=True)
+    w.top((-0.4 * r, 0.7 * r), (-0.5 * r, 0.5 * r), seat, "seat")
+
+
+def egg_chair(w: Workbench) -> None:
+    """Builds a shell chair with a high rounded back on a foot with four arms."""
+    r, height, seat = 0.5 * w.width(0.70, 0.80), w.length(1.0, 1.12), w.length(0.40, 0.44)
+    cloth, steel = w.look("leather") if w.chance(0.5) else w.look("fabric"), w.look("chrome")
+    rings = [
+        Ring(seat - 0.14, 0.45 * r, 0.45 * r),
+        Ring(seat, r, r),
+        Ring(seat + 0.02, 0.8 * r, 0.8 * r, 0.05),
+        Ring(seat - 0.02, 0.5 * r, 0.5 * r, 0.05),
+    ]
+    w.mesh(loft(rings, 14), (0.0, 0.0, 0.0), cloth)
+    back = [
+        Ring(seat - 0.02, 0.10, 0.94 * r, -0.86 * r),
+        Ring(seat + 0.30, 0.11, 0.98 * r, -0.98 * r),
+        Ring(0.92 * height, 0.09, 0.72 * r, -1.08 * r),
+        Ring(height, 0.05, 0.42 * r, -1.08 * r),
+    ]
+    w.mesh(loft(back, 12, hull=True), (0.0, 0.0, 0.0), cloth)
+    for side in BOTH_SIDES:
+        w.mesh(chamfered_box((1.2 * r, 0.09, 0.30), 0.04), (-0.25 * r, side * 0.86 * r, seat + 0.10), cloth, tilt=-0.1)
+    parts.star_base(w, 0.34, 4, steel, seat - 0.12, castors=False)
+    w.top((-0.4 * r, 0.7 * r), (-0.6 * r, 0.6 * r), seat, "seat")
+
+
+def cane_chair(w: Workbench) -> None:
+    """Builds an armchair with a bent wooden frame, cane sides and cushions."""
+    width, depth, height = w.width(0.64, 0.72), w.depth(0.68, 0.76), w.length(0.78, 0.88)
+    seat, wood, cane, cloth = w.length(0.39, 0.43), w.look("wood"), w.look("wicker"), w.look("fabric")
+    x0, x1, half = -0.5 * depth, 0.5 * depth, 0.5 * width
+    for side in BOTH_SIDES:
+        y = side * (half - 0.02)
+        for x in (x0 + 0.04, x1 - 0.04):
+            w.box((x - 0.02, x + 0.02), (y - 0.02, y + 0.02), (0.0, 0.60), wood)
+        w.box((x0 + 0.02, x1 - 0.02), (y - 0.025, y + 0.025), (0.58, 0.62), wood)
+        w.box((x0 + 0.05, x1 - 0.05), (y - 0.006, y + 0.006), (seat - 0.12, 0.585), cane)
+    w.box((x0 + 0.03, x1 - 0.03), (-half + 0.03, half - 0.03), (seat - 0.14, seat - 0.10), wood)
+    w.box((x0 + 0.02, x0 + 0.05), (-half + 0.02, half - 0.02), (seat - 0.12, height), cane)
+    w.box((x0 + 0.01, x0 + 0.06), (-half + 0.01, half - 0.01), (height - 0.02, height + 0.02), wood)
+    w.mesh(chamfered_box((depth - 0.12, width - 0.12, 0.12), 0.035), (0.03, 0.0, seat - 0.05), cloth)
+    w.mesh(chamfered_box((0.13, width - 0.14, 0.36), 0.04), (x0 + 0.13, 0.0, seat + 0.19), cloth, tilt=-0.12)
+    w.top((x0 + 0.2, x1 - 0.03), (-half + 0.08, half - 0.08), seat + 0.01, "seat")
+
+
 STYLES = (
     Style("chair", "club", "train", club, ("arm",)),
     Style("chair", "wingback", "train", wingback, ("arm",)),
     Style("chair", "lounge", "train", lounge, ("arm",)),
     Style("chair", "tub", "heldout", tub, ("arm",)),
     Style("chair", "rocker", "heldout", rocker, ("arm",)),
+    Style("chair", "channel_chair", "heldout", channel_chair, ("arm",)),
+    Style("chair", "egg_chair", "heldout", egg_chair, ("arm",)),
+    Style("chair", "cane_chair", "heldout", cane_chair, ("arm",)),
 )

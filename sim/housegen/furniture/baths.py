@@ -97,7 +97,7 @@ def walk_in(w: Workbench) -> None:
     """Builds a shower with a flat tray, one fixed pane, a rain head and a niche tower; one side is open."""
     width, depth, high = w.width(1.10, 1.40), w.depth(0.80, 0.95), w.length(1.95, 2.05)
     metal = w.look("chrome") if w.chance(0.5) else w.look("iron")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (0.0, 0.035), w.look("stone"))
     w.box((-0.06, 0.06), (-0.06, 0.06), (0.035, 0.038), metal, solid=False)
     w.box((x[1] - 0.012, x[1] - 0.002), (y[0], y[1] - 0.45), (0.035, high), w.look("glass"))
@@ -235,7 +235,7 @@ def with_screen(w: Workbench) -> None:
     """Builds a built-in tub behind a wooden panel, with a glass screen and a shower set above its tap end."""
     width, depth, high = w.width(1.55, 1.80), w.depth(0.70, 0.80), w.length(0.54, 0.60)
     white, chrome = w.look("ceramic"), w.look("chrome")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     _rounded_tub(w, depth, width, high, white)
     w.box((x[1] - 0.005, x[1] + 0.012), y, (0.0, high - 0.05), w.look("wood"), solid=False)
     w.box((x[1] - 0.035, x[1] - 0.027), (y[1] - 0.85, y[1]), (high, 1.95), w.look("glass"))

@@ -46,7 +46,7 @@ def armoire(w: Workbench) -> None:
     """Builds an old wardrobe with a cornice, two panelled doors over a drawer, and ball feet."""
     width, depth, height = w.width(1.00, 1.35), w.depth(0.56, 0.62), w.height(1.90, 2.15)
     wood = w.look("wood")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (0.10, height - 0.08), wood)
     w.box((x[0], x[1] + 0.05), (y[0] - 0.05, y[1] + 0.05), (height - 0.08, height - 0.03), wood)
     w.box((x[0], x[1] + 0.08), (y[0] - 0.08, y[1] + 0.08), (height - 0.03, height), wood)
@@ -86,7 +86,7 @@ def display(w: Workbench) -> None:
     """Builds a dresser: a cupboard below glazed shelves with crockery."""
     width, depth, height = w.width(0.85, 1.20), w.depth(0.38, 0.44), w.height(1.80, 2.05)
     look = parts.wood_look(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     base = 0.86
     w.box(x, y, (0.0, base), look)
     parts.plain_doors(w, x[1], y, (0.06, base - 0.18), 2, look, w.look("brass"), "knob")
@@ -139,7 +139,7 @@ def media_low(w: Workbench) -> None:
     """Builds a television bench with an open compartment between drop fronts."""
     width, depth, height = w.width(1.20, 1.80), w.depth(0.38, 0.45), w.length(0.42, 0.52)
     body = parts.wood_look(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.03, height), body)
     w.box(x, y, (0.06, 0.085), body)
     w.box((x[0], x[0] + 0.012), y, (0.085, height - 0.03), body)
@@ -160,7 +160,7 @@ def media_legs(w: Workbench) -> None:
     """Builds a television bench: a slatted tray on a metal frame with one closed box."""
     width, depth, height = w.width(1.20, 1.70), w.depth(0.36, 0.42), w.length(0.45, 0.55)
     wood, iron = w.look("wood"), w.look("iron")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.035, height), wood)
     w.box((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.15, 0.175), wood)
     w.legs((x[0] + 0.005, x[1] - 0.005), (y[0] + 0.005, y[1] - 0.005), (0.0, height - 0.035), 0.025, iron)
@@ -212,7 +212,7 @@ def vanity_doors(w: Workbench) -> None:
     """Builds a bathroom washstand with a cupboard, a top and a basin; the basin is a separate sink."""
     width, depth, height = w.width(0.70, 1.20), w.depth(0.46, 0.52), w.length(0.80, 0.86)
     look = parts.wood_look(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[1] - 0.03), (y[0] + 0.01, y[1] - 0.01), (0.10, height - 0.03), look)
     w.box((x[0] + 0.02, x[1] - 0.10), (y[0] + 0.03, y[1] - 0.03), (0.0, 0.10), w.look("dark"))
     w.box(x, y, (height - 0.03, height), w.look("stone"))
@@ -244,6 +244,28 @@ def vanity_floating(w: Workbench) -> None:
     w.put(w.make("sink", use="vessel"), (0.5 * depth + 0.02, 0.0, 0.43))
 
 
+def sliding_wardrobe(w: Workbench) -> None:
+    """Builds a wardrobe with two sliding doors, one of them a mirror, and rails above and below."""
+    width, depth, height = w.width(1.20, 1.90), w.depth(0.56, 0.64), w.height(1.95, 2.15)
+    body, panel, metal = w.look("wood"), w.look("lacquer"), w.look("metal")
+    x, y = parts.case(w, depth, width, (0.05, height), body, foot=0.05)
+    middle = 0.5 * (y[0] + y[1])
+    w.box((x, x + 0.012), (y[0] + 0.02, middle + 0.03), (0.09, height - 0.05), panel, solid=False)
+    w.box((x, x + 0.022), (middle - 0.03, y[1] - 0.02), (0.09, height - 0.05), w.look("mirror"), solid=False)
+    for z in (0.07, height - 0.035):
+        w.box((x, x + 0.026), (y[0] + 0.01, y[1] - 0.01), (z - 0.012, z + 0.012), metal, solid=False)
+    w.box((x, x + 0.028), (middle - 0.04, middle - 0.025), (0.09, height - 0.05), metal, solid=False)
+
+
+def slatted_sideboard(w: Workbench) -> None:
+    """Builds a sideboard with slatted doors on a sled base."""
+    width, depth, height = w.width(1.20, 1.60), w.depth(0.40, 0.46), w.length(0.72, 0.84)
+    wood, body, metal = w.look("wood"), w.look("lacquer"), w.look("iron")
+    x, y = parts.case(w, depth, width, (0.16, height), body)
+    parts.styled_doors(w, x, y, (0.18, height - 0.03), 3, wood, metal, "slats", "slot")
+    parts.feet(w, (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width), 0.17, "sled", metal)
+
+
 STYLES = (
     Style("cabinet", "wardrobe_doors", "train", wardrobe_doors, ("wardrobe",)),
     Style("cabinet", "wardrobe_sliding", "train", wardrobe_sliding, ("wardrobe",)),
@@ -257,4 +279,6 @@ STYLES = (
     Style("cabinet", "wall_unit_glazed", "heldout", wall_unit_glazed, ("kitchen_wall",), "wall"),
     Style("cabinet", "vanity_doors", "train", vanity_doors, ("vanity",)),
     Style("cabinet", "vanity_floating", "heldout", vanity_floating, ("vanity",), "wall"),
+    Style("cabinet", "sliding_wardrobe", "heldout", sliding_wardrobe, ("wardrobe",)),
+    Style("cabinet", "slatted_sideboard", "heldout", slatted_sideboard, ("sideboard",)),
 )

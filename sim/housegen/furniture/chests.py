@@ -12,6 +12,33 @@ from sim.housegen.furniture.parts import BOTH_SIDES
 from sim.housegen.furniture.workbench import Workbench
 
 
+def _drawer_column(
+    w: Workbench,
+    size: tuple[float, float, float],
+    foot: float,
+    first: float,
+    rows: tuple[int, int],
+    metal: str,
+    handles: tuple[parts.PlainHandleKind, ...],
+) -> None:
+    """Adds a body with one column of drawers on a plinth.
+
+    Args:
+        w: the workbench.
+        size: depth, width and height.
+        foot: height of the plinth.
+        first: height at which the lowest drawer begins.
+        rows: smallest and largest number of drawers.
+        metal: material of the handles.
+        handles: kinds of handles of which one is drawn.
+    """
+    depth, width, height = size
+    look = parts.wood_look(w)
+    x, y = parts.case(w, depth, width, (foot, height), look, foot=foot)
+    drawers = (y[0] + 0.01, y[1] - 0.01), (first, height - 0.025)
+    parts.plain_drawers(w, x, *drawers, w.whole(*rows), 1, look, w.look(metal), w.choice(handles))
+
+
 def dresser(w: Workbench) -> None:
     """Builds a wide chest with three rows of two drawers on short legs."""
     width, depth, height = w.width(0.95, 1.50), w.depth(0.42, 0.50), w.length(0.74, 0.88)
@@ -34,19 +61,7 @@ def dresser(w: Workbench) -> None:
 def tallboy(w: Workbench) -> None:
     """Builds a tall narrow chest with five drawers."""
     width, depth, height = w.width(0.45, 0.65), w.depth(0.40, 0.46), w.length(1.05, 1.30)
-    look = parts.wood_look(w)
-    x, y = parts.case(w, depth, width, (0.05, height), look, foot=0.05)
-    parts.plain_drawers(
-        w,
-        x,
-        (y[0] + 0.01, y[1] - 0.01),
-        (0.06, height - 0.025),
-        w.whole(4, 6),
-        1,
-        look,
-        w.look("metal"),
-        w.choice(("bar", "knob")),
-    )
+    _drawer_column(w, (depth, width, height), 0.05, 0.06, (4, 6), "metal", ("bar", "knob"))
 
 
 def handleless(w: Workbench) -> None:
@@ -64,19 +79,7 @@ def handleless(w: Workbench) -> None:
 def bedside_chest(w: Workbench) -> None:
     """Builds a bedside chest of two or three drawers."""
     width, depth, height = w.width(0.40, 0.52), w.depth(0.36, 0.44), w.length(0.48, 0.62)
-    look = parts.wood_look(w)
-    x, y = parts.case(w, depth, width, (0.06, height), look, foot=0.06)
-    parts.plain_drawers(
-        w,
-        x,
-        (y[0] + 0.01, y[1] - 0.01),
-        (0.07, height - 0.025),
-        w.whole(2, 3),
-        1,
-        look,
-        w.look("brass"),
-        w.choice(("knob", "bar")),
-    )
+    _drawer_column(w, (depth, width, height), 0.06, 0.07, (2, 3), "brass", ("knob", "bar"))
 
 
 def campaign(w: Workbench) -> None:

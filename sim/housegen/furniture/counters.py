@@ -30,11 +30,17 @@ def _run_base(w: Workbench, x: Range, y: Range, z: float, look: Look, hole: tupl
     w.box((x[1] - 0.04, x[1]), (hy0, hy1), (z - 0.16, z), look)
 
 
+def _free_tops(w: Workbench, x: Range, free: list[Range], z: float, *, back: float = 0.05) -> None:
+    """Declares the parts of a worktop without sink and hob as surfaces on which objects may stand."""
+    for span in free:
+        w.top((x[0] + back, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), z)
+
+
 def kitchen_run(w: Workbench) -> None:
     """Builds a straight run with doors, a row of drawers, a worktop and optionally a sink and a hob."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.88, 0.92)
     front, top = w.look("lacquer") if w.chance(0.6) else w.look("wood"), w.look("stone")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under = height - _TOP
     face = x[1] - 0.04
@@ -50,15 +56,14 @@ def kitchen_run(w: Workbench) -> None:
             parts.plain_drawers(w, face, span, (0.11, under), 3, 1, front, metal, "bar")
         else:
             parts.plain_doors(w, face, span, (0.11, under), 1, front, metal, "bar")
-    for span in free:
-        w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
+    _free_tops(w, x, free, height)
 
 
 def island(w: Workbench) -> None:
     """Builds a free-standing block with an overhanging top for stools on its front side."""
     width, depth, height = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.88, 0.92)
     body, top = w.look("lacquer"), w.look("stone")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0] + 0.02, x[1] - 0.28), (y[0] + 0.03, y[1] - 0.03), (0.08, height - 0.045), body)
     w.box((x[0] + 0.08, x[1] - 0.32), (y[0] + 0.08, y[1] - 0.08), (0.0, 0.08), w.look("dark"))
     w.box(x, y, (height - 0.045, height), top)
@@ -74,7 +79,7 @@ def open_run(w: Workbench) -> None:
     """Builds a run with a thick wooden top on a steel frame, one closed block and an open shelf of crates below."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.92)
     steel, wood, front = w.look("metal"), w.look("wood"), w.look("lacquer")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
     w.legs((x[0] + 0.01, x[1] - 0.02), (y[0] + 0.01, y[1] - 0.01), (0.0, height - _TOP), 0.045, steel)
@@ -87,15 +92,14 @@ def open_run(w: Workbench) -> None:
     for c in (-0.7 * half, 0.0, 0.7 * half):
         if hole is None or not hole[1][0] - 0.25 < c < hole[1][1] + 0.25:
             w.mesh(chamfered_box((0.40, 0.34, 0.26), 0.015), (0.0, c, 0.335), w.look("wicker"), solid=False)
-    for span in free:
-        w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
+    _free_tops(w, x, free, height)
 
 
 def slab_run(w: Workbench) -> None:
     """Builds a modern run with handleless drawers in two tiers, a thick top and its own splashback."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.64), w.height(0.89, 0.93)
     front, top = w.look("lacquer") if w.chance(0.5) else w.look("wood"), w.look("stone")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under, face = height - _TOP, x[1] - 0.03
     _run_base(w, (x[0], face), y, under, w.look("dark"), hole)
@@ -108,15 +112,14 @@ def slab_run(w: Workbench) -> None:
         span = (y[0] + i * each + 0.003, y[0] + (i + 1) * each - 0.003)
         w.box((face, face + 0.02), span, (0.105, split - 0.015), front, solid=False)
         w.box((face, face + 0.02), span, (split + 0.003, under - 0.02), front, solid=False)
-    for span in free:
-        w.top((x[0] + 0.06, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
+    _free_tops(w, x, free, height, back=0.06)
 
 
 def breakfast_bar(w: Workbench) -> None:
     """Builds a free-standing bar with shelves to the kitchen, a panelled front and a raised narrow top for stools."""
     width, depth, height = w.width(1.30, 2.20), w.depth(0.70, 0.85), w.height(0.88, 0.92)
     body, top = w.look("wood"), w.look("stone")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     wall = x[1] - 0.26
     w.box((x[0] + 0.03, wall), (y[0] + 0.02, y[1] - 0.02), (0.08, height - 0.035), body)
     w.box((x[0] + 0.08, wall), (y[0] + 0.06, y[1] - 0.06), (0.0, 0.08), w.look("dark"))
@@ -145,7 +148,7 @@ def trolley(w: Workbench) -> None:
     """Builds an island on legs: a butcher's block over a drawer, a slatted shelf, hooks and a rail."""
     width, depth, height, wood = w.width(1.10, 1.60), w.depth(0.60, 0.75), w.height(0.88, 0.92), w.look("wood")
     frame = w.look("lacquer")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.06, height), wood)
     w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.05, y[1] - 0.05), (height - 0.22, height - 0.06), frame)
     parts.plain_drawers(
@@ -163,7 +166,7 @@ def curtained_run(w: Workbench) -> None:
     """Builds a country kitchen: a thick wooden top on masonry piers, with cloth curtains instead of doors."""
     width, depth, height = w.width(1.20, 3.00), w.depth(0.60, 0.66), w.height(0.87, 0.91)
     wood, pier, cloth = w.look("wood"), w.look("masonry"), w.look("curtain")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     hole, free = parts.worktop_fittings(w, y, height)
     under = height - _TOP
     parts.worktop(w, x, y, (height - _TOP, height), wood, hole)
@@ -187,14 +190,13 @@ def curtained_run(w: Workbench) -> None:
             drape(round(each - 0.11, 3), round(under - 0.08, 3), 0.035, 6), (x[1] - 0.07, c, 0.05), cloth, solid=False
         )
     w.box((x[0] + 0.03, x[1] - 0.10), (y[0] + 0.1, y[1] - 0.1), (0.0, 0.45), w.look("dark"))
-    for span in free:
-        w.top((x[0] + 0.05, x[1] - 0.05), (span[0] + 0.05, span[1] - 0.05), height)
+    _free_tops(w, x, free, height)
 
 
 def waterfall(w: Workbench) -> None:
     """Builds an island of stone slabs whose top turns down at both ends, with dark fronts set back between them."""
     width, depth, height, stone = w.width(1.40, 2.40), w.depth(0.85, 1.05), w.height(0.90, 0.94), w.look("stone")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.06, height), stone)
     for side in BOTH_SIDES:
         low, high = sorted((side * 0.5 * width, side * (0.5 * width - 0.06)))

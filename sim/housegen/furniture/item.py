@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 Shape = Literal["box", "cylinder", "sphere", "capsule", "ellipsoid", "mesh"]
 Mount = Literal["floor", "wall", "ceiling", "top"]
-"""Where the origin of an item is: on the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
+"""The support on which the origin of an item lies: the floor, a wall (x = 0 is its surface), the ceiling, or a top."""
 Pool = Literal["train", "heldout", "wide"]
 """The styles, sizes, colours and textures that may be drawn. `heldout` (val and test houses) shares none with `train`.
 
@@ -31,7 +31,7 @@ class Look:
 
     rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
     texture: str | None = None
-    """Name of a texture in `sim.housegen.materials`; None for a plain colour."""
+    """Name of a texture in `sim.housegen.surfaces.materials`; None for a plain colour."""
     repeat_m: float = 1.0
     """Edge length of one tile of the texture on the surface; 0: one image over the whole face."""
     specular: float = 0.2

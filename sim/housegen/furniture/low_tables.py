@@ -12,6 +12,7 @@ import math
 from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.parts import BOTH_SIDES
+from sim.housegen.furniture.shapes import hoop
 from sim.housegen.furniture.workbench import Workbench
 
 
@@ -170,6 +171,45 @@ def console_arc(w: Workbench) -> None:
     )
 
 
+def console_drawers(w: Workbench) -> None:
+    """Builds a narrow table with two drawers, a lower shelf and turned legs."""
+    width, depth, height = w.width(0.90, 1.30), w.depth(0.30, 0.38), w.length(0.76, 0.84)
+    wood, metal = w.look("wood"), w.look("brass")
+    x, y = parts.footprint(depth, width)
+    w.box(x, y, (height - 0.025, height), wood)
+    w.box((x[0] + 0.02, x[1] - 0.025), (y[0] + 0.02, y[1] - 0.02), (height - 0.16, height - 0.025), wood)
+    for side in BOTH_SIDES:
+        c = side * 0.24 * width
+        w.box(
+            (x[1] - 0.025, x[1] - 0.012),
+            (c - 0.2 * width, c + 0.2 * width),
+            (height - 0.15, height - 0.035),
+            wood,
+            solid=False,
+        )
+        w.ball((x[1] - 0.004, c, height - 0.09), 0.014, metal, solid=False)
+    w.legs((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (0.0, height - 0.15), 0.045, wood, round_=True)
+    w.box((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.14, 0.16), wood)
+    w.top(x, y, height)
+
+
+def drum_stool_table(w: Workbench) -> None:
+    """Builds a small round table with a hoop near the floor on three legs."""
+    r, height, wood, metal = 0.5 * w.width(0.42, 0.52), w.length(0.48, 0.56), w.look("wood"), w.look("iron")
+    w.cylinder((0.0, 0.0), (height - 0.03, height), r, wood)
+    for n in range(3):
+        a = math.tau * n / 3
+        w.rod(
+            (0.8 * r * math.cos(a), 0.8 * r * math.sin(a), 0.0),
+            (0.6 * r * math.cos(a), 0.6 * r * math.sin(a), height - 0.03),
+            0.012,
+            metal,
+        )
+    w.mesh(hoop(0.78 * r, 0.02, 0.02), (0.0, 0.0, 0.12), metal, solid=False)
+    half = 0.62 * r
+    w.top((-half, half), (-half, half), height)
+
+
 STYLES = (
     Style("table", "coffee_shelf", "train", coffee_shelf, ("coffee",)),
     Style("table", "coffee_drum", "train", coffee_drum, ("coffee",)),
@@ -182,4 +222,6 @@ STYLES = (
     Style("table", "bedside_wire", "heldout", bedside_wire, ("nightstand", "side")),
     Style("table", "console", "train", console, ("console",)),
     Style("table", "console_arc", "heldout", console_arc, ("console",)),
+    Style("table", "console_drawers", "heldout", console_drawers, ("console",)),
+    Style("table", "drum_stool_table", "heldout", drum_stool_table, ("side",)),
 )

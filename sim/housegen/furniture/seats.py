@@ -18,7 +18,7 @@ from sim.housegen.furniture.workbench import Workbench
 def bench_wood(w: Workbench) -> None:
     """Builds a wooden hall bench with a thin pad."""
     width, depth, seat, wood = w.width(0.90, 1.40), w.depth(0.34, 0.42), w.length(0.42, 0.46), w.look("wood")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (seat - 0.04, seat), wood)
     w.mesh(chamfered_box((depth - 0.03, width - 0.06, 0.05), 0.015), (0.0, 0.0, seat + 0.02), w.look("fabric"))
     w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.05, y[1] - 0.05), (0.0, seat - 0.04), 0.05, wood)
@@ -66,7 +66,7 @@ def storage_bench(w: Workbench) -> None:
     """Builds a hall bench with open cubbies with shoes below and a cushion on top."""
     width, depth, seat = w.width(0.90, 1.30), w.depth(0.36, 0.42), w.length(0.44, 0.48)
     look = parts.wood_look(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (seat - 0.07, seat - 0.04), look)
     w.box(x, y, (0.03, 0.055), look)
     w.box((x[0], x[0] + 0.012), y, (0.05, seat - 0.06), look)
@@ -134,7 +134,7 @@ def settle(w: Workbench) -> None:
         w.length(0.42, 0.45),
         w.look("wood"),
     )
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box((x[0], x[0] + 0.03), y, (seat - 0.04, high), wood)
     w.box((x[0] - 0.005, x[0] + 0.045), y, (high - 0.06, high), wood)
     w.box(x, y, (seat - 0.035, seat), wood)

@@ -37,7 +37,7 @@ def bookcase(w: Workbench) -> None:
     """Builds a tall bookcase with five boards full of books."""
     width, depth, height = w.width(0.70, 1.00), w.depth(0.28, 0.34), w.height(1.80, 2.05)
     look = parts.wood_look(w)
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     for side in BOTH_SIDES:
         edge = side * (0.5 * width - 0.011)
         w.box(x, (edge - 0.011, edge + 0.011), (0.0, height), look)
@@ -88,7 +88,7 @@ def pipe_shelf(w: Workbench) -> None:
     """Builds a steel frame with boards and a crossed back."""
     width, depth, height = w.width(0.80, 1.10), w.depth(0.32, 0.38), w.height(1.60, 1.85)
     iron, wood = w.look("iron"), w.look("wood")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.legs(x, y, (0.0, height), 0.028, iron)
     levels = [0.12 + i * (height - 0.16) / 3 for i in range(4)]
     _boards(w, x, y, levels, 0.035, wood)
@@ -102,7 +102,7 @@ def etagere(w: Workbench) -> None:
     """Builds a shelf with glass boards between slim brass posts, with vases and a few books."""
     width, depth, height = w.width(0.60, 0.85), w.depth(0.32, 0.38), w.height(1.60, 1.85)
     brass, glass = w.look("brass"), parts.tinted_glass(w.look("glass"))
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.legs((x[0] + 0.01, x[1] - 0.01), (y[0] + 0.01, y[1] - 0.01), (0.0, height), 0.02, brass, round_=True)
     for i in range(4):
         z = 0.10 + i * (height - 0.13) / 3
@@ -143,7 +143,7 @@ def cubes(w: Workbench) -> None:
     columns, rows = max(1, round((width - 0.04) / 0.36)), w.whole(2, 4)
     cell, depth = (width - 0.03) / columns, 0.38
     height = rows * 0.36 + 0.04
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     for i in range(columns + 1):
         c = y[0] + 0.015 + i * cell
         w.box(x, (c - 0.015, c + 0.015), (0.0, height), look)

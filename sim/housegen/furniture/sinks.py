@@ -105,7 +105,7 @@ def console_sink(w: Workbench) -> None:
     """Builds an oval basin in a slab on four metal legs with a rail."""
     width, depth, rim = w.width(0.60, 0.75), w.depth(0.45, 0.52), w.length(0.82, 0.87)
     metal, white = w.look("chrome"), w.look("ceramic")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     parts.basin(w, (x[0] + 0.09, x[1]), y, rim, 0.12, 0.05, white)
     w.box((x[0], x[0] + 0.09), y, (rim - 0.06, rim), white)
     w.legs((x[0] + 0.02, x[1] - 0.02), (y[0] + 0.02, y[1] - 0.02), (0.0, rim - 0.06), 0.025, metal, round_=True)

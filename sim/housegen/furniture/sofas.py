@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 
+from sim.housegen.furniture import parts
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Look
 from sim.housegen.furniture.parts import BOTH_SIDES
@@ -67,14 +68,9 @@ def _back_cushions(w: Workbench, s: _Sofa, look: Look, thick: float = 0.14) -> N
 
 
 def _loose_cushions(w: Workbench, s: _Sofa, front_of_back: float) -> None:
-    """Adds up to three throw cushions against the back, the outer ones first; hint `cushions` gives their number."""
-    hinted = w.hints.get("cushions")
-    count = int(hinted) if hinted is not None else w.choice((0, 1, 2, 2, 3))
-    places = (0.5 * s.inner - 0.24, -0.5 * s.inner + 0.24, 0.08)
-    for y in places[: min(count, 3 if s.inner > 1.5 else 2)]:
-        cushion = w.make("cushion", use="throw")
-        x = -0.5 * s.depth + front_of_back + 0.5 * cushion.size_m[0] - 0.02
-        w.put(cushion, (x, y, s.seat - 0.015), w.length(-0.15, 0.15))
+    """Adds throw cushions against the back."""
+    face = -0.5 * s.depth + front_of_back
+    parts.throw_cushions(w, face, s.inner, s.seat, (0, 1, 2, 2, 3), margin=0.24, middle=0.08)
 
 
 def block_arm(w: Workbench) -> None:

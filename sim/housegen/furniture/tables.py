@@ -159,7 +159,7 @@ def secretary(w: Workbench) -> None:
     """Builds a writing desk with slender legs, a drawer under the top, and a low hutch of pigeonholes at the back."""
     width, depth, height = w.width(0.95, 1.25), w.depth(0.50, 0.60), w.length(0.74, 0.77)
     wood = w.look("wood")
-    x, y = (-0.5 * depth, 0.5 * depth), (-0.5 * width, 0.5 * width)
+    x, y = parts.footprint(depth, width)
     w.box(x, y, (height - 0.02, height), wood)
     w.box((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), (height - 0.13, height - 0.02), wood)
     parts.plain_drawers(
@@ -182,6 +182,23 @@ def secretary(w: Workbench) -> None:
     w.top((x[0] + 0.22, x[1] - 0.04), (y[0] + 0.05, y[1] - 0.05), height)
 
 
+def wing_desk(w: Workbench) -> None:
+    """Builds a desk of one board on a block of drawers and a trestle."""
+    width, depth, height = w.width(1.20, 1.60), w.depth(0.60, 0.72), w.length(0.72, 0.76)
+    top, body, metal = w.look("wood"), w.look("lacquer"), w.look("metal")
+    x, y = parts.footprint(depth, width)
+    w.box(x, y, (height - 0.035, height), top)
+    w.box((x[0] + 0.04, x[1] - 0.04), (y[0] + 0.04, y[0] + 0.42), (0.03, height - 0.035), body)
+    for n in range(3):
+        z = 0.06 + n * (height - 0.12) / 3
+        w.box((x[1] - 0.04, x[1] - 0.025), (y[0] + 0.05, y[0] + 0.41), (z, z + 0.19), body, solid=False)
+        w.box((x[1] - 0.026, x[1] - 0.01), (y[0] + 0.17, y[0] + 0.29), (z + 0.13, z + 0.145), metal, solid=False)
+    for end in (x[0] + 0.05, x[1] - 0.05):
+        w.bar((end, y[1] - 0.06, 0.0), (0.4 * end, y[1] - 0.10, height - 0.035), 0.035, 0.035, metal)
+    w.bar((x[0] + 0.08, y[1] - 0.07, 0.14), (x[1] - 0.08, y[1] - 0.07, 0.14), 0.03, 0.03, metal)
+    w.top((x[0] + 0.03, x[1] - 0.03), (y[0] + 0.03, y[1] - 0.03), height)
+
+
 STYLES = (
     Style("table", "farmhouse", "train", farmhouse, ("dining",)),
     Style("table", "splayed", "train", splayed, ("dining",)),
@@ -192,5 +209,6 @@ STYLES = (
     Style("table", "round_legs", "heldout", tulip_legs_round, ("dining",)),
     Style("table", "desk_pedestal", "train", desk_pedestal, ("desk",)),
     Style("table", "desk_frame", "train", desk_frame, ("desk",)),
+    Style("table", "wing_desk", "heldout", wing_desk, ("desk",)),
     Style("table", "secretary", "heldout", secretary, ("desk",)),
 )

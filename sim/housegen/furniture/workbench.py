@@ -14,10 +14,10 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.housegen import materials
 from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Mount, Pool, Shape, Surface
 from sim.housegen.furniture.transforms import bounds, euler_from_matrix, matrix_from_euler
-from sim.housegen.textures import TEXTURES
+from sim.housegen.surfaces import materials
+from sim.housegen.surfaces.textures import TEXTURES
 
 T = TypeVar("T")
 Range = tuple[float, float]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim.geometry.fast_marching import distances
 from sim.gl import mujoco
-from sim.housegen.openings import Opening
+from sim.housegen.structure.openings import Opening
 from sim.houses.hazards import steepest_path
 from sim.houses.house import Room, read_rooms
 from sim.houses.labels import collidable_geoms, read_labels
@@ -26,7 +26,7 @@ SPARE_M = 0.27
 TIGHT_M = 0.20
 """Half the width of narrower paths, to places that had no wider one before."""
 _LOST_M2 = {TIGHT_M: 0.12, SPARE_M: 0.4}
-"""Largest area that a hazard may disconnect beyond the floor right beside it, for each half width."""
+"""Largest area that a hazard may disconnect beyond the floor right next to it, for each half width."""
 _DRAWN_RADIUS_M = 0.018
 """Solid cells reach this far beyond the geoms: half a cell's diagonal, so that thin geoms are not missed."""
 _FURNITURE_GAP = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (5, 5))

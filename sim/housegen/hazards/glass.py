@@ -7,26 +7,26 @@ import math
 from sim.housegen.furniture.item import Geom, Look
 from sim.housegen.hazards.floor_map import FloorMap
 from sim.housegen.hazards.hazard import Sketch, box
-from sim.housegen.openings import HALF_WALL_M
+from sim.housegen.structure.openings import HALF_WALL_M
 
 GLASS_M, HIGH_M, PROFILE_M = 0.012, 2.05, 0.03
 """Thickness and height of panes, and the thickness of their frames."""
 DOTS_M, DOT_M = 1.42, 0.03
 """Height and size of the safety dots on a pane: above the robot, so that no obstacle map contains them."""
 WAY_M = (0.58, 0.76)
-"""Width of the way that stays open beside a pane."""
+"""Width of the passage that stays open next to a pane."""
 LEAF_RAD = (math.radians(55.0), math.radians(100.0))
 _CLEAR = Look()
 
 
 def partition(s: Sketch, floor: FloorMap) -> bool:
-    """Adds a pane across the whole room, with a way at the end that is farther from the path."""
+    """Adds a pane across the whole room, with a passage at the end that is farther from the path."""
     s.align()
     return _across(s, floor, "window")
 
 
 def sliding_door(s: Sketch, floor: FloorMap) -> bool:
-    """Adds fixed and sliding panes that close a wide opening up to a way at one end."""
+    """Adds fixed and sliding panes that close a wide opening up to a passage at one end."""
     wide = [opening for opening in floor.openings if opening.kind in ("opening", "open")]
     if not wide:
         return False

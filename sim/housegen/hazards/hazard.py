@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from sim.housegen.furniture.item import Geom, Item, Look, Pool
 from sim.housegen.furniture.transforms import bounds, matrix_from_euler
-from sim.housegen.materials import look
-from sim.housegen.merging import possible_collision_geoms
-from sim.housegen.mjcf import HouseBuilder, PlacedItem
-from sim.housegen.movables import Movable, as_movable
-from sim.housegen.openings import Opening
-from sim.housegen.triangles import facets
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.merging import possible_collision_geoms
+from sim.housegen.mjcf.movables import Movable, as_movable
+from sim.housegen.mjcf.placed import PlacedItem
+from sim.housegen.mjcf.triangles import facets
+from sim.housegen.structure.openings import Opening
+from sim.housegen.surfaces.materials import look
 
 if TYPE_CHECKING:
     from sim.housegen.hazards.floor_map import FloorMap
@@ -63,7 +64,7 @@ class PlacedHazard:
         return [outline for part in self.parts for outline in part.footprints()]
 
     def add_to(self, builder: HouseBuilder, number: int) -> None:
-        """Adds the objects and the site `hazard_<kind>_<number>` that tells where they are."""
+        """Adds the objects and the site `hazard_<kind>_<number>` that marks their position."""
         for part in self.parts:
             if part.movable is not None:
                 builder.add_movable_body(part.movable, part.placed)

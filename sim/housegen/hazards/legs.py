@@ -12,7 +12,7 @@ POLE_M = 0.012
 
 
 def stands(s: Sketch, floor: FloorMap) -> bool:
-    """Adds a row of stands across the path: the gaps between their poles look open, their flat feet close them."""
+    """Adds a row of coat or music stands across the path; the gaps between their poles are closed by flat feet."""
     del floor
     count = int(s.rng.integers(2, 4))
     reach = float(s.rng.uniform(0.30, 0.36))

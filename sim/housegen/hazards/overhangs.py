@@ -1,4 +1,4 @@
-"""Tables with tops of clear glass: depth shows their two end frames, and between them a passage that is none."""
+"""Tables with tops of clear glass: depth shows their two end frames and an apparent passage between them."""
 
 from __future__ import annotations
 

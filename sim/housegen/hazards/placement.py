@@ -13,8 +13,8 @@ from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.hazards import glass, legs, loose, overhangs, scans, slabs
 from sim.housegen.hazards.floor_map import FloorMap, Path
 from sim.housegen.hazards.hazard import Design, PlacedHazard, Sketch
-from sim.housegen.materials import look
-from sim.housegen.openings import Opening
+from sim.housegen.structure.openings import Opening
+from sim.housegen.surfaces.materials import look
 
 DESIGNS = MappingProxyType[str, tuple[Design, ...]](
     {

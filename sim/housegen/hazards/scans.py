@@ -41,7 +41,7 @@ def posts(s: Sketch, floor: FloorMap) -> bool:
 
 
 def doorway(s: Sketch, floor: FloorMap) -> bool:
-    """Adds debris at one or both sides of a doorway, so that a narrower way stays."""
+    """Adds debris at one or both sides of a doorway, so that a narrower passage stays."""
     doors = [opening for opening in floor.openings if opening.kind in ("door", "opening") and opening.leaf is None]
     if not doors:
         return False

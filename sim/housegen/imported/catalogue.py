@@ -17,7 +17,7 @@ from sim.housegen.furniture.item import Look, Pool
 from sim.housegen.furniture.workbench import Workbench
 from sim.housegen.generator import GeneratedHouse, HouseConfig, generate_house
 from sim.housegen.imported.library import Model, ModelSplit, Shape, read_index, read_shape
-from sim.housegen.triangles import mesh_shape
+from sim.housegen.mjcf.triangles import mesh_shape
 
 WITHOUT_USES = frozenset(("sofa",))
 """Categories that rooms never ask for by use: imported models replace all own styles, whatever their uses."""

@@ -1,7 +1,7 @@
 """The table that decides which category and uses an installed model has, by its name, its group and its size.
 
-The first rule that matches decides. Models that no rule matches are left out: outdoor things, vehicles, people, models
-that show things of several categories (a vanity with its basin and its mirror), racks and rails without the clothes
+The first rule that matches decides. Models that no rule matches are left out: outdoor objects, vehicles, people, models
+that show objects of several categories (a vanity with its basin and its mirror), racks and rails without the clothes
 and towels that give them their name, and names that say too little.
 """
 
@@ -22,7 +22,7 @@ INDOORS = frozenset(("Bathroom", "Bedroom", "Kitchen", "Lights", "Living room", 
 
 @dataclass(frozen=True)
 class Label:
-    """What a model is."""
+    """The category and the uses of a model."""
 
     category: str
     uses: tuple[str, ...] = ()
@@ -129,7 +129,7 @@ _RULES: tuple[_Rule, ...] = (
     _Rule(r"microwave", _label("appliances", "microwave", mount="top")),
     _Rule(r"toaster|coffee (maker|brewer|machine)|mixer|blender", _label("appliances", "small", mount="top"),
           width_m=(0.0, 0.45)),
-    # clothes and small things
+    # clothes and small objects
     _Rule(r"folded clothes", _label("clothes", "top", mount="top")),
     _Rule(r"upright piano", _label("furniture", "piano")),
     _Rule(r"screen", _label("furniture", "screen"), height_m=(1.2, 2.2)),

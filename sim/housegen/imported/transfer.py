@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from sim.housegen.rooms import PlanKind
-from sim.housegen.split_recipes import Recipe
+from sim.housegen.floor_plan.rooms import PlanKind
+from sim.housegen.splits.recipes import Recipe
 
 FIRST_SEED = 50_000
 _SHAPES: tuple[tuple[PlanKind, float, tuple[str, ...]], ...] = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from sim.geometry.pose import Pose
-from sim.housegen.rectangles import Rect
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.traps.site import WOOD, Pit, TrapSite
 from sim.housegen.traps.trap import Trap
 from sim.houses.sidecar import Sidecar

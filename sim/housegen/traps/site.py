@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from sim.gl import mujoco
+from sim.housegen.floor_plan.rectangles import Rect, frame_around
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Geom, Item, Look
-from sim.housegen.mjcf import HouseBuilder, Lamp, PlacedItem, RoomBox
-from sim.housegen.rectangles import Rect, frame_around
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
 
 CEILING_M = 2.5
 WALL_M = 0.1

@@ -22,11 +22,11 @@ from sim.analysis.report.drawings import ground_truth_of, path_on, split_of
 from sim.analysis.report.facts import command_of
 from sim.analysis.report.figures import wilson
 from sim.analysis.report.plans import PX_M, Sheet, draw_plan, sheet_around, shortest_path
-from sim.analysis.report.words import explain, marks
 from sim.evaluation.last_view import picture_file
 from sim.interface import ConfigError
 from sim.reading import image_size_px
 from sim.report import Args, main
+from sim.task.explanations import explain, marks
 from sim.task.ground_truth import GroundTruth
 from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file, write_trajectory
 from sim.viewers.video import VideoWriter, video_file

@@ -18,17 +18,8 @@ from stubborn.detection.track_seeker import TrackSeeker
 from stubborn.detection.verification import AcceptAll
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers import agents
-from tests.helpers.worlds import room, with_box
 
 SMALL = ("camera.width_px=160", "camera.height_px=120")
-
-
-@pytest.fixture(scope="module")
-def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
-    file.write_text(furnished.spec.to_xml())
-    return file
 
 
 def played(house: Path, out: Path, agent: str, semantics: str, *config: str) -> tuple[dict, set[str]]:

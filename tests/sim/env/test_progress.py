@@ -12,7 +12,7 @@ import pytest
 from sim.geometry.pose import Pose
 from sim.gym import ENV_ID, ProgressReward
 from sim.interface import Action, CameraModel, ConfigError
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import sofa_room
 
 SMALL = CameraModel(width_px=64, height_px=48)
 FORWARD, LEFT, RIGHT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT, Action.STOP
@@ -22,7 +22,7 @@ FORWARD, LEFT, RIGHT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_
 def options(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """A room of 6 x 6 m, in which the robot stands 2.1 m from where a STOP for the sofa succeeds."""
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    furnished = sofa_room()
     file.write_text(furnished.spec.to_xml())
     return {"house": file, "goal": "sofa", "start": Pose(-1.0, 0.0, 0.0), "camera": SMALL, "sensors": ()}
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import os
 import subprocess
 import sys
@@ -19,11 +18,11 @@ from sim.evaluation import executors
 from sim.evaluation.executors import Processes, make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.evaluation.results import RunDirectory
-from sim.evaluation.rollout import TIMES
 from sim.evaluation.workers import MAX_FAILED_STARTS, RunnerSpec, WorkerLost, run_in_pool
 from sim.interface import ConfigError
 from tests.helpers.players import Job, die, die_the_first_time, slow_double
-from tests.helpers.worlds import room, with_box
+from tests.helpers.results import lines_of
+from tests.helpers.worlds import sofa_room
 
 SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
 
@@ -167,7 +166,7 @@ def test_a_cluster_loses_no_episode_with_one_of_its_machines(
     from sim.run import entry
 
     machine = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    furnished = sofa_room()
     (tmp_path / "sofa_room.xml").write_text(furnished.spec.to_xml())
     command = ["--agent", "oracle", "--house", str(tmp_path / "sofa_room.xml"), "--episodes", "12"]
     assert entry([*command, "--out", str(tmp_path / "here")]) == 0
@@ -183,12 +182,6 @@ def test_a_cluster_loses_no_episode_with_one_of_its_machines(
     assert entry([*command, *on_cluster, "--out", str(tmp_path / "there")]) == 0
     assert len(cluster.list_all_nodes()) == 1
     assert lines_of(tmp_path / "there") == lines_of(tmp_path / "here")
-
-
-def lines_of(out: Path) -> list[dict[str, Any]]:
-    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
-    kept = [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
-    return sorted(kept, key=lambda line: line["episode_id"])
 
 
 @pytest.mark.slow

@@ -21,29 +21,17 @@ from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
 from sim.run import entry
 from sim.sensors.noise import NoiseConfig, PoseNoise
-from tests.helpers.worlds import ledge, room, with_box
+from tests.helpers.players import Script
+from tests.helpers.worlds import ledge, sofa_room
 
 SMALL = CameraModel(width_px=64, height_px=48)
 EPISODE = Episode("sofa_room_0", "sofa_room", "sofa", Pose(-1.0, 0.0, 0.0))
 
 
-class Script:
-    """An agent that reads its actions from a list."""
-
-    def __init__(self, actions: list[Action]) -> None:
-        self.actions = actions
-
-    def reset(self, goal: str, seed: int) -> None:
-        self.goal, self.left = goal, list(self.actions)
-
-    def act(self, observation: object) -> Action:
-        return self.left.pop(0)
-
-
 @pytest.fixture
 def env(tmp_path) -> Iterator[ObjectNavEnv]:
     file = tmp_path / "sofa_room.xml"
-    file.write_text(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml())
+    file.write_text(sofa_room().spec.to_xml())
     env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL)
     yield env
     env.close()
@@ -133,7 +121,7 @@ def test_a_line_without_a_stop_or_a_place_says_so(env: ObjectNavEnv, agent: Any,
 
 def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
     file = tmp_path / "sofa_room.xml"
-    file.write_text(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml())
+    file.write_text(sofa_room().spec.to_xml())
     noise = NoiseConfig(pose=PoseNoise(gps_walk_m=0.3, compass_walk_rad=0.1))
     env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL, noise=noise)
     agent = Aimed(AHEAD_AND_STOP, lambda: agent.told.place_of(2.0, 1.0))
@@ -254,7 +242,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
 ) -> None:
     folder, fault = tmp_path / "tiny", tmp_path / "fault"
     folder.mkdir()
-    good = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml()
+    good = sofa_room().spec.to_xml()
     for name, text in (("good", good), ("noisy", good), ("torn", good[:200])):
         (folder / f"{name}.xml").write_text(text)
     (folder / "noisy.json").write_text('{"noise": {"preset": "psychic"}}')

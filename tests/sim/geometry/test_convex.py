@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.geometry.convex import ConvexPolygon, lines_blocked, plan_polygon
+from sim.geometry.convex import ConvexPolygon, lines_blocked, polygon_from_above
 from sim.gl import mujoco
 from sim.houses.geoms import CURVE_TOLERANCE_M, geom_polytope, mesh_triangles
 
@@ -25,7 +25,7 @@ def world(geoms: str, assets: str = ""):
 
 def projection(geom: str, low=-math.inf, high=math.inf, assets="") -> ConvexPolygon | None:
     model, data = world(geom, assets)
-    return plan_polygon(geom_polytope(model, data, 0), low, high)
+    return polygon_from_above(geom_polytope(model, data, 0), low, high)
 
 
 def rectangle(x0: float, y0: float, x1: float, y1: float) -> ConvexPolygon:
@@ -85,7 +85,7 @@ def test_a_mesh_covers_its_hull_and_its_triangles_stand_where_it_stands():
     wedge = "<mesh name='w' vertex='0 0 0  1 0 0  0 1 0  0 0 1' />"
     geom = '<body pos="3 1 0" euler="0 0 90"><geom type="mesh" mesh="w"/></body>'
     model, data = world(geom, wedge)
-    polygon = plan_polygon(geom_polytope(model, data, 0))
+    polygon = polygon_from_above(geom_polytope(model, data, 0))
     assert polygon is not None
     np.testing.assert_allclose(polygon.bounds_m, (2.0, 1.0, 3.0, 2.0), atol=1e-6)
     triangles = mesh_triangles(model, data, 0)

@@ -10,9 +10,9 @@ import pytest
 from scipy import ndimage
 
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
-from sim.housegen.openings import JAMB_M, cut_openings, outer_spans
-from sim.housegen.rectangles import SIDES, Rect, shared_side, subtract
-from sim.housegen.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind
+from sim.housegen.floor_plan.rectangles import SIDES, Rect, shared_side, subtract
+from sim.housegen.floor_plan.rooms import MAX_ROOMS, MIN_ESTATE_ROOMS, PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind
+from sim.housegen.structure.openings import JAMB_M, cut_openings, outer_spans
 from tests.helpers.sampling import sample
 
 CASES = [(kind, seed) for kind in PLAN_KINDS for seed in range(20)]

@@ -13,13 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.gl import mujoco
-from sim.housegen import materials
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Style
 from sim.housegen.furniture.item import Child, Geom, Item, Look, MeshShape, Pool
 from sim.housegen.furniture.shapes import MAX_VERTICES
 from sim.housegen.furniture.transforms import euler_from_matrix, matrix_from_euler
-from sim.housegen.textures import TEXTURES
+from sim.housegen.surfaces import materials
+from sim.housegen.surfaces.textures import TEXTURES
 from sim.interface import GOAL_CATEGORIES, MPCAT40
 from sim.paths import assets_dir
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sim.housegen.boxes import geom_box
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Item
-from sim.housegen.merging import assemble
+from sim.housegen.mjcf.boxes import geom_box
+from sim.housegen.mjcf.merging import assemble
 
 PLANTS = [(s.pool, s.name) for s in CATALOGUE.styles("plant") if s.pool != "wide"]
 TOILETS = [(s.pool, s.name) for s in CATALOGUE.styles("toilet") if s.pool != "wide"]

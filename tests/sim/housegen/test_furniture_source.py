@@ -10,14 +10,21 @@ import numpy as np
 import pytest
 
 from sim.housegen.floor_plan import PlanError, draw_floor_plan
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.furnishing import FurnishError, furnish
+from sim.housegen.furnishing.furniture_source import (
+    MOST_ALIKE,
+    REQUIRED,
+    SETS,
+    FurnitureSource,
+    design_of,
+    is_same_design,
+)
+from sim.housegen.furnishing.placement import RoomLayout
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Item, Pool
-from sim.housegen.furniture_source import MOST_ALIKE, REQUIRED, SETS, FurnitureSource, design_of, is_same_design
-from sim.housegen.materials import palettes
-from sim.housegen.openings import cut_openings
-from sim.housegen.placement import RoomLayout
-from sim.housegen.rectangles import Rect
+from sim.housegen.structure.openings import cut_openings
+from sim.housegen.surfaces.materials import palettes
 
 HOMES: tuple[tuple[Pool, int], ...] = (("train", 0), ("train", 1), ("heldout", 0), ("heldout", 1))
 BARE_M = 2.0
@@ -88,7 +95,7 @@ def test_all_styles_of_a_use_come_before_one_is_repeated(pool):
 
 
 def placement(item: Item, number: int):
-    from sim.housegen.placement.records import floor_placement
+    from sim.housegen.furnishing.placement.records import floor_placement
 
     return floor_placement(item, float(number), 0.0, 0.0)
 

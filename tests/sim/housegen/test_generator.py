@@ -11,14 +11,14 @@ import pytest
 
 from sim.gl import mujoco
 from sim.housegen import generate
+from sim.housegen.floor_plan.rectangles import Rect
+from sim.housegen.floor_plan.rooms import PLAN_AREA_M2
+from sim.housegen.furnishing.placement import RoomLayout
+from sim.housegen.furnishing.placement.floor import put_against_wall
+from sim.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house, max_bytes
-from sim.housegen.placement import RoomLayout
-from sim.housegen.placement.floor import put_against_wall
-from sim.housegen.placement.on_walls import hang_on_wall
-from sim.housegen.rectangles import Rect
-from sim.housegen.rooms import PLAN_AREA_M2
-from sim.housegen.split_recipes import SPLITS
+from sim.housegen.splits.recipes import SPLITS
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.houses.load import validate_house

@@ -13,7 +13,7 @@ from sim.gl import mujoco
 from sim.housegen.generator import HouseConfig, generate_house
 from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
 from sim.housegen.hazards.floor_map import SPARE_M, FloorMap
-from sim.housegen.openings import Opening
+from sim.housegen.structure.openings import Opening
 from sim.houses.hazards import read_hazards
 from sim.houses.labels import collidable_geoms, read_labels, rendered_geoms
 from sim.interface import ConfigError

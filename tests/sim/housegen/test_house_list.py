@@ -13,9 +13,9 @@ import pytest
 from sim.episodes.splits import Episode, Split, load_split, write_split
 from sim.errors import HouseError
 from sim.geometry.pose import Pose
-from sim.housegen import house_list
-from sim.housegen.house_list import CACHE_VARIABLE, cache_dir, house_bytes, versions_here, write_house_list
-from sim.housegen.split_recipes import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
+from sim.housegen.splits import house_list
+from sim.housegen.splits.house_list import CACHE_VARIABLE, cache_dir, house_bytes, versions_here, write_house_list
+from sim.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLITS, Recipe, train_recipe
 from sim.interface import ConfigError
 from tests.helpers.worlds import room, with_box
 

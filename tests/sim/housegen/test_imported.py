@@ -35,8 +35,9 @@ from sim.housegen.imported.meshes import Part, check_installed
 from sim.housegen.imported.reduction import MAX_TRIANGLES, reduced
 from sim.housegen.imported.solids import collision_boxes, top_of
 from sim.housegen.imported.sources import Entry, Skipped, read_source
-from sim.housegen.mjcf import HouseBuilder, PlacedItem
-from sim.housegen.movables import split_movable
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.movables import split_movable
+from sim.housegen.mjcf.placed import PlacedItem
 from sim.houses.writing import house_text
 from tests.helpers.models import CHAIR, MATERIALS, obj_text, properties, write_catalogue, write_folder
 

@@ -18,12 +18,13 @@ from sim.episodes.drawing import sample_episode
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
 from sim.housegen import generate
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.item import Child, Item
-from sim.housegen.mjcf import HouseBuilder, PlacedItem
-from sim.housegen.movables import GRAVITY_M_S2, MAX_PUSH_N, split_movable
-from sim.housegen.rectangles import Rect
-from sim.housegen.split_recipes import SPLITS
+from sim.housegen.mjcf.builder import HouseBuilder
+from sim.housegen.mjcf.movables import GRAVITY_M_S2, MAX_PUSH_N, split_movable
+from sim.housegen.mjcf.placed import PlacedItem
+from sim.housegen.splits.recipes import SPLITS
 from sim.houses.house import House
 from sim.interface import MPCAT40_ID, Action, CameraModel
 from sim.robot.config import RobotConfig

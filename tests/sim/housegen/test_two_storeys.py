@@ -7,9 +7,9 @@ import pytest
 
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
+from sim.housegen.floor_plan.rectangles import Rect
 from sim.housegen.generator import HouseConfig, generate_house
-from sim.housegen.rectangles import Rect
-from sim.housegen.stairs import RISER_M, place_flight
+from sim.housegen.structure.stairs import RISER_M, place_flight
 from sim.houses.house import House
 from sim.houses.writing import house_text
 from sim.interface import Action

@@ -27,7 +27,7 @@ from sim.sensors.random_fields import smooth_normal
 from sim.sensors.rgb_noise import NoisyRgb, RgbNoise
 from sim.sensors.standard import resolve_sensors
 from sim.world.world import World
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import room, sofa_room, with_box
 
 CAMERA = CameraModel()
 SHAPE = (CAMERA.height_px, CAMERA.width_px)
@@ -271,7 +271,7 @@ def test_conditions_are_drawn_from_their_ranges() -> None:
 
 
 def test_conditions_change_floors_and_motors_only_and_are_undone_exactly() -> None:
-    world = World(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)))
+    world = World(sofa_room())
     model, start = world.model, Pose(0.0, 0.0, 0.0)
     friction, gain, bias = (a.copy() for a in (model.geom_friction, model.actuator_gainprm, model.actuator_biasprm))
     floor = model.geom("floor_00").id
@@ -309,7 +309,7 @@ def test_slip_and_short_moves_come_from_physics() -> None:
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    furnished = sofa_room()
     furnished = with_box(
         furnished, "shower_00", centre_m=(1.5, 1.5, 1.0), half_m=(0.3, 0.02, 1.0), rgba=(0.8, 0.9, 0.9, 0.2)
     )

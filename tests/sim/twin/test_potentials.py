@@ -25,7 +25,7 @@ from stubborn.mapping.masks import distance_to
 from stubborn.mapping.navmap import NavMap
 from tests.helpers.asciimap import mask_of
 from tests.helpers.ground import ground
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import bed_behind_a_wall
 
 CONFIG = SampleConfig(walks=2, maps=3, most_steps=60, cells=64, map_cells=700)
 BED = GOAL_CATEGORIES.index("bed")
@@ -41,9 +41,7 @@ TWO_PARTS = """
 @pytest.fixture(scope="module")
 def plan() -> Plan:
     """Two rooms behind each other, with a bed in the second one."""
-    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
-    house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
-    (exported,) = export_plans(house, {})
+    (exported,) = export_plans(bed_behind_a_wall(), {})
     return exported
 
 

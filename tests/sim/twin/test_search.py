@@ -13,15 +13,13 @@ from sim.plans.sight import PlanCamera
 from sim.task.metrics import EXPLORED_SHARE
 from sim.twin.walks import search
 from stubborn.mapping.navmap import NavMap
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import bed_behind_a_wall
 
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
     """Two rooms behind each other, with a bed in a corner of the second one."""
-    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
-    house = with_box(house, "wall_10", centre_m=(0.5, 0.9, 1.25), half_m=(0.05, 1.6, 1.25))
-    (exported,) = export_plans(house, {})
+    (exported,) = export_plans(bed_behind_a_wall(-0.7), {})
     return exported
 
 

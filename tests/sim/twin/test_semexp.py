@@ -22,16 +22,14 @@ from sim.twin.semexp import FAST, RewardConfig, SemExpEnv
 from stubborn.agent import AgentConfig
 from stubborn.exploration.semexp import SemExpConfig, SemExpExplorer
 from stubborn.exploration.semexp_input import PolicyInput, ViewConfig
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import bed_behind_a_wall, with_box
 
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory) -> Path:
     """A folder with the plan of two rooms behind each other, with a bed in the second one and a sofa in the first."""
     folder = tmp_path_factory.mktemp("plans")
-    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
-    house = with_box(house, "sofa_00", centre_m=(-2.0, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
-    house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
+    house = with_box(bed_behind_a_wall(), "sofa_00", centre_m=(-2.0, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
     (plan,) = export_plans(house, {})
     write_plan(folder / "flat.npz", plan)
     return folder

@@ -24,16 +24,14 @@ from sim.twin.env import LAYERS, TwinConfig, TwinEnv
 from stubborn.agent import AgentConfig
 from stubborn.agents import SPECS
 from stubborn.mapping.mapper import MappingConfig
-from tests.helpers.worlds import room, with_box
+from tests.helpers.worlds import bed_behind_a_wall, room, with_box
 
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory) -> Path:
     """A folder with the plan of two rooms behind each other, with a bed in the second one."""
     folder = tmp_path_factory.mktemp("plans")
-    house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
-    house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
-    (plan,) = export_plans(house, {})
+    (plan,) = export_plans(bed_behind_a_wall(), {})
     write_plan(folder / "flat.npz", plan)
     return folder
 

@@ -20,27 +20,18 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.viewers import live, rerun_log, selection
 from sim.viewers.viewer import VIEWER_IMAGES, Viewer
-from tests.helpers.worlds import room, with_box, with_movable
+from tests.helpers.players import Script
+from tests.helpers.worlds import sofa_room, with_box, with_movable
 
 SMALL = CameraModel(width_px=160, height_px=120)
 EPISODE = Episode("sofa/0", "sofa_room", "sofa", Pose(-1.0, 0.5, math.pi / 6))
 ACTIONS = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.MOVE_FORWARD, Action.STOP]
 
 
-class Script:
-    """An agent that reads its actions from a list."""
-
-    def reset(self, goal: str, seed: int) -> None:
-        self.left = list(ACTIONS)
-
-    def act(self, observation: object) -> Action:
-        return self.left.pop(0)
-
-
 @pytest.fixture
 def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
     file = tmp_path / "sofa_room.xml"
-    furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    furnished = sofa_room()
     furnished = with_box(furnished, "ceiling_00", centre_m=(0, 0, 2.55), half_m=(3, 3, 0.05))
     file.write_text(with_movable(furnished, "stool_00", xy_m=(0.0, -2.0)).spec.to_xml())
     env = ObjectNavEnv(house=file, sensors=("depth",), truth=VIEWER_IMAGES, camera=SMALL)
@@ -49,7 +40,7 @@ def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
 
 
 def played(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
-    line = play_episode(env, Script(), EPISODE, seed=0, viewers=viewers)
+    line = play_episode(env, Script(ACTIONS), EPISODE, seed=0, viewers=viewers)
     return {key: value for key, value in line.items() if key not in TIMES}
 
 

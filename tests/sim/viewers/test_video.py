@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import resource
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -25,6 +25,7 @@ from sim.houses.labels import geoms_of
 from sim.interface import MPCAT40, Action, CameraModel, ConfigError, Scores, SuccessRule
 from sim.robot.body import PREFIX
 from sim.run import entry
+from sim.task.explanations import Outcome, explain_end
 from sim.task.ground_truth import GroundTruth
 from sim.viewers import overlay, video
 from sim.viewers.chase import ChaseView
@@ -41,36 +42,16 @@ from sim.viewers.topview import (
 )
 from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, perceive, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
-from sim.viewers.words import Outcome, explain_end
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
 from tests.helpers import browser
-from tests.helpers.worlds import room, with_box
+from tests.helpers.players import Script
+from tests.helpers.results import lines_of
+from tests.helpers.worlds import room, sofa_room, with_box
 
 WHOLE_END_FRAMES = video.END_FRAMES
-TIMES = ("wall_time_s", "steps_per_s")
 EPISODE = Episode("sofa room/0", "sofa_room", "sofa", Pose(-1.0, 0.0, 0.0))
 AHEAD = [Action.MOVE_FORWARD] * 3
-
-
-@dataclass
-class Script:
-    """An agent that reads its actions from a list."""
-
-    actions: list[Action]
-
-    def reset(self, goal: str, seed: int) -> None:
-        self.left = list(self.actions)
-
-    def act(self, observation: object) -> Action:
-        return self.left.pop(0)
-
-
-@pytest.fixture(scope="module")
-def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
-    file.write_text(with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4)).spec.to_xml())
-    return file
 
 
 @pytest.fixture
@@ -92,11 +73,6 @@ def frames_of(file: Path) -> list[NDArray[np.uint8]]:
     while (read := capture.read())[0]:
         frames.append(np.asarray(read[1], np.uint8))
     return frames
-
-
-def lines_of(out: Path) -> list[dict]:
-    lines = [json.loads(line) for line in (out / "results.jsonl").read_text().splitlines()]
-    return [{key: value for key, value in line.items() if key not in TIMES} for line in lines]
 
 
 def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tmp_path: Path) -> None:
@@ -348,7 +324,7 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
 
 
 def test_the_shortest_path_is_shown_where_the_floor_is_not_exactly_at_zero(tmp_path: Path) -> None:
-    house = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
+    house = sofa_room()
     house.spec.geom("floor_00").pos[2] = 0.005
     (tmp_path / "high.xml").write_text(house.spec.to_xml())
     env = ObjectNavEnv(house=tmp_path / "high.xml", goal="sofa", start=Pose(-1.0, 0.5, 0.0), sensors=())

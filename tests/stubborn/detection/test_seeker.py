@@ -3,9 +3,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame
+from sim.geometry.grid import GridFrame, Window
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError, SegmenterSpec, SuccessRule
+from stubborn.detection.approach import Approach
 from stubborn.detection.candidates import CandidateParts
 from stubborn.detection.classifiers import Features
 from stubborn.detection.distances import StopDistances, TargetConfig
@@ -14,6 +15,7 @@ from stubborn.detection.verification import AcceptAll, Verifier
 from stubborn.mapping.mapper import Sighting
 from stubborn.mapping.masks import distance_to, nearest, sight_is_clear
 from stubborn.mapping.navmap import NavMap
+from stubborn.planning.planner import Route
 from tests.helpers.asciimap import map_of
 from tests.helpers.ground import BOTH_LAYERS, PLANNER, whole
 
@@ -58,6 +60,24 @@ def seeker(verifier: Verifier | None = None, **options: float) -> TargetSeeker:
     return made(TargetConfig(**options), verifier or AcceptAll(), EXACT)  # type: ignore[arg-type]
 
 
+def approached(
+    seek: TargetSeeker, navmap: NavMap, pose: Pose, step: int = 0, *, window: Window | None = None
+) -> Approach:
+    """Returns the approach to a candidate; there must be one."""
+    approach = seek.approach(navmap, window or whole(navmap), pose, step)
+    assert approach is not None
+    return approach
+
+
+def routed(
+    seek: TargetSeeker, navmap: NavMap, pose: Pose, step: int = 0, *, window: Window | None = None
+) -> tuple[Approach, Route]:
+    """Returns the approach to a candidate and its route; there must be one."""
+    approach = approached(seek, navmap, pose, step, window=window)
+    assert approach.route is not None
+    return approach, approach.route
+
+
 def known(text: str) -> tuple[NavMap, Pose]:
     """A drawn map on which everything has been in view once."""
     navmap, pose = map_of(text)
@@ -86,19 +106,16 @@ def test_without_a_candidate_there_is_no_approach():
 
 def test_the_route_leads_to_a_viewpoint_near_the_candidate():
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
+    approach, route = routed(seeker(), navmap, pose)
     assert approach.cell == (30, 60)
-    rows, cols = np.nonzero(approach.route.goal.cells)
+    rows, cols = np.nonzero(route.goal.cells)
     assert np.hypot(rows - 30, cols - 60).max() * 0.05 <= 0.85 * 1.03  # the fast distance is good to 2 %
-    assert approach.route.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
+    assert route.length_m == pytest.approx(2.5 - 0.85, abs=0.1)
 
 
 def test_on_a_viewpoint_there_is_no_route_left():
     navmap, pose = known(text_of(room(R=(30, 46), T=(30, 60))))
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
+    approach = approached(seeker(), navmap, pose)
     assert approach.route is None
     assert approach.bearing_rad == pytest.approx(0.0, abs=1e-6)
 
@@ -107,10 +124,8 @@ def test_with_inexact_outlines_the_agent_goes_nearer():
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     config = TargetConfig(outline_margin_m=0.3)
     careful = made(config, AcceptAll(), INEXACT)
-    approach = careful.approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    assert approach.route.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
+    _, route = routed(careful, navmap, pose)
+    assert route.length_m == pytest.approx(2.5 - 0.55, abs=0.1)
     for distance_m, near_enough in ((0.80, False), (0.60, True)):
         sighting = Sighting(np.array([30]), np.array([60]), np.array([distance_m], np.float32))
         assert seeker().in_reach(navmap, sighting) == (30, 60)
@@ -124,8 +139,7 @@ def test_where_there_is_no_nearer_viewpoint_the_usual_one_will_do():
             rows[row][col] = "o"
     navmap, pose = known(text_of(rows))
     careful = made(TargetConfig(), AcceptAll(), INEXACT)
-    approach = careful.approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
+    approach = approached(careful, navmap, pose)
     assert approach.near_enough
     assert approach.route is not None
     _, cols = np.nonzero(approach.route.goal.cells)
@@ -169,16 +183,14 @@ def doubtful_one_first() -> tuple[NavMap, Pose]:
 def test_candidates_that_would_be_accepted_are_approached_first():
     navmap, pose = doubtful_one_first()
     for verifier, cell in ((AcceptAll(), (30, 35)), (Doubtful(), (30, 60))):
-        approach = seeker(verifier).approach(navmap, whole(navmap), pose, 0)
-        assert approach is not None
+        approach = approached(seeker(verifier), navmap, pose)
         assert approach.cell == cell
 
 
 def test_doubtful_candidates_are_approached_when_there_is_no_other():
     navmap, pose = doubtful_one_first()
     navmap.rejected[30, 60] = True
-    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
+    approach = approached(seeker(Doubtful()), navmap, pose)
     assert approach.cell == (30, 35)
 
 
@@ -191,8 +203,7 @@ def test_an_acceptable_candidate_without_a_viewpoint_does_not_hold_up_the_others
     navmap, pose = known(text_of(rows))
     navmap.score_max[30, 25], navmap.score_sum[30, 25], navmap.score_sum[30, 60] = 0.6, 3.0, 9.0
     navmap.frames_in_view[:] = 10
-    approach = seeker(Doubtful()).approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
+    approach = approached(seeker(Doubtful()), navmap, pose)
     assert approach.cell == (30, 25)
 
 
@@ -230,10 +241,8 @@ def test_the_approached_cell_is_the_candidate_that_the_route_leads_to():
                 rows[row][col] = "#"  # walls all around another candidate, which is nearer in a straight line
     navmap, pose = known(text_of(rows))
     navmap.score_max[30, 23] = 0.9
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    _, cols = np.nonzero(approach.route.goal.cells)
+    approach, route = routed(seeker(), navmap, pose)
+    _, cols = np.nonzero(route.goal.cells)
     assert cols.min() > 32
     assert approach.cell == (30, 60)
 
@@ -245,8 +254,7 @@ def test_no_viewpoint_lies_behind_a_wall_however_near():
     for row in range(2, 14):
         rows[row][39] = "."
     navmap, pose = known(text_of(rows))
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
+    approach = approached(seeker(), navmap, pose)
     assert approach.route is not None  # 0.55 m away in a straight line, and yet the path goes around
     assert approach.route.length_m > 1.5
     _, cols = np.nonzero(approach.route.goal.cells)
@@ -264,16 +272,12 @@ def test_no_viewpoint_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
     navmap.frames_in_view[:, 41:] = 0
     navmap.shown_x[30, 40] = -1.0  # it was seen from the left
     seek = seeker()
-    approach = seek.approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    _, cols = np.nonzero(approach.route.goal.cells)
+    _, route = routed(seek, navmap, pose)
+    _, cols = np.nonzero(route.goal.cells)
     assert cols.max() <= 40
     navmap.frames_in_view[:, 41:] = 1  # now the ground behind is known to be open
-    approach = seek.approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    _, cols = np.nonzero(approach.route.goal.cells)
+    _, route = routed(seek, navmap, pose)
+    _, cols = np.nonzero(route.goal.cells)
     assert cols.max() > 40
 
 
@@ -283,10 +287,8 @@ def test_low_furniture_hides_nothing():
         for col in range(36, 45):
             rows[row][col] = "o"
     navmap, pose = known(text_of(rows))
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    assert approach.route.length_m < 1.0
+    _, route = routed(seeker(), navmap, pose)
+    assert route.length_m < 1.0
 
 
 def enclosed_target() -> tuple[NavMap, Pose]:
@@ -349,18 +351,15 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     assert seeker().approach(navmap, whole(navmap), pose, 0) is None  # there is nothing to verify
     navmap, pose = far_target()
     seek = seeker(RefuseAll())
-    approach = seek.approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
+    approach, route = routed(seek, navmap, pose)
     assert not approach.near_enough
-    rows, cols = np.nonzero(approach.route.goal.cells)
-    reachable = approach.route.goal.free.reachable
+    rows, cols = np.nonzero(route.goal.cells)
+    reachable = route.goal.free.reachable
     gap_cells = np.hypot(*(np.indices(reachable.shape) - np.array((30, 60))[:, None, None]))
     assert np.hypot(rows - 30, cols - 60).max() <= gap_cells[reachable].min() * 1.03 + 4.0
     x_m, y_m = navmap.frame.centres(rows[0], cols[0])
     there = Pose(float(x_m), float(y_m), 0.0)
-    approach = seek.approach(navmap, whole(navmap), there, 1)
-    assert approach is not None
+    approach = approached(seek, navmap, there, 1)
     assert approach.route is None
     assert not approach.near_enough
     assert seek.judge(navmap, approach.cell) is False
@@ -370,8 +369,7 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
 def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
     navmap, pose = far_target()
     seek = seeker(RefuseAll(), last_resort_step=100, retry_after_steps=10)
-    approach = seek.approach(navmap, whole(navmap), pose, 5)
-    assert approach is not None
+    approach = approached(seek, navmap, pose, 5)
     assert not approach.near_enough
     seek.postpone(navmap, 5)
     assert seek.approach(navmap, whole(navmap), pose, 14) is None
@@ -387,10 +385,8 @@ def test_where_pessimistic_marks_close_the_path_to_a_target_the_optimistic_ones_
         for col in (30, 31, 32):
             rows[row][col] = "w"
     navmap, pose = known(text_of(rows))
-    approach = seeker().approach(navmap, whole(navmap), pose, 0)
-    assert approach is not None
-    assert approach.route is not None
-    assert approach.route.length_m < 2.0
+    _, route = routed(seeker(), navmap, pose)
+    assert route.length_m < 2.0
     navmap.optimistic_marks[:] = navmap.pessimistic_marks
     assert seeker().approach(navmap, whole(navmap), pose, 0) is None
 
@@ -398,11 +394,9 @@ def test_where_pessimistic_marks_close_the_path_to_a_target_the_optimistic_ones_
 def test_a_candidate_outside_the_local_window_is_still_approached():
     navmap, pose = known(text_of(room(width=300, R=(30, 10), T=(30, 280))))
     window = navmap.frame.window_at(pose.x_m, pose.y_m, 100)
-    approach = seeker().approach(navmap, window, pose, 0)
-    assert approach is not None
-    assert approach.route is not None
+    approach, route = routed(seeker(), navmap, pose, window=window)
     assert approach.cell == (30, 280)
-    assert approach.route.length_m > 12.0
+    assert route.length_m > 12.0
 
 
 def sighting_at(*places: tuple[int, int, float]) -> Sighting:

@@ -12,7 +12,7 @@ from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.asciimap import grid_of
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
-from tests.helpers.ground import ground, route_of
+from tests.helpers.ground import ground, route_of, see
 
 HERE = Pose(0.0, 0.0, 0.0)
 
@@ -27,22 +27,6 @@ def square(half_m: float) -> NavMap:
     see(navmap, (-half_m, half_m), (-half_m, half_m))
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
     return navmap
-
-
-def area(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> tuple[slice, slice]:
-    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(x_m[0], y_m[0]), navmap.frame.cell(x_m[1], y_m[1])
-    return slice(row_0, row_1 + 1), slice(col_0, col_1 + 1)
-
-
-def see(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> None:
-    cells = area(navmap, x_m, y_m)
-    navmap.frames_in_view[cells] = 1
-    navmap.grow_known(*cells)
-
-
-def wall(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]) -> None:
-    see(navmap, x_m, y_m)
-    navmap.seen_obstacle[area(navmap, x_m, y_m)] = True
 
 
 def window(navmap: NavMap) -> Window:
@@ -79,9 +63,9 @@ def closed_but(navmap: NavMap, half_m: float, doors: list[tuple[str, float]]) ->
         along = [-half_m, *sorted(v for s, place in doors if s == side for v in (place - 0.5, place + 0.5)), half_m]
         for low, high in zip(along[::2], along[1::2], strict=True):
             if side in "ew":
-                wall(navmap, (at - 0.05, at + 0.05), (low, high))
+                see(navmap, (at - 0.05, at + 0.05), (low, high), wall=True)
             else:
-                wall(navmap, (low, high), (at - 0.05, at + 0.05))
+                see(navmap, (low, high), (at - 0.05, at + 0.05), wall=True)
 
 
 def test_it_goes_to_the_frontier_that_is_nearest_by_path():
@@ -89,7 +73,7 @@ def test_it_goes_to_the_frontier_that_is_nearest_by_path():
     closed_but(navmap, 3.0, [("e", 0.0), ("w", 2.0)])
     goal = goal_xy(explorer(), navmap)
     assert goal == pytest.approx((3.1, 0.0), abs=0.3)
-    wall(navmap, (2.0, 2.1), (-3.0, 3.0))  # now the east door cannot be reached, though it is nearer
+    see(navmap, (2.0, 2.1), (-3.0, 3.0), wall=True)  # now the east door cannot be reached, though it is nearer
     goal = goal_xy(explorer(), navmap)
     assert goal == pytest.approx((-3.1, 2.0), abs=0.3)
 
@@ -105,7 +89,7 @@ def test_it_keeps_to_a_frontier_until_that_has_become_known():
     see(navmap, (3.0, 6.0), (-2.0, 2.0))
     closed = [((6.0, 6.1), (-2.0, 2.0)), ((3.0, 6.0), (-2.1, -2.0)), ((3.0, 6.0), (2.0, 2.1))]
     for x_m, y_m in closed:
-        wall(navmap, x_m, y_m)
+        see(navmap, x_m, y_m, wall=True)
     after = goal_xy(explore, navmap, Pose(-0.3, 0.0, 0.0))
     assert after[0] < -2.5
 
@@ -124,7 +108,7 @@ def test_a_short_frontier_is_left_for_last():
         navmap = square(3.0)
         closed_but(navmap, 3.0, [("e", 0.0), *wide])
         for y_m in ((-0.5, -0.3), (0.3, 0.5)):
-            wall(navmap, (2.95, 3.05), y_m)
+            see(navmap, (2.95, 3.05), y_m, wall=True)
         return navmap
 
     near_east = Pose(1.0, 0.0, 0.0)

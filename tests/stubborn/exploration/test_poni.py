@@ -18,7 +18,7 @@ from stubborn.exploration.poni_net import FILES, MAPS, SHIPPED, PoniNet, PoniNet
 from stubborn.mapping.navmap import NavMap
 from stubborn.network_files import read_weights
 from tests.helpers.gridworld import SMALL_CAMERA
-from tests.helpers.ground import ground, route_of
+from tests.helpers.ground import corridor, ground, route_of, see
 from tests.helpers.slopes import Slopes
 
 SMALL = PoniNetConfig(cells=32, pool=8, widths=(4, 4, 4, 4))
@@ -26,28 +26,15 @@ BED = GOAL_CATEGORIES.index("bed")
 START = Pose(0.5, 0.0, 0.0)
 
 
+def corridor_with_bed(x_m: tuple[float, float] = (-4.0, 4.0)) -> NavMap:
+    navmap = corridor(x_m)
+    navmap.goals_seen[navmap.frame.cell(2.0, 0.9)] = 1 << BED
+    return navmap
+
+
 def explorer(**options: object) -> tuple[PoniExplorer, Slopes]:
     slopes = Slopes()
     return PoniExplorer(PoniConfig(**options), slopes), slopes  # type: ignore[arg-type]
-
-
-def rectangle(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float], *, wall: bool = False) -> None:
-    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(x_m[0], y_m[0]), navmap.frame.cell(x_m[1], y_m[1])
-    cells = slice(row_0, row_1 + 1), slice(col_0, col_1 + 1)
-    navmap.frames_in_view[cells] = 1
-    navmap.seen_obstacle[cells] |= wall
-    navmap.grow_known(*cells)
-
-
-def corridor(x_m: tuple[float, float] = (-4.0, 4.0)) -> NavMap:
-    """Ground between walls, open at both ends, with the robot's trail in its middle and a bed."""
-    navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
-    rectangle(navmap, x_m, (-1.0, 1.0))
-    for y_m in ((-1.1, -1.0), (1.0, 1.1)):
-        rectangle(navmap, x_m, y_m, wall=True)
-    navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
-    navmap.goals_seen[navmap.frame.cell(2.0, 0.9)] = 1 << BED
-    return navmap
 
 
 def goal_x_m(explore: PoniExplorer, navmap: NavMap, pose: Pose = START, goal: str = "bed") -> float:
@@ -57,19 +44,19 @@ def goal_x_m(explore: PoniExplorer, navmap: NavMap, pose: Pose = START, goal: st
 
 
 def test_alpha_weighs_the_area_against_the_object():
-    assert goal_x_m(explorer(alpha=0.1)[0], corridor()) > 3.0
-    assert goal_x_m(explorer(alpha=0.9)[0], corridor()) < -3.0
+    assert goal_x_m(explorer(alpha=0.1)[0], corridor_with_bed()) > 3.0
+    assert goal_x_m(explorer(alpha=0.9)[0], corridor_with_bed()) < -3.0
 
 
 def test_a_path_that_costs_makes_a_nearer_frontier_the_best():
-    navmap, here = corridor(), Pose(-2.0, 0.0, 0.0)
+    navmap, here = corridor_with_bed(), Pose(-2.0, 0.0, 0.0)
     assert goal_x_m(explorer(alpha=0.1)[0], navmap, here) > 3.0
     assert goal_x_m(explorer(alpha=0.1, path_weight_per_m=0.5)[0], navmap, here) < -3.0
 
 
 def test_a_frontier_is_kept_for_some_steps_and_then_judged_again():
     explore, slopes = explorer(alpha=0.1, replan_steps=3)
-    navmap = corridor()
+    navmap = corridor_with_bed()
     for _ in range(4):
         assert goal_x_m(explore, navmap) > 3.0
     assert len(slopes.shown) == 1
@@ -81,19 +68,19 @@ def test_a_frontier_is_judged_again_when_a_wall_makes_the_path_long():
     for detour_m, times in ((0.5, 2), (9.0, 1)):
         explore, slopes = explorer(alpha=0.1, detour_m=detour_m)
         navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
-        rectangle(navmap, (-4.0, 4.0), (-2.5, 2.5))
+        see(navmap, (-4.0, 4.0), (-2.5, 2.5))
         for y_m in ((-2.6, -2.5), (2.5, 2.6)):
-            rectangle(navmap, (-4.0, 4.0), y_m, wall=True)
+            see(navmap, (-4.0, 4.0), y_m, wall=True)
         navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
         assert goal_x_m(explore, navmap) > 3.0
-        rectangle(navmap, (3.0, 3.1), (-1.8, 2.5), wall=True)
+        see(navmap, (3.0, 3.1), (-1.8, 2.5), wall=True)
         assert goal_x_m(explore, navmap) > 3.0
         assert len(slopes.shown) == times
 
 
 def test_a_frontier_is_given_up_when_the_robot_does_not_leave_its_place():
     explore, _ = explorer(alpha=0.1, replan_steps=99, stalled_steps=5, piece_m=3.0)
-    navmap = corridor()
+    navmap = corridor_with_bed()
     for _ in range(5):
         assert goal_x_m(explore, navmap) > 3.0
     assert goal_x_m(explore, navmap) < -3.0
@@ -101,21 +88,21 @@ def test_a_frontier_is_given_up_when_the_robot_does_not_leave_its_place():
 
 def test_a_frontier_that_was_reached_is_done_with():
     explore, _ = explorer(alpha=0.1)
-    navmap = corridor()
+    navmap = corridor_with_bed()
     assert goal_x_m(explore, navmap) > 3.0
     assert goal_x_m(explore, navmap, Pose(4.1, -0.4, 0.0)) > 3.0  # the rest of it, half a metre to the left
     assert goal_x_m(explore, navmap, Pose(4.1, 0.4, 0.0)) < -3.0
 
 
 def test_beyond_the_patch_a_frontier_has_no_potential():
-    far = corridor((-4.0, 8.0))  # the patch ends at 6.4 m
+    far = corridor_with_bed((-4.0, 8.0))  # the patch ends at 6.4 m
     assert goal_x_m(explorer(alpha=0.1)[0], far) < -3.0
 
 
 def test_without_a_frontier_the_robot_goes_far_from_its_trail():
-    navmap = corridor((-4.0, 3.0))
+    navmap = corridor_with_bed((-4.0, 3.0))
     for x_m in ((-4.1, -4.0), (3.0, 3.1)):
-        rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
+        see(navmap, x_m, (-1.1, 1.1), wall=True)
     explore, slopes = explorer(alpha=0.1)
     assert goal_x_m(explore, navmap) < -3.0
     assert not slopes.shown
@@ -126,7 +113,7 @@ def test_the_controls_change_the_goal_or_the_categories_and_nothing_else():
     for semantics in ("seen", "shuffled", "none"):
         explore, slopes = explorer(semantics=semantics)
         explore.reset(5)
-        goal_x_m(explore, corridor())
+        goal_x_m(explore, corridor_with_bed())
         channels[semantics] = slopes.shown[0]
     first = len(LAYERS)
     for shown in channels.values():
@@ -141,9 +128,9 @@ def test_the_controls_change_the_goal_or_the_categories_and_nothing_else():
     ends = set()
     for seed in range(40):
         explore.reset(seed)
-        assert goal_x_m(explore, corridor(), goal="bed") < -3.0  # no other category has a potential
+        assert goal_x_m(explore, corridor_with_bed(), goal="bed") < -3.0  # no other category has a potential
         explore.reset(seed)
-        ends.add(goal_x_m(explore, corridor(), goal="chair") > 3.0)
+        ends.add(goal_x_m(explore, corridor_with_bed(), goal="chair") > 3.0)
     assert ends == {True, False}  # the wrong goal is the bed in some episodes
 
 
@@ -152,7 +139,7 @@ def test_the_controls_of_an_episode_come_from_its_seed():
     for seed in (3, 3, 4):
         explore, slopes = explorer(semantics="shuffled")
         explore.reset(seed)
-        goal_x_m(explore, corridor())
+        goal_x_m(explore, corridor_with_bed())
         orders.append(slopes.shown[0].tobytes())
     assert orders[0] == orders[1] != orders[2]
 
@@ -177,7 +164,7 @@ def test_weights_are_read_back_with_their_sizes(tmp_path: Path):
     assert one.shape == (MAPS, 32, 32)
     assert 0.0 <= one.min() < one.max() <= 1.0
     explore = PoniConfig(weights=str(tmp_path / "net.safetensors")).make(SMALL_CAMERA)
-    assert abs(goal_x_m(explore, corridor())) > 3.0
+    assert abs(goal_x_m(explore, corridor_with_bed())) > 3.0
 
 
 def test_a_wrong_file_is_refused_with_the_reason(tmp_path: Path):
@@ -221,8 +208,8 @@ def test_a_wrong_file_is_refused_with_the_reason(tmp_path: Path):
 def test_the_shipped_network_is_small_and_reads_the_categories():
     assert SHIPPED.stat().st_size < 5e6
     predictor = Predictor(FILES.load(SHIPPED)[0])
-    navmap = corridor()
-    rectangle(navmap, (1.5, 3.0), (0.2, 0.9), wall=True)
+    navmap = corridor_with_bed()
+    see(navmap, (1.5, 3.0), (0.2, 0.9), wall=True)
     navmap.goals_seen[navmap.seen_obstacle & (navmap.frame.mesh()[1] < 1.0)] = 1 << BED
     patch = patch_around(navmap, START, cells=predictor.cells, pool=predictor.pool)
     shown = patch.channels()

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.geometry.grid import GridFrame, Window
+from sim.geometry.grid import Window
 from sim.geometry.pose import Pose
 from sim.interface import ConfigError, RobotModel
 from stubborn import agents
@@ -27,7 +27,7 @@ from stubborn.exploration.tour import (
 from stubborn.mapping.navmap import NavMap
 from stubborn.segmentation.ground_truth import GroundTruthSegmenter
 from tests.helpers.gridworld import SMALL_CAMERA, GridWorld, boxes_from_plan, run_episode
-from tests.helpers.ground import ground, route_of
+from tests.helpers.ground import corridor, ground, route_of, see
 from tests.helpers.slopes import Slopes
 
 ALPHA = PotentialConfig(alpha=0.1)
@@ -36,24 +36,6 @@ NO_GLANCE = GlanceConfig(gain_per_turn_m2=math.inf)
 
 def explorer(**options: float) -> TourExplorer:
     return TourConfig(glance=NO_GLANCE, turn_m=0.0, **options).make(SMALL_CAMERA)  # type: ignore[arg-type]
-
-
-def rectangle(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float], *, wall: bool = False) -> None:
-    (row_0, col_0), (row_1, col_1) = navmap.frame.cell(x_m[0], y_m[0]), navmap.frame.cell(x_m[1], y_m[1])
-    cells = slice(row_0, row_1 + 1), slice(col_0, col_1 + 1)
-    navmap.frames_in_view[cells] = 1
-    navmap.seen_obstacle[cells] |= wall
-    navmap.grow_known(*cells)
-
-
-def corridor() -> NavMap:
-    """Ground from x = -4 to 4 m between walls, open at both ends, the robot's trail in its middle."""
-    navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
-    rectangle(navmap, (-4.0, 4.0), (-1.0, 1.0))
-    for y_m in ((-1.1, -1.0), (1.0, 1.1)):
-        rectangle(navmap, (-4.0, 4.0), y_m, wall=True)
-    navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
-    return navmap
 
 
 def goal_x_m(explore: TourExplorer, navmap: NavMap, pose: Pose) -> float:
@@ -84,9 +66,9 @@ def test_the_best_order_has_the_least_weighted_latency():
 def test_a_large_opening_comes_before_a_small_pocket_that_is_nearer():
     navmap = corridor()
     assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) > 3.0  # the nearer of two equal ones
-    rectangle(navmap, (5.0, 5.1), (-1.1, 1.1), wall=True)  # leaves a metre of unknown ground in the east
+    see(navmap, (5.0, 5.1), (-1.1, 1.1), wall=True)  # leaves a metre of unknown ground in the east
     for y_m in ((-1.1, -1.0), (1.0, 1.1)):
-        rectangle(navmap, (4.0, 5.1), y_m, wall=True)
+        see(navmap, (4.0, 5.1), y_m, wall=True)
     assert goal_x_m(explorer(near_m=0.0), navmap, Pose(0.8, 0.0, 0.0)) < -3.0
 
 
@@ -104,7 +86,7 @@ def test_potentials_put_the_frontier_first_behind_which_the_goal_is(goal: str, w
 
 def test_paths_on_blocks_are_about_as_long_as_on_cells():
     navmap = corridor()
-    rectangle(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a way around a wall
+    see(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a way around a wall
     window = navmap.frame.window_at(0.0, 0.0, 300)
     known = Frontiers.of(ground(navmap, Pose(0.0, 0.0, 0.0), window), own_known_m=1.0, margin_cells=20)
     start = known.free.frame.cell(0.0, -0.5)
@@ -125,7 +107,7 @@ def test_paths_on_blocks_are_about_as_long_as_on_cells():
 def test_ground_seen_from_afar_only_is_visited_when_nothing_is_unknown():
     navmap = corridor()
     for x_m in ((-4.1, -4.0), (4.0, 4.1)):
-        rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
+        see(navmap, x_m, (-1.1, 1.1), wall=True)
     pose = Pose(-1.5, 0.0, 0.0)
     navmap.trail[navmap.frame.cell(-1.5, 0.0)] = True
     assert goal_x_m(explorer(near_m=2.5), navmap, pose) == pytest.approx(2.5, abs=0.5)
@@ -148,7 +130,7 @@ def enclosed() -> NavMap:
     """The corridor with walls at its ends, and large marks across it at x = 3 m: nothing is left to see."""
     navmap = corridor()
     for x_m in ((-4.1, -4.0), (4.0, 4.1)):
-        rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
+        see(navmap, x_m, (-1.1, 1.1), wall=True)
     rows, col = slice(navmap.frame.cell(3.0, -1.1)[0], navmap.frame.cell(3.0, 1.1)[0]), navmap.frame.cell(3.0, 0.0)[1]
     navmap.pessimistic_marks[rows, col : col + 3] = navmap.optimistic_marks[rows, col : col + 3] = True
     return navmap
@@ -175,8 +157,8 @@ def test_steps_that_cross_no_mark_do_not_count_as_crossing():
     navmap.seen_obstacle[:, navmap.frame.cell(3.6, 0.0)[1] :] = False
     assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.0
     crossed = explore._unmarked_steps
-    rectangle(navmap, (3.6, 4.0), (-1.0, 1.0))
-    rectangle(navmap, (4.0, 4.1), (-1.1, 1.1), wall=True)
+    see(navmap, (3.6, 4.0), (-1.0, 1.0))
+    see(navmap, (4.0, 4.1), (-1.1, 1.1), wall=True)
     for _ in range(10):
         goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0))
     assert explore._unmarked_steps <= crossed + 2  # until it is done with the stop
@@ -236,7 +218,7 @@ def test_options_that_make_no_sense_are_refused():
 @pytest.mark.parametrize("layers", [1, 2])
 def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_steps(layers: int):
     navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1, unmarked_steps=5)
-    rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
+    see(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
     row_0, col = navmap.frame.cell(3.0, -1.1)
     row_1, _ = navmap.frame.cell(3.0, 1.1)
     for mark in (navmap.pessimistic_marks, navmap.optimistic_marks)[:layers]:
@@ -244,13 +226,13 @@ def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_step
     goals_x_m = [goal_x_m(explore, navmap, Pose(0.2 * step, 0.0, 0.0)) for step in range(8)]
     beyond = [x_m > 3.5 for x_m in goals_x_m]
     assert beyond == ([True] * 8 if layers == 1 else [True] * 6 + [False] * 2)
-    rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
+    see(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
     assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) > 3.5
 
 
 def test_marks_count_again_where_the_robot_pushes():
     navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1)
-    rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
+    see(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
     row_0, col = navmap.frame.cell(3.0, -1.1)
     row_1, _ = navmap.frame.cell(3.0, 1.1)
     for mark in (navmap.pessimistic_marks, navmap.optimistic_marks):
@@ -258,7 +240,7 @@ def test_marks_count_again_where_the_robot_pushes():
     turning = [goal_x_m(explore, navmap, Pose(2.0, 0.0, yaw_rad)) for yaw_rad in (2.0, 1.5, 1.0, 0.5, 0.0)]
     pushing = [goal_x_m(explore, navmap, Pose(2.0 + 0.01 * step, 0.0, 0.0)) for step in range(4)]
     assert [x_m > 3.5 for x_m in (*turning, *pushing)] == [True] * 6 + [False] * 3
-    rectangle(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
+    see(navmap, (4.0, 5.5), (-1.0, 1.0))  # new ground: the marks may be crossed again
     assert goal_x_m(explore, navmap, Pose(2.0, 0.0, 0.0)) > 3.5
 
 
@@ -268,7 +250,7 @@ def test_a_stop_is_given_up_for_an_equally_good_one_only_where_new_ground_was_se
     assert first > 3.0
     to_and_fro = [goal_x_m(explore, navmap, Pose(x_m, 0.0, 0.0)) for x_m in 6 * (-0.6, -0.6, 0.3)]
     assert to_and_fro == pytest.approx([first] * 18)
-    rectangle(navmap, (-6.0, -4.0), (-1.0, 1.0))
+    see(navmap, (-6.0, -4.0), (-1.0, 1.0))
     goals_x_m = [goal_x_m(explore, navmap, Pose(-0.6, 0.0, 0.0)) for _ in range(2)]
     assert goals_x_m[-1] < -4.0
     explore.reset()

@@ -39,7 +39,14 @@ from sim.housegen.furniture.parts.looks import (
 from sim.housegen.furniture.parts.plumbing import any_tap, basin, hollow_rings, mixer_tap
 from sim.housegen.furniture.parts.spans import BOTH_SIDES, centred, footprint, on_side
 from sim.housegen.furniture.parts.supports import FeetKind, feet, star_base
-from sim.housegen.furniture.parts.textiles import crumpled_cloth, duvet, leather_pad, pad, towel_over_bar
+from sim.housegen.furniture.parts.textiles import (
+    crumpled_cloth,
+    duvet,
+    leather_pad,
+    pad,
+    throw_cushions,
+    towel_over_bar,
+)
 
 __all__ = [
     "BOTH_SIDES",
@@ -82,6 +89,7 @@ __all__ = [
     "star_base",
     "styled_doors",
     "styled_drawers",
+    "throw_cushions",
     "tinted_glass",
     "top_surface",
     "towel_over_bar",

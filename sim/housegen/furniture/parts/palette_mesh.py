@@ -1,8 +1,8 @@
 """A mesh of many coloured parts that is one geom: small objects would otherwise need a geom for each colour.
 
-The material `small` has a palette as its texture: `COLUMNS` columns of one colour each (`sim.housegen.textures`). All
-vertices of a part have the same texture coordinate, so that the part has the colour of one column. Another palette
-shows the same mesh in other colours.
+The material `small` has a palette as its texture: `COLUMNS` columns of one colour each
+(`sim.housegen.surfaces.textures`). All vertices of a part have the same texture coordinate, so that the part has the
+colour of one column. Another palette shows the same mesh in other colours.
 """
 
 from __future__ import annotations

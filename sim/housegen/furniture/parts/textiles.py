@@ -1,8 +1,9 @@
-"""Pads, towels and crumpled cloth."""
+"""Pads, throw cushions, towels and crumpled cloth."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from sim.housegen.furniture.item import Look, MeshShape
 from sim.housegen.furniture.shapes import chamfered_box, drape, named_mesh, strip
@@ -25,6 +26,28 @@ def pad(
 def leather_pad(w: Workbench, size: Point, at: Point, *, tilt: float = 0.0) -> None:
     """Adds a leather pad with its middle at `at`, chamfered by a quarter of its smallest side."""
     pad(w, size, at, w.look("leather"), 0.25 * min(size), tilt=tilt)
+
+
+def throw_cushions(
+    w: Workbench, face: float, inner: float, seat: float, counts: Sequence[int], *, margin: float, middle: float
+) -> None:
+    """Adds up to three throw cushions to a sofa, the outer ones first; hint `cushions` sets their number.
+
+    Args:
+        w: the workbench.
+        face: x of the back on which they lean.
+        inner: width between the arms.
+        seat: height of the seat.
+        counts: numbers of cushions of which one is drawn without the hint.
+        margin: distance of the outer cushions' middles from the arms.
+        middle: y of the third cushion.
+    """
+    hinted = w.hints.get("cushions")
+    count = int(hinted) if hinted is not None else w.choice(counts)
+    places = (0.5 * inner - margin, -0.5 * inner + margin, middle)
+    for y in places[: min(count, 3 if inner > 1.5 else 2)]:
+        cushion = w.make("cushion", use="throw")
+        w.put(cushion, (face + 0.5 * cushion.size_m[0] - 0.02, y, seat - 0.015), w.length(-0.15, 0.15))
 
 
 def towel_over_bar(

@@ -1,0 +1,314 @@
+"""Explains in sentences how and why an episode ended, and names actions and categories in words.
+
+Viewers use `explain_end`, which needs only the result line and the distance to the goal. Reports use `explain` and
+`marks`, which give the numbers of the trajectory to which the rules of `sim.task.failures` applied.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from sim.interface import Action, SuccessRule
+from sim.task.failures import (
+    LOOP_STEPS,
+    STOPPED_AT_GOAL_M,
+    cause_of_failure,
+    first_looping_step,
+    first_trapped_step,
+)
+from sim.task.metrics import EXPLORED_SHARE, TRAPPED_RADIUS_M, TRAPPED_WINDOW_STEPS
+from sim.task.trajectory import Trajectory
+
+Line = Mapping[str, Any]
+"""The result line of an episode."""
+ACTION_WORDS: Mapping[Action, str] = {
+    Action.STOP: "stop",
+    Action.MOVE_FORWARD: "forward",
+    Action.TURN_LEFT: "turn left",
+    Action.TURN_RIGHT: "turn right",
+}
+TRAPPED = f"{TRAPPED_WINDOW_STEPS} steps within {TRAPPED_RADIUS_M:g} m of one position"
+"""The meaning of `trapped` (`sim.task.failures`), as videos and reports word it."""
+_CAUSES: Mapping[str, str] = {
+    "missed_detection": "The goal was in sight, but the agent drove on.",
+    "trapped": f"The robot was trapped: {TRAPPED}.",
+    "loop": "The robot drove in a loop.",
+    "explore": "The goal was never in sight.",
+    "stairs": "The goal is on another storey.",
+}
+MEANING: Mapping[str, str] = {
+    "false_detection": "The agent called STOP at an object that is not the goal.",
+    "stopped_short": "The agent stopped for the goal, but too far from it or behind a wall.",
+    "missed_detection": "The goal was in view and the agent did not go to it.",
+    "loop": f"{LOOP_STEPS} steps on ground where the robot had been before.",
+    "trapped": f"{TRAPPED}.",
+    "explore": "The goal never came into view before the steps ran out.",
+    "stairs": "The goal is on another storey, or the robot drove over an edge.",
+    "misc": "No other rule applies: ran out of steps on the path to the goal, or an error.",
+}
+"""The meaning of each cause of failure (the rules are in `sim.task.failures`)."""
+ENDS: Mapping[str, str] = {
+    "stop": "called STOP",
+    "max_steps": "the steps ran out",
+    "fallen": "the robot drove over an edge",
+    "error": "the episode ended with an error",
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The end of an episode in words."""
+
+    found: bool
+    headline: str
+    """For example "Found after 48 steps"."""
+    sentence: str
+    """Why it counts, or why it does not."""
+
+
+def in_words(category: str) -> str:
+    """Returns the name of a category with spaces: "chest of drawers"."""
+    return category.replace("_", " ")
+
+
+def with_article(category: str) -> str:
+    """Returns the name of a category with its article: "an armchair"."""
+    name = in_words(category)
+    return name if name in ("clothes", "gym equipment", "seating") else f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
+
+
+def explain_end(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None, *, detects: bool) -> Outcome:
+    """Returns the end of an episode in words.
+
+    Args:
+        line: the episode's result line.
+        goal: category that the episode asked for.
+        rule: when a STOP succeeds.
+        nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
+        detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
+            stopped too early where the goal is not; that is no false detection.
+    """
+    found, steps = bool(line["success"]), f"{line['num_steps']} step" + "s" * (line["num_steps"] != 1)
+    headline = f"{'Found' if found else 'Not found'} after {steps}"
+    if line.get("error"):
+        return Outcome(False, headline, str(line["error"]))
+    if line.get("end_reason") == "fallen":
+        return Outcome(False, headline, "The robot drove over an edge and fell.")
+    if line.get("end_reason") == "stop":
+        stop = _success(line, goal, rule, nearest_m) if found else _wrong_stop(line, goal, rule, nearest_m, detects)
+        return Outcome(found, headline, stop)
+    left_m = line.get("distance_to_goal")
+    cause = _CAUSES.get(line.get("failure") or "", "The goal was in sight.")
+    left = "" if left_m is None else f" A place where a STOP counts is {left_m:.1f} m away."
+    return Outcome(False, headline, f"All {steps} are used up. {cause}{left}")
+
+
+def _success(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None) -> str:
+    shortest_m = line.get("shortest_path")
+    near = "" if nearest_m is None else f"the nearest {in_words(goal)} is {nearest_m:.2f} m away and in sight; "
+    driven = f"Driven: {line['path_length']:.1f} m"
+    shortest = "" if shortest_m is None else f"; shortest path: {shortest_m:.1f} m; SPL {line['spl']:.2f}"
+    return f"The STOP counts: {near}at most {rule.distance_m:g} m is allowed. {driven}{shortest}."
+
+
+def _wrong_stop(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None, detects: bool) -> str:
+    name, off_m = in_words(goal), line.get("stop_target_to_goal_m")
+    mistaken = detects and line.get("failure") == "false_detection"
+    if nearest_m is None:
+        return f"The STOP does not count: there is no {name} on this storey."
+    if mistaken and off_m is not None:
+        return f"False detection: the agent stopped for something {off_m:.1f} m from the nearest {name}."
+    if nearest_m <= rule.distance_m:
+        return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
+    far = f"the nearest {name} is {nearest_m:.1f} m away, and at most {rule.distance_m:g} m counts"
+    if mistaken:
+        return f"False detection: the agent took another object for the {name}; {far}."
+    return f"The STOP came too early: {far}."
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A moment of an episode, or a span of steps."""
+
+    kind: str
+    """`seen`, `nearest`, `at_goal`, `trapped`, `loop` or `end`."""
+    step: int
+    until: int | None
+    """Last step of a span; None for a moment."""
+    words: str
+
+
+def outcome(line: Line) -> str:
+    """Returns `found`, the cause of the failure, `error`, or `failed` where no cause was recorded."""
+    if line.get("end_reason") == "error":
+        return "error"
+    return "found" if line["success"] else str(line.get("failure") or "failed")
+
+
+def explain(line: Line, trajectory: Trajectory | None) -> str:
+    """Returns a few sentences on why the episode ended as it did, with numbers of the trajectory if there is one."""
+    result = outcome(line)
+    if result == "error":
+        return f"The episode ended with an error: {line.get('error') or 'no reason was recorded'}"
+    if trajectory is None:
+        return "Found." if result == "found" else f"Not found. {MEANING.get(result, 'No cause was recorded.')}"
+    reason = _REASONS.get(result, _other_reason)
+    sentences = [reason(line, trajectory).strip()]
+    current = cause_of_failure(trajectory) if trajectory.end_reason is not None else None
+    if not trajectory.success and current is not None and current != result:
+        sentences.append(f"By the rules of the code that wrote this report the cause is {in_words(current)}.")
+    return " ".join(sentences)
+
+
+def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
+    """Returns the decisive moments in the order of their steps; the end is always among them."""
+    goal, last = _goal(line), trajectory.num_steps
+    found: list[Mark] = []
+    seen, at_goal = _seen(trajectory), _at_goal(trajectory)
+    if len(seen):
+        found.append(Mark("seen", int(seen[0]), None, f"{goal} first in view ({len(seen)} frames in all)"))
+    if len(at_goal) and not trajectory.success:
+        found.append(Mark("at_goal", int(at_goal[0]), None, "the robot is where a STOP would succeed"))
+    elif not trajectory.success and (nearest := _nearest(trajectory)) is not None:
+        found.append(Mark("nearest", nearest[0], None, f"nearest to the goal, {nearest[1]:.1f} m to go"))
+    trapped, looping = first_trapped_step(trajectory.positions_m), first_looping_step(trajectory)
+    if trapped is not None:
+        until = trapped + TRAPPED_WINDOW_STEPS
+        found.append(Mark("trapped", trapped, until, TRAPPED))
+    if looping is not None:
+        until = looping + LOOP_STEPS
+        found.append(Mark("loop", looping, until, f"{LOOP_STEPS} steps over visited ground"))
+    found.append(Mark("end", last, None, _end(line, trajectory)))
+    return sorted(found, key=lambda mark: mark.step)
+
+
+def _found(line: Line, trajectory: Trajectory) -> str:
+    shortest_m = line.get("shortest_path")
+    shortest = f"; the shortest path is {shortest_m:.1f} m" if shortest_m is not None else ""
+    return f"Found: stopped after {trajectory.num_steps} steps and {_driven(trajectory)}{shortest}."
+
+
+def _false_detection(line: Line, trajectory: Trajectory) -> str:
+    distance = f"{_target(_goal(line), trajectory)}{_distance_to_instance(_goal(line), trajectory)}"
+    return f"Called STOP at step {trajectory.num_steps}{distance}. {_view(line, trajectory)}"
+
+
+def _missed_detection(line: Line, trajectory: Trajectory) -> str:
+    at_goal = _at_goal(trajectory)
+    if len(at_goal):
+        return f"{_view(line, trajectory)} At step {at_goal[0]} a STOP would have succeeded, but the agent drove on."
+    return f"{_view(line, trajectory)} The robot drove {_driven(trajectory)} in all and did not go there."
+
+
+def _trapped(line: Line, trajectory: Trajectory) -> str:
+    step = first_trapped_step(trajectory.positions_m)
+    since = "" if step is None else f", from step {step} on"  # None: the cause comes from rules of another version
+    return f"The robot was trapped: {TRAPPED}{since}. {_view(line, trajectory)}"
+
+
+def _loop(line: Line, trajectory: Trajectory) -> str:
+    step = first_looping_step(trajectory)
+    if step is None:  # the cause comes from rules of another version
+        return f"The robot drove in a loop. {_view(line, trajectory)}"
+    driven_m = float(trajectory.moved_m[step : step + LOOP_STEPS].sum())
+    driven = f"the robot drove {driven_m:.1f} m in {LOOP_STEPS} steps, nearly all of it over visited ground"
+    return f"From step {step} on {driven}. {_view(line, trajectory)}"
+
+
+def _explore(line: Line, trajectory: Trajectory) -> str:
+    nearest = _nearest(trajectory)
+    near = f"; its smallest distance was {nearest[1]:.1f} m, at step {nearest[0]}" if nearest else ""
+    return f"{_never_seen(line)} in {trajectory.num_steps} steps and {_driven(trajectory)}{near}."
+
+
+def _stairs(line: Line, trajectory: Trajectory) -> str:
+    if trajectory.end_reason == "fallen":
+        return f"The robot drove over an edge at step {trajectory.num_steps} and fell. {_view(line, trajectory)}"
+    return f"No {_goal(line)} is on the storey where the episode starts."
+
+
+def _other_reason(line: Line, trajectory: Trajectory) -> str:
+    if trajectory.end_reason == "stop":
+        distance = _distance_to_instance(_goal(line), trajectory)
+        seen = _view(line, trajectory) if len(_seen(trajectory)) else ""
+        return f"Called STOP at step {trajectory.num_steps} short of the goal: {distance}. {seen}"
+    return f"{_view(line, trajectory)} {_end(line, trajectory).capitalize()}."
+
+
+_REASONS: Mapping[str, Callable[[Line, Trajectory], str]] = {
+    "found": _found,
+    "false_detection": _false_detection,
+    "missed_detection": _missed_detection,
+    "trapped": _trapped,
+    "loop": _loop,
+    "explore": _explore,
+    "stairs": _stairs,
+}
+"""For each outcome the function that describes it; the others are described by `_other_reason`."""
+
+
+def _view(line: Line, trajectory: Trajectory) -> str:
+    """Returns a sentence on when the goal was in view."""
+    seen = _seen(trajectory)
+    if not len(seen):
+        return f"{_never_seen(line)}."
+    return f"The {_goal(line)} was in view from step {seen[0]} on, in {len(seen)} frames."
+
+
+def _never_seen(line: Line) -> str:
+    return f"The {_goal(line)} never covered {100 * EXPLORED_SHARE:g} % of a frame"
+
+
+def _driven(trajectory: Trajectory) -> str:
+    return f"{float(trajectory.moved_m.sum()):.1f} m"
+
+
+def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
+    nearest_m = trajectory.nearest_instance_m
+    if nearest_m is None:
+        return f"no {goal} is on this storey"
+    if trajectory.stop_target_xy_m is not None:
+        return f"the robot is {nearest_m:.1f} m from the nearest {goal}"
+    limit = f", which is more than {STOPPED_AT_GOAL_M:g} m" if nearest_m > STOPPED_AT_GOAL_M else ""
+    return f"the nearest {goal} is {nearest_m:.1f} m away{limit}"
+
+
+def _target(goal: str, trajectory: Trajectory) -> str:
+    """Returns how far the object for which the agent stopped is from the goal, if that is known; the colon after it."""
+    off_m = trajectory.stop_target_to_goal_m
+    return ": " if off_m is None else f" for something {off_m:.1f} m from the nearest {goal}; "
+
+
+def _end(line: Line, trajectory: Trajectory) -> str:
+    end = ENDS.get(str(trajectory.end_reason), "the file ends here")
+    if trajectory.success:
+        return f"{end} at the goal"
+    left_m = line.get("distance_to_goal")
+    return f"{end}, {left_m:.1f} m to go" if left_m is not None else f"{end}, no path to the goal from here"
+
+
+def _seen(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Returns the steps at which the goal was in view."""
+    return np.flatnonzero(trajectory.goal_share >= EXPLORED_SHARE)
+
+
+def _at_goal(trajectory: Trajectory) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Returns the steps at which a STOP would have succeeded, from the first view of the goal on if there is one."""
+    at_goal, seen = np.flatnonzero(trajectory.distance_m <= 0.0), _seen(trajectory)
+    return at_goal[at_goal >= seen[0]] if len(seen) else at_goal
+
+
+def _nearest(trajectory: Trajectory) -> tuple[int, float] | None:
+    """Returns the step with the smallest distance to the goal and the distance; None if there was never a path."""
+    if not np.isfinite(trajectory.distance_m).any():
+        return None
+    step = int(np.nanargmin(trajectory.distance_m))
+    return step, float(trajectory.distance_m[step])
+
+
+def _goal(line: Line) -> str:
+    return in_words(str(line["goal"]))
