@@ -21,7 +21,6 @@ from stubborn.exploration.explorer import ExplorerConfig
 from stubborn.exploration.frontier import FrontierConfig
 from stubborn.exploration.poni import PoniConfig
 from stubborn.exploration.semexp import SemExpConfig
-from stubborn.exploration.thorough import ThoroughConfig
 from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
@@ -51,7 +50,6 @@ _ROW_WORDS: Mapping[str, str] = MappingProxyType(
 EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
     {
         "corners": CornerConfig(),
-        "thorough": ThoroughConfig(),
         "frontier": FrontierConfig(),
         "tour": TourConfig(),
         "informed-tour": INFORMED_TOUR,

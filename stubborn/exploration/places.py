@@ -56,22 +56,6 @@ class Place:
         return None if self.reached else route
 
 
-@dataclass(frozen=True)
-class UnseenArea:
-    """An area to look at; it is done with as soon as all of it was in view."""
-
-    cells: MapCells
-    margin_cells: int
-    """Margin around the known part of the map within which the route may run."""
-    reached = False
-
-    def head_for(self, ground: Ground) -> Search:
-        """Returns the route to what is still unseen of the area; None when nothing of it is or can be reached."""
-        known = ground.navmap.known_window(self.margin_cells)
-        unseen = ground.unseen(known)
-        return (yield Goal(ground.free_space(known, costly=unseen), self.cells.within(known) & unseen))
-
-
 class LookAround:
     """Turns on the spot that show the surroundings."""
 

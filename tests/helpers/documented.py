@@ -265,7 +265,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{PYTHON} examples/train_ppo.py --minutes 30 --envs 2 --out runs/ppo": (
         f"{PYTHON} examples/train_ppo.py --minutes 0.01 --envs 1 --steps 1 --max-steps 2 --trials 0 --out {{tmp}}/ppo",
     ),
-    # docs/plans.md
     "stubborn houses plans --split val --out runs/plans/val --workers 2": (
         "stubborn houses plans --split val --houses 1 --workers 1 --out {tmp}/plans",
     ),
@@ -275,7 +274,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         f"{PYTHON} -m tools.research.check_twin --plans {{tmp}}/plans --runs {{tmp}}/real --explore"
         " --out {tmp}/lines.jsonl",
     ),
-    # docs/learned_exploration.md
     "stubborn houses plans --pool train --first-seed 0 --houses 240 --out runs/plans/train --workers 2": (
         "stubborn houses plans --pool train --first-seed 0 --kind studio --houses 1 --workers 1 --out {tmp}/plans",
     ),
@@ -332,7 +330,6 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     ),
     "stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer": _TRANSFER[:-1],
     "stubborn episodes --split runs/transfer --recipe val": _TRANSFER,
-    # docs/report.md
     f"{_RUN} --semantics gt --noise harsh --episodes 100 --workers 2 --record --out runs/harsh": (
         f"{_RUN} --semantics gt --noise harsh {_SMALL} --agent oracle --episodes 1 --workers 1 --record"
         " --out {tmp}/harsh",
@@ -343,14 +340,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         _RECORDED,
         "stubborn report {tmp}/before {tmp}/mine",
     ),
-    # docs/gallery.md
-    **{
-        f"stubborn gallery --houses assets/mjcf_houses/{house}.xml --out runs/gallery": (
-            "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
-        )
-        for house in ("val/val_03", "large/large_10", "hazards/hazards_02")
-    },
-    # docs/scale.md
+    "stubborn gallery --houses assets/mjcf_houses/val/val_03.xml --out runs/gallery": (
+        "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
+    ),
     "stubborn merge runs/big": (*_SHARDS, "stubborn merge {tmp}/big"),
     # docs/segmentation.md
     "stubborn views --split train --views 100000 --out views --workers 2": (
@@ -433,9 +425,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn reproduce splits --agents stubborn stubborn-plus --semantics rednet": (
         "stubborn reproduce splits --agents random --semantics rednet --episodes 1 --out {tmp}/paper",
     ),
-    f"{_RUN} --agent my_agent:make --video": (
-        f"{_RUN} --agent examples.my_agent:make --video {_SMALL} --episodes 1 --out {{tmp}}/run",
+    f"{_RUN} --agent my_agent:make --semantics gt --episodes 2 --video --out runs/me": (
+        f"{_RUN} --agent examples.my_agent:make --semantics gt --video {_SMALL} --episodes 1 --out {{tmp}}/me",
     ),
+    "stubborn report runs/me": (_RECORDED, "stubborn report {tmp}/mine"),
     f"{_RUN} --agent stubborn-plus --semantics gt --goal toilet": (
         f"{_RUN} --agent oracle --semantics gt --goal toilet --episodes 1 --out {{tmp}}/run",
     ),

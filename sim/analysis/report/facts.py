@@ -79,7 +79,7 @@ def command_of(config: Mapping[str, Any]) -> str:
         words += ["--only", *map(str, only)]
     if config.get("settings"):
         words += ["--config", *(f"{path}={_setting(value)}" for path, value in config["settings"].items())]
-    return shlex.join([*words, "--record"])
+    return shlex.join([*words, *(f"--{name}" for name in ("record", "video") if config.get(name))])
 
 
 def _setting(value: Any) -> str:

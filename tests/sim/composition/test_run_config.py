@@ -130,7 +130,7 @@ def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -
     settings = ("task.max_steps=3", "camera.width_px=160", "camera.height_px=120", "agent.cell_m=0.1")
     options = RunOptions(semantics="gt", explorer="frontier", seed=3, config=settings)
     command = command_of(record_of(resolve(options), SPLIT))
-    parsed = cli.parse(RunOptions, shlex.split(command)[3:])
+    parsed = cli.parse(RunOptions, shlex.split(command)[2:])
     assert resolve(parsed).config == resolve(options).config
     assert (parsed.seed, parsed.explorer, parsed.semantics) == (3, "frontier", "gt")
 
@@ -138,5 +138,5 @@ def test_the_command_that_a_report_prints_repeats_the_settings(tmp_path: Path) -
 def test_the_command_that_a_report_prints_names_the_chosen_episodes() -> None:
     options = RunOptions(semantics="gt", only=("val_0003", "val_0001"), episodes=2)
     command = command_of(record_of(resolve(options), SPLIT))
-    assert cli.parse(RunOptions, shlex.split(command)[3:]).only == options.only
+    assert cli.parse(RunOptions, shlex.split(command)[2:]).only == options.only
     assert "--episodes" not in command
