@@ -97,7 +97,7 @@ def run(
             args = parse(args_type, [word for word in words if word != "--debug"])
             check(args)
             return main(args)
-        except BrokenPipeError:  # the reader of our output has ended, as `head` does
+        except BrokenPipeError:  # the reader of the output has ended, as `head` does
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 1
         except USAGE_ERRORS as error:

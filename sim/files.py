@@ -130,7 +130,7 @@ def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
 
 
 def part_file(file: Path, *, what: str) -> Path:
-    """Creates an empty part file beside `file`, for the caller to write and then to rename to `file`; returns its path.
+    """Creates an empty part file next to `file` and returns its path; the caller writes it and renames it to `file`.
 
     Part files of earlier, killed processes are removed. The folder is created.
 

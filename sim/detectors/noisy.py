@@ -6,7 +6,7 @@ neighbours; small and far objects are missed; scores vary in blobs, and outlines
 
 A view of an object is a sector of directions and a range of distances from which it is seen. The errors of a view come
 from a hash of the episode's seed, the object and the view, so they are the same in every frame of the view. All other
-random numbers are drawn for each frame. The same seed and the same path give the same scores.
+random numbers are sampled for each frame. The same seed and the same path give the same scores.
 """
 
 from __future__ import annotations

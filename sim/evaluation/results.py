@@ -32,7 +32,7 @@ SUMMARY_METRICS = (
 OF_ERRORS = ("success", "spl", "soft_spl")
 """Metrics in which an episode that ended with an error counts."""
 RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
-"""What the intervals of a summary resample."""
+"""The units that the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
@@ -93,7 +93,7 @@ _NOT_WRITTEN = {
 
 
 class SplitIdentity(msgspec.Struct):
-    """What identifies the source of a run's episodes."""
+    """The fields that identify the source of a run's episodes."""
 
     name: Name
     version: str = ""
@@ -293,8 +293,8 @@ class RunDirectory:
 def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
     """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
 
-    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it was not
-    played to its end, so that it has too few steps, collisions and metres.
+    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
+    run to its end, so that it has too few steps, collisions and metres.
 
     `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
     that never showed the goal: the mean is the restricted mean time to first sight.

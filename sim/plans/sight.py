@@ -66,7 +66,7 @@ class Look:
     shares: NDArray[np.float64]
     """(goals,) Share of the frame that each category of `GOAL_CATEGORIES` covers."""
     goal_share: float
-    """That of the goal; 0 without a goal."""
+    """The value of the goal; 0 without a goal."""
     target_rows: NDArray[np.int64]
     """Rows on the map of the cells that show the goal."""
     target_cols: NDArray[np.int64]

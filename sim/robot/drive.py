@@ -29,7 +29,7 @@ class Motion:
     displacement_m: float
     """Distance in plan between the robot's positions before and after the action."""
     yaw_change_rad: float
-    """In (-pi, pi], counter-clockwise."""
+    """Angle in (-pi, pi], counter-clockwise."""
     duration_s: float
     """Simulated time."""
     ended: Ended
@@ -41,7 +41,7 @@ class Motion:
 
     @property
     def collided(self) -> bool:
-        """Whether a contact of the hull ended the motion early."""
+        """True: a contact of the hull ended the motion early."""
         return any(contact.stopped for contact in self.contacts)
 
 

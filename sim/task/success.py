@@ -86,7 +86,7 @@ class GoalRegion:
         self._blockers = surroundings.blockers
         everywhere = [footprint_of(model, data, instance, surroundings.floors) for instance in labels.of_category(goal)]
         self.exists = any(footprint is not None for footprint in everywhere)
-        """Whether some storey of the house has an instance."""
+        """True: some storey of the house has an instance."""
         self.footprints = tuple(
             footprint
             for footprint in everywhere

@@ -32,9 +32,9 @@ class Outcome:
 
     found: bool
     headline: str
-    """For example "Found after 48 steps"."""
+    """Headline, for example "Found after 48 steps"."""
     sentence: str
-    """Why it counts, or why it does not."""
+    """The reason why it counts or does not."""
 
 
 def in_words(category: str) -> str:

@@ -1,4 +1,4 @@
-"""What the page offers: houses, goals and agents to choose from, and finished runs to look at."""
+"""Lists what the page offers: houses, goals and agents to choose from, and finished runs to look at."""
 
 from __future__ import annotations
 

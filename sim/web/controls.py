@@ -1,4 +1,4 @@
-"""What the page's users ask of the running episode, shared between the server and the thread that simulates."""
+"""Holds the requests of the page's users, shared between the server and the thread that simulates."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Wish:
 
 
 class Choice(NamedTuple):
-    """The action that is due, and who chose it."""
+    """The action that is due, and its source: the agent or a person."""
 
     action: Action
     driver: Driver

@@ -24,7 +24,7 @@ from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
 
 MAX_OVERLAP_M = 0.01
-"""Largest overlap of two objects that is no fault."""
+"""Largest overlap of two objects that is allowed."""
 SUPPORT_GAP_M = 0.02
 """An object has no support when its bounding box is at least this far from every other one."""
 SETTLE_S, SETTLE_STEP_S = 1.0, 0.004

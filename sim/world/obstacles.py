@@ -1,4 +1,4 @@
-"""What the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
+"""Finds what the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
 
 from __future__ import annotations
 

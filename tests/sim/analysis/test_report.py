@@ -259,7 +259,7 @@ def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(played: Path, t
     config["split_identity"]["sha256"] = "0" * 64
     (tmp_path / "run/config.json").write_text(json.dumps(config))
     page = _page(tmp_path / "run")
-    assert "was played in another version of &#39;lounge&#39;" in page
+    assert "was run in another version of &#39;lounge&#39;" in page
     assert _data(page)["plans"] == {}
     assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
