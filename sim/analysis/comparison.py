@@ -51,16 +51,16 @@ def read_run(path: Path) -> Run:
     """Returns the run in a folder.
 
     Raises:
-        ConfigError: there is none, or its files do not have the format of `stubborn run`.
+        ConfigError: the folder has no run, or its files do not have the format of `stubborn run`.
     """
     config, results = path / "config.json", path / "results.jsonl"
     for file in (config, results):
         if not file.is_file():
-            raise ConfigError(f"'{path}' is no run: it has no {file.name}.")
+            raise ConfigError(f"'{path}' is not a run: it has no {file.name}.")
     try:
         record, lines = read_record(config), read_result_lines(results).values
     except ConfigError as error:
-        raise ConfigError(f"'{path}' is no run: {error}") from None
+        raise ConfigError(f"'{path}' is not a run: {error}") from None
     return Run(path, record, {line["episode_id"]: line for line in lines})
 
 

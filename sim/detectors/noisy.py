@@ -1,6 +1,6 @@
 """`--semantics noisy`: a simulated detector, the ground truth with a seeded model of a network's errors.
 
-It imitates these errors: whole objects are classified as a similar category, and that over neighbouring views, because
+It imitates these errors: whole objects are classified as a similar category, in neighbouring views too, because
 the errors of a network depend on the image; some objects are hard from most sides; single frames differ from their
 neighbours; small and far objects are missed; scores vary in blobs, and outlines are inexact.
 

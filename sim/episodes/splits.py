@@ -105,7 +105,7 @@ class Split:
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def sidecar(self, house: str) -> Sidecar:
-        """Returns the settings that the sidecar of a house fixes; none without a sidecar, or if it holds label rules.
+        """Returns the settings that a house's sidecar fixes; empty if there is no sidecar, or if it holds label rules.
 
         Raises:
             HouseError: the file violates the format of `sim.houses.sidecar`.
@@ -259,7 +259,7 @@ def _read_split(folder: Path) -> Split:
     house_list = read_house_list(folder) if has_house_list(folder) else None
     houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
     if (bad := first_unprintable(houses)) is not None:
-        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is no plain text.")
+        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is not plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"

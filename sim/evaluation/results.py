@@ -183,7 +183,7 @@ class RunDirectory:
         return dropped
 
     def require_of(self, episodes: Mapping[str, tuple[str, str]]) -> None:
-        """Raises ConfigError where a line is of none of the episodes, or of one with another house or goal.
+        """Raises ConfigError if a line belongs to no episode, or to one with another house or goal.
 
         Args:
             episodes: house and goal by id.
@@ -192,7 +192,9 @@ class RunDirectory:
             where = f"Results '{self.path / 'results.jsonl'}', line {number}"
             house, goal = episodes.get(line["episode_id"], (None, None))
             if house is None:
-                raise ConfigError(f"{where}: '{line['episode_id']}' is no episode of this run; choose another folder.")
+                raise ConfigError(
+                    f"{where}: '{line['episode_id']}' is not an episode of this run; choose another folder."
+                )
             for key, wanted in (("house", house), ("goal", goal)):
                 if line[key] != wanted:
                     raise ConfigError(f"{where}: {key} is '{line[key]}', but '{wanted}' in the episode of this run.")

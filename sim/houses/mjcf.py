@@ -200,7 +200,7 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
 
 
 def _numbers(text: str) -> list[float]:
-    """Returns the numbers of a list of numbers; none where a word is no number."""
+    """Returns the numbers of a list of numbers; none where a word is not a number."""
     try:
         return [float(word) for word in text.split()]
     except ValueError:

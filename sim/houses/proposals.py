@@ -85,7 +85,7 @@ class Proposal:
     """A label for the geoms with one name."""
 
     name: str
-    """That of the geom or of a body around it; `#12` is the unnamed geom number 12."""
+    """Name of the geom or of a body around it; `#12` is the unnamed geom number 12."""
     category: str
     reason: str
     """`name`, `size` or `unknown`."""

@@ -52,14 +52,14 @@ class Allowed:
             reference: the other file; it need not exist.
 
         Raises:
-            ObjectNavError: of class `error`; the path leads out of the allowed folders or is no regular file.
+            ObjectNavError: of class `error`; the path leads out of the allowed folders or is not a regular file.
         """
         name = printable(reference.name)
         try:
             target = reference.path.resolve()
             is_special = target.exists() and not target.is_file()
         except (OSError, ValueError, RuntimeError):
-            raise self.error(f"it uses '{name}', which is no name of a file.") from None
+            raise self.error(f"it uses '{name}', which is not the name of a file.") from None
         folder = self.file.parent
         textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
         allowed = [folder, *textures, *([] if self.root is None else [self.root.resolve()])]

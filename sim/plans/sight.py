@@ -38,7 +38,7 @@ class SightConfig:
     """Resolution of the image, and which of its pixels enter which layer (as in the agent's `MappingConfig`)."""
 
     stride_px: int = 4
-    """Every so many pixels of the camera, in rows and columns, are computed."""
+    """Spacing of the pixels that are computed, in rows and columns of the camera."""
     obstacle_min_height_m: float = 0.10
     """Lower surfaces are floor."""
     obstacle_max_height_m: float = 0.88

@@ -33,7 +33,7 @@ class Motion:
     duration_s: float
     """Simulated time."""
     ended: Ended
-    """Why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
+    """The reason why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
     contacts: tuple[Contact, ...]
     """All contacts of the hull, also those that did not stop the motion."""
     fell: bool = False

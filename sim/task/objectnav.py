@@ -79,7 +79,7 @@ class Task:
         its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
-            EpisodeError: the goal is no goal category, is not in the house, or is on the storey of the start without
+            EpisodeError: the goal is not a goal category, is not in the house, or is on the storey of the start without
                 a path to it.
         """
         self._record = None

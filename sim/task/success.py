@@ -28,7 +28,7 @@ SIGHT_BLOCKERS = ("wall", "door", "window")
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Geometry that does not depend on the goal: floors of the house, and what blocks the sight on one storey."""
+    """Geometry that does not depend on the goal: floors of the house, and the obstacles to sight on one storey."""
 
     floors: tuple[Floor, ...]
     blockers: tuple[ConvexPolygon, ...]

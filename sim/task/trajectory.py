@@ -195,7 +195,7 @@ def read_trajectory(file: Path) -> Trajectory:
     """Returns the trajectory in a file.
 
     Raises:
-        ConfigError: there is no such file, or it is no trajectory.
+        ConfigError: there is no such file, or it is not a trajectory.
     """
     if not file.is_file():
         raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
@@ -208,7 +208,7 @@ def read_trajectory(file: Path) -> Trajectory:
         trajectory = Trajectory(**arrays, **scalars, about=header.about)
         _check(trajectory)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is no trajectory: {reason_of(error)}.") from None
+        raise ConfigError(f"'{file}' is not a trajectory: {reason_of(error)}.") from None
     return trajectory
 
 

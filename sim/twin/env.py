@@ -112,7 +112,8 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
     ## Starting state
     `reset(seed=...)` samples a plan, a goal in it and a start;
-    `reset(options={"plan": 3, "goal": "bed", "start": pose})` fixes all or some of them; a start needs its plan. The goal can be reached from the start, unless both are fixed.
+    `reset(options={"plan": 3, "goal": "bed", "start": pose})` fixes all or some of them; a start needs its
+    plan. The goal can be reached from the start, unless both are fixed.
 
     ## Info
     The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
@@ -214,7 +215,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
         Raises:
             ConfigError: there is no such option or plan.
-            EpisodeError: the plan has no such goal, or none that can be reached.
+            EpisodeError: the plan does not have this goal, or it cannot be reached.
         """
         unknown = sorted(map(str, set(options) - {"plan", "goal", "start"}))
         if unknown:
@@ -237,7 +238,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         """Returns a plan from which a goal can be reached, the first that fits in a cycle over all, and a start.
 
         Raises:
-            EpisodeError: there is none.
+            EpisodeError: there is no such goal.
         """
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")

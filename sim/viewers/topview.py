@@ -27,7 +27,7 @@ WHOLE_HOUSE_M = 14.0
 """A storey of at most this width and depth is shown whole, of a larger one where the robot can drive, and the goals."""
 _MARGIN_CELLS = 8
 _STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
-"""Length of a step to each neighbour of a cell; the cell itself is none."""
+"""Length of a step to each neighbour of a cell; infinite for the cell itself."""
 
 
 class TopView:

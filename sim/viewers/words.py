@@ -59,7 +59,7 @@ def explain_end(
         rule: when a STOP succeeds.
         nearest_m: distance in plan to the nearest instance of the goal on the storey; None: there is none.
         detects: whether the agent stops because of a segmentation. A person, or an agent without one, has
-            stopped too early where the goal is not; that is no false detection.
+            stopped too early where the goal is not; this is not a false detection.
     """
     found, steps = bool(line["success"]), f"{line['num_steps']} step" + "s" * (line["num_steps"] != 1)
     headline = f"{'Found' if found else 'Not found'} after {steps}"

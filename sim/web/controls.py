@@ -22,7 +22,7 @@ _WAITING_ACTIONS = 4
 class Interrupted(BaseException):
     """The episode is to end without a result: another was asked for, or the server stops.
 
-    Like KeyboardInterrupt it is no Exception, which `play_episode` would take for a failure of the agent.
+    Like KeyboardInterrupt it is not an Exception, which `play_episode` would take for a failure of the agent.
     """
 
 

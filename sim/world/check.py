@@ -118,7 +118,7 @@ def _overlaps(house: _CompiledHouse) -> list[str]:
 
 
 def _without_support(house: _CompiledHouse) -> list[str]:
-    """Finds objects that are near no other object, so that they neither stand on, hang from nor lie in one."""
+    """Finds objects that are near no other object, so that nothing supports them: no object below, above or around."""
     low, high = house.boxes(np.arange(house.model.ngeom))
     instance = house.labels.geom_instance
     supported = set()
