@@ -1,11 +1,11 @@
-"""Command lines from dataclasses, and the one guard of all commands: what goes wrong is one line on stderr.
+"""Builds command lines from dataclasses, and reports each error of a command in one line on stderr.
 
-`run` is the entry point of every command, those of `tools` included. Exit status 2 is an error that the user can
+`run` is the entry point of every command, also of those in `tools`. Exit status 2 is an error that the user can
 correct: a wrong option, a broken file, a full disk. 130 and 143 are Ctrl-C and SIGTERM. `--debug`, which every command
 takes, shows the traceback as well.
 
 An option's range is declared with its type (`Seed`, `Count`, `Share`, ...), and is checked here; a file or folder that
-the command writes is an `OutFile` or `OutFolder`, and is refused before any work where it cannot be written.
+the command writes is an `OutFile` or `OutFolder`, and is refused before any work if it cannot be written.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def chosen(text: str, names: Iterable[str], *, option: str) -> list[str]:
     """Returns the names of a comma-separated option, in the order of `names`.
 
     Raises:
-        ConfigError: an unknown name, or none.
+        ConfigError: a name is unknown or missing.
     """
     there_are, wanted = list(names), [name.strip() for name in text.split(",") if name.strip()]
     if not wanted or not set(wanted) <= set(there_are):
@@ -97,7 +97,7 @@ def run(
             args = parse(args_type, [word for word in words if word != "--debug"])
             check(args)
             return main(args)
-        except BrokenPipeError:  # the reader of our output has ended, as `head` does
+        except BrokenPipeError:  # the reader of the output has ended, as `head` does
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 1
         except USAGE_ERRORS as error:
@@ -116,7 +116,7 @@ def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:
     """Returns the command line as an `args_type`.
 
     Raises:
-        ConfigError: an option does not exist, or its value cannot be read or is no printable text.
+        ConfigError: an option does not exist, or its value cannot be read or is not printable text.
         SystemExit: status 0 after `--help`.
     """
     words = sys.argv[1:] if argv is None else argv

@@ -39,7 +39,7 @@ class WorkersError(ObjectNavError, RuntimeError):
 
 
 class AgentError(ObjectNavError, RuntimeError):
-    """An agent raised an error, or returned something that is no action; the message names the agent and the step."""
+    """An agent raised an error, or returned a value that is not an action; the message names agent and step."""
 
 
 def debug() -> bool:

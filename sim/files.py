@@ -41,7 +41,7 @@ def inside(folder: Path, name: str, *, what: str) -> Path:
         base, target = folder.resolve(), path.resolve()
         path.is_file()
     except (OSError, ValueError) as error:
-        raise ConfigError(f"The {what} {name!r} is no name of a file: {_reason(error)}.") from None
+        raise ConfigError(f"The {what} {name!r} is not the name of a file: {_reason(error)}.") from None
     if not name or target == base or not target.is_relative_to(base):
         raise ConfigError(f"The {what} {name!r} leads out of its folder '{folder}'; a name inside it is allowed.")
     _require_short(path, f"The {what}")
@@ -130,7 +130,7 @@ def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:
 
 
 def part_file(file: Path, *, what: str) -> Path:
-    """Creates an empty part file beside `file`, for the caller to write and then to rename to `file`; returns its path.
+    """Creates an empty part file next to `file` and returns its path; the caller writes it and renames it to `file`.
 
     Part files of earlier, killed processes are removed. The folder is created.
 

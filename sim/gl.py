@@ -66,7 +66,7 @@ if os.environ["MUJOCO_GL"] in ("egl", "osmesa"):
     os.environ.setdefault("PYOPENGL_PLATFORM", os.environ["MUJOCO_GL"])
 # llvmpipe divides each small frame among all cores and loses more by waiting than it gains.
 os.environ.setdefault("LP_NUM_THREADS", "1")
-# PyTorch's threads spin for milliseconds while they wait for each other. Beside two other processes on two cores, a
+# PyTorch's threads spin for milliseconds while they wait for each other. With two other processes on two cores, a
 # frame of the network then takes 200 ms; with this limit 62, and with one thread 44 (docs/performance.md).
 os.environ.setdefault("GOMP_SPINCOUNT", "30000")
 

@@ -1,6 +1,6 @@
 """The contract between world and agent: actions, observations, categories, camera and robot geometry.
 
-NumPy only. This is the one module of `sim` that `stubborn` imports, so nothing here knows about physics,
+NumPy only. This is the one module of `sim` that `stubborn` imports, so it must not depend on physics,
 rendering or files.
 
 Frames: the world is z up. The start frame of an episode has its origin at the start pose, x forward and y
@@ -118,7 +118,7 @@ class RobotModel:
     radius_m: float = 0.18
     height_m: float = 0.88
     camera_forward_m: float = 0.0
-    """Camera mount ahead of the wheel axis; 0 for our robot, whose camera turns on the spot."""
+    """Camera mount ahead of the wheel axis; 0 for the default robot, whose camera turns on the spot."""
     clearance_m: float = 0.03
     """Height of the body's lower side above the floor: lower objects pass under it."""
 
@@ -130,7 +130,7 @@ class RobotModel:
 
 @dataclass(frozen=True, kw_only=True)
 class SuccessRule:
-    """When a STOP succeeds: a visible point of an instance is near enough, on the same storey."""
+    """The conditions under which a STOP succeeds: a visible point of an instance is near enough, on the same storey."""
 
     distance_m: float = 1.0
     """Largest distance in plan from the robot's centre to a visible point of the instance's footprint."""
@@ -155,7 +155,7 @@ class SuccessRule:
 
 
 Observation = Mapping[str, NDArray]
-"""The observation of one step; the keys are those of `SENSORS` that were asked for, plus `POSE_SENSORS`.
+"""The observation of one step; the keys are those of `SENSORS` that were requested, plus `POSE_SENSORS`.
 
 | key | shape | dtype | meaning |
 |---|---|---|---|
@@ -168,7 +168,7 @@ Observation = Mapping[str, NDArray]
 """
 
 SENSORS: tuple[str, ...] = ("rgb", "depth", "semantic")
-"""Image sensors: rendered only when asked for."""
+"""Image sensors, which are rendered only when requested."""
 POSE_SENSORS: tuple[str, ...] = ("gps", "compass", "objectgoal")
 """Always present."""
 
@@ -190,7 +190,7 @@ class SegmenterSpec:
     """The declaration of a segmenter: its inputs and how exact it is."""
 
     sensors: tuple[str, ...] = ("rgb",)
-    """Image sensors that `scores` reads in the observation, besides `depth`."""
+    """Image sensors that `scores` reads in the observation, in addition to `depth`."""
     truth: tuple[str, ...] = ()
     """Ground-truth images that it reads in the environment and that the agent does not get (`semantic`, `geom`)."""
     exact_outlines: bool = False
@@ -217,16 +217,16 @@ class Segmenter(Protocol):
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
         """Returns the probability of each category of `MPCAT40` but void, float32 (40, h, w), in their order.
 
-        The resolution may be any whole fraction of the image's. Of a frame without any information on a pixel, all of
-        its probabilities may be 0. Agents that track objects of all categories (`stubborn-plus`), explorers that map
-        them (`poni`, `semexp`, `informed-tour`) and `cloned` read it; others do not.
+        The resolution may be any whole fraction of the image's. All probabilities of a pixel may be 0 if the frame has
+        no information on it. Agents that track objects of all categories (`stubborn-plus`), explorers that map them
+        (`poni`, `semexp`, `informed-tour`) and `cloned` read it; others do not.
         """
         ...
 
 
 @runtime_checkable
 class NamesCategories(Protocol):
-    """A segmenter that also tells the category of each pixel; viewers show it."""
+    """A segmenter that also returns the category of each pixel; viewers show it."""
 
     def categories(self, observation: Observation) -> NDArray[np.uint8]:
         """Returns the most probable mpcat40 id of each pixel, at any whole fraction of the image's resolution.
@@ -240,7 +240,7 @@ class Agent(Protocol):
     """An agent: any object with these two methods, built by an `AgentFactory`."""
 
     def reset(self, goal: str, seed: int) -> None:
-        """Start a new episode; nothing of the last one may remain."""
+        """Starts a new episode and deletes all state of the last one."""
         ...
 
     def act(self, observation: Observation) -> Action:
@@ -250,7 +250,7 @@ class Agent(Protocol):
 
 @runtime_checkable
 class Overridable(Protocol):
-    """An agent that can be told that another action than its own is carried out, such as that of a person."""
+    """An agent that accepts that an action other than its own is carried out, such as that of a person."""
 
     def overridden(self, action: Action) -> None:
         """Called after `act`, before the next observation, with the action that is carried out instead."""
@@ -259,7 +259,7 @@ class Overridable(Protocol):
 
 @runtime_checkable
 class StatesConfidence(Protocol):
-    """An agent that tells how sure it is that the object for which it stops is the goal; the report compares it."""
+    """An agent that states how sure it is that the object for which it stops is the goal; the report compares it."""
 
     def stop_confidence(self) -> float | None:
         """Returns a probability or score in [0, 1]; None: it has none. Called after `act` has returned STOP."""
@@ -268,7 +268,7 @@ class StatesConfidence(Protocol):
 
 @runtime_checkable
 class StatesTarget(Protocol):
-    """An agent that tells for which place it stops; whether a wrong STOP was for the goal is then measured."""
+    """An agent that states for which place it stops; whether a wrong STOP was for the goal is then measured."""
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
         """Returns a point of the object for which the agent stops, in plan; None: it does not know one.

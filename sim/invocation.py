@@ -1,4 +1,4 @@
-"""How the user started this process, so that messages name commands as the user would type them."""
+"""Finds how the user started this process, so that messages name commands as the user would type them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAIN = "sim.commands.main"
 MODULES = ("run", "report", "web", "teleop")
 """Commands that also start as `python -m sim.NAME`."""
 RUN_STOPPED = "Stopped. The same command with the same --out resumes the run."
-"""What `stubborn run` prints after Ctrl-C or SIGTERM."""
+"""The message that `stubborn run` prints after Ctrl-C or SIGTERM."""
 _SUBCOMMAND: contextvars.ContextVar[str | None] = contextvars.ContextVar("subcommand", default=None)
 
 
@@ -25,7 +25,7 @@ def command(*words: object) -> str:
     """Returns a `stubborn` command to be copied into a shell, for example of `report` and a folder.
 
     It begins as this process did: with `stubborn` or the path to it, or with `python -m sim.NAME` for the commands that
-    can be started so. In a process that is no command of ours it begins with `stubborn`.
+    can be started so. In a process that is not a command of this project it begins with `stubborn`.
     """
     module = _module()
     if module == MAIN:
@@ -73,7 +73,7 @@ def python() -> str:
 
 
 def _module() -> str | None:
-    """Returns the module that `python -m` started; None: the process was started in another way."""
+    """Returns the module that `python -m` started; None: the process was started differently."""
     spec = getattr(sys.modules["__main__"], "__spec__", None)
     return None if spec is None else spec.name.removesuffix(".__main__")
 

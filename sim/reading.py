@@ -102,8 +102,8 @@ def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[Ob
 def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError] = ConfigError) -> Lines:
     """Returns the JSON objects of a file with one per line, each checked against a type; all their fields are kept.
 
-    A last line without its end, or one of zero bytes as some file systems leave it after a power failure, is what a
-    killed process leaves. It is left out and described in `Lines.torn`.
+    A process that is killed can leave a last line without its end; some file systems leave a last line of zero bytes
+    after a power failure. Such a line is left out and described in `Lines.torn`.
 
     Raises:
         ObjectNavError: of class `error`; the file cannot be read, or a line before the last is broken.
@@ -173,7 +173,7 @@ def convert(
 
 
 def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error where a zip file (`.npz`, a PyTorch file) is none, or expands to more than `most` bytes."""
+    """Raises an error if a file is not a zip file (`.npz`, a PyTorch file), or expands to more than `most` bytes."""
     try:
         with zipfile.ZipFile(file) as archive:
             size = sum(member.file_size for member in archive.infolist())
@@ -215,7 +215,7 @@ def read_npz(
                 raise ValueError(f"it has no '{missing}'")
             return {name: _read_member(archive, name) for name in wanted}
     except Exception as fault:  # damaged bytes raise more kinds of errors in zipfile and NumPy than a list could name
-        raise error(f"'{file}' is no {what}: {reason_of(fault)}.") from None
+        raise error(f"'{file}' is not a {what}: {reason_of(fault)}.") from None
 
 
 def image_size_px(content: bytes) -> tuple[int, int] | None:
@@ -234,7 +234,7 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
 
 
 def require_small_image(content: bytes, *, where: str, error: type[ObjectNavError] = ConfigError) -> None:
-    """Raises an error where an image is no PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
+    """Raises an error where an image is not a PNG or JPEG, or has more than `MAX_PIXELS` pixels."""
     size = image_size_px(content)
     if size is None:
         raise error(f"{where} is neither a PNG nor a JPEG image.")
@@ -251,7 +251,7 @@ def printable(text: str) -> str:
 
 
 def first_unprintable(words: Iterable[str]) -> str | None:
-    """Returns the first word with a control character or a byte that is no UTF-8; None where there is none."""
+    """Returns the first word with a control character or a byte that is not UTF-8; None where there is none."""
     return next((word for word in words if printable(word) != word or "\n" in word or "\t" in word), None)
 
 

@@ -1,6 +1,6 @@
 """Drive the robot yourself: `stubborn teleop`, or `stubborn teleop --goal sofa --out runs/mine`.
 
-You play an episode of a split, by default the first that is not in `--out` yet. It is recorded like any agent's: a
+You drive an episode of a split, by default the first that is not in `--out` yet. It is recorded like any agent's: a
 line in `results.jsonl` (agent `human`), a trajectory file, a summary; the tools for runs read it. Quitting records
 nothing.
 """
@@ -46,13 +46,13 @@ class Args:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
-    """With --house: a folder whose files the house may use besides those of its own folder."""
+    """With --house: another folder whose files the house may use, in addition to its own folder."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     robot: Path | None = None
-    """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
+    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
     seed: cli.Seed = 0
     """Seed of noise and, with --house, of start and goal."""
     profile: str = "fast"
@@ -68,7 +68,7 @@ class Args:
 
 
 def main(args: Args) -> int:
-    """Plays one episode; returns the exit status."""
+    """Runs one episode; returns the exit status."""
     console = display.make_console()
     terminal = Terminal()
     if args.colours != "auto":
@@ -91,7 +91,7 @@ def main(args: Args) -> int:
 
 
 def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
-    """Plays an episode in a terminal and records it; returns its folder and its result line.
+    """Runs an episode in a terminal and records it; returns its folder and its result line.
 
     Raises:
         ConfigError, EpisodeError, HouseError: the split, house, goal or episode does not exist.
@@ -137,8 +137,8 @@ def run_options(args: Args) -> RunOptions:
 
 
 def available(args: Args, setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
-    """Returns all episodes that can be played, and what identifies their source."""
-    if args.house is not None:  # one is drawn from the seed
+    """Returns all episodes that can be run, and the fields that identify their source."""
+    if args.house is not None:  # one is sampled from the seed
         return episodes_of(setup)
     env = ObjectNavEnv(split=args.split, goal=args.goal, sensors=())
     try:
@@ -150,10 +150,10 @@ def available(args: Args, setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
 
 
 def choose(args: Args, episodes: Sequence[Episode], done: set[str]) -> Episode:
-    """Returns the episode to play.
+    """Returns the episode to run.
 
     Raises:
-        ConfigError: there is none of that name, or it was played already.
+        ConfigError: no episode has that name, or it was run already.
     """
     left = [episode for episode in episodes if episode.episode_id not in done]
     if args.episode_id is None:

@@ -1,6 +1,6 @@
 """Reads runs, checks that they have the same episodes, and lists the fields in which their configurations differ.
 
-Two agents that played the same episodes differ less by chance than their separate intervals suggest: houses, goals and
+Two agents that ran the same episodes differ less by chance than their separate intervals suggest: houses, goals and
 starts are the same. So differences are taken in each episode (`sim.evaluation.bootstrap.paired_difference`).
 """
 
@@ -37,7 +37,7 @@ class Run:
     path: Path
     config: Mapping[str, Any]
     lines: Mapping[str, Line]
-    """By `episode_id`."""
+    """Result lines by `episode_id`."""
 
     def recorded(self, name: str) -> Any:
         """Returns a field of config.json; raises ConfigError where a run of an older version does not have it."""
@@ -51,16 +51,16 @@ def read_run(path: Path) -> Run:
     """Returns the run in a folder.
 
     Raises:
-        ConfigError: there is none, or its files do not have the format of `stubborn run`.
+        ConfigError: the folder has no run, or its files do not have the format of `stubborn run`.
     """
     config, results = path / "config.json", path / "results.jsonl"
     for file in (config, results):
         if not file.is_file():
-            raise ConfigError(f"'{path}' is no run: it has no {file.name}.")
+            raise ConfigError(f"'{path}' is not a run: it has no {file.name}.")
     try:
         record, lines = read_record(config), read_result_lines(results).values
     except ConfigError as error:
-        raise ConfigError(f"'{path}' is no run: {error}") from None
+        raise ConfigError(f"'{path}' is not a run: {error}") from None
     return Run(path, record, {line["episode_id"]: line for line in lines})
 
 
@@ -97,7 +97,7 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
 def require_same_episodes(first: Run, *others: Run) -> list[str]:
     """Returns the ids of the episodes that all runs share, in the order of the first run.
 
-    Episodes drawn in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
+    Episodes sampled in one house (`stubborn run --house`) have the same ids for every seed. So house, goal and shortest
     path must also be equal; the path to `SAME_PATH_M`, and only where neither episode ended with an error.
 
     Raises:
@@ -118,7 +118,7 @@ def _shared_episodes(first: Run, second: Run) -> list[str]:
     identities = [run.config.get("split_identity", {}) for run in (first, second)]
     if identities[0] != identities[1]:
         named = " and ".join(f"{i.get('name')} {i.get('version')} ({str(i.get('sha256'))[:8]})" for i in identities)
-        raise ConfigError(f"'{first.path}' and '{second.path}' were not played on the same episodes: {named}.")
+        raise ConfigError(f"'{first.path}' and '{second.path}' were not run on the same episodes: {named}.")
     common = [episode_id for episode_id in first.lines if episode_id in second.lines]
     keys = ("house", "goal", "shortest_path") if _same_paths_expected(first, second) else ("house", "goal")
     if not common:
@@ -128,7 +128,7 @@ def _shared_episodes(first: Run, second: Run) -> list[str]:
         for key in keys:
             if not (_same_path(a, b) if key == "shortest_path" else a.get(key) == b.get(key)):
                 raise ConfigError(
-                    f"'{first.path}' and '{second.path}' were not played on the same episodes: '{episode_id}' has "
+                    f"'{first.path}' and '{second.path}' were not run on the same episodes: '{episode_id}' has "
                     f"{key} {json.dumps(a.get(key))} and {json.dumps(b.get(key))}."
                 )
     return common

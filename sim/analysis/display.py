@@ -30,7 +30,7 @@ PLAIN_WIDTH = 120
 
 
 class PlainConsole(Console):
-    """A console for which text is text: brackets are no markup, and control characters are written as escapes."""
+    """A console for which text is text: brackets are not markup, and control characters are written as escapes."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(markup=False, emoji=False, **options)

@@ -51,7 +51,7 @@ def find_agent(name: str) -> AgentSpec:
             declares nothing, so its agent gets RGB and depth and no ground truth.
 
     Raises:
-        ConfigError: there is no such agent.
+        ConfigError: the name is unknown.
     """
     if name in SPECS:
         return SPECS[name]

@@ -17,7 +17,7 @@ def check_options(options: RunOptions) -> None:
     if options.house is None and any(each is not None for each in (options.labels, options.root, options.start_deg)):
         raise ConfigError("--labels, --root and --start-deg need --house.")
     if options.only and options.house is not None:
-        raise ConfigError("--only names episodes of a split; with --house, episodes are drawn.")
+        raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
     if options.retry_errors and options.out is None:
         raise ConfigError("--retry-errors needs --out: the folder of the run.")
     selection.check(options)

@@ -85,7 +85,7 @@ def _first_episodes(split: Split, options: RunOptions) -> list[Episode]:
     """Returns the first episodes of a split, as many as the options ask for, with their goal if they name one.
 
     Raises:
-        ConfigError: the split has fewer, or none with this goal.
+        ConfigError: the split has fewer episodes, or no episode with this goal.
     """
     goals = [goal for goal in GOAL_CATEGORIES if any(episode.goal == goal for episode in split.episodes)]
     if options.goal is not None and options.goal not in goals:

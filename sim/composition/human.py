@@ -50,7 +50,7 @@ class Cockpit(Protocol):
 
 
 class Human:
-    """An `Agent` that asks a person; a Stubborn agent beside it draws the map and can show its plan."""
+    """An `Agent` that asks a person; a Stubborn agent next to it draws the map and can show its plan."""
 
     def __init__(self, env: ObjectNavEnv, cockpit: Cockpit) -> None:
         self._env, self._cockpit = env, cockpit
@@ -81,7 +81,7 @@ class Human:
             message = self._answer(key)
 
     def _answer(self, key: str) -> str:
-        """Carries out a key that moves nothing; returns the message to show."""
+        """Carries out a key that does not move the robot; returns the message to show."""
         if key == "g":
             distance_m = self._env.scene.task.metrics()["distance_to_goal"]
             return "there is no path to the goal" if distance_m is None else f"goal: {distance_m:.1f} m to go"
@@ -103,7 +103,7 @@ class Human:
         """Returns a sentence about the last action."""
         motion = self._env.motion
         if motion is None:
-            return "you stand at the start"
+            return "you are at the start"
         if motion.collided:
             return f"{ACTION_WORDS[motion.action]}: COLLISION, an obstacle stopped the body"
         return f"{ACTION_WORDS[motion.action]}: done"

@@ -34,15 +34,15 @@ class RunOptions:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
-    """With --house: a folder whose files the house may use besides those of its own folder."""
+    """With --house: another folder whose files the house may use, in addition to its own folder."""
     robot: Path | None = None
-    """Another robot in place of ours: an MJCF file with its sidecar beside it (docs/worlds.md)."""
+    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
     goal: str | None = None
     """Only this goal category."""
     start_deg: str | None = None
     """With --house: the start pose "X Y YAW" in metres and degrees."""
     episodes: cli.Count = 5
-    """The first N episodes of the split; with --house, N episodes are drawn."""
+    """The first N episodes of the split; with --house, N episodes are sampled."""
     only: tuple[str, ...] = ()
     """IDs of episodes of the split: these in place of the first N, for example a failure to film."""
     seed: cli.Seed = 0

@@ -1,4 +1,4 @@
-"""What a run records: `config.json`, versions, and the part of a result line that identifies its episode."""
+"""Builds what a run records: `config.json`, versions, and the part of a result line that identifies its episode."""
 
 from __future__ import annotations
 

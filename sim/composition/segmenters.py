@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class NetworkConfig:
-    """Which network segments, and how."""
+    """Selects the weights of the network that segments, and how it runs."""
 
     weights: Path = SHIPPED_REDNET
     """File of the weights (safetensors)."""

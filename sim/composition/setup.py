@@ -1,4 +1,4 @@
-"""From the options of a run to its `Setup`: every name is looked up once, here, and nowhere after.
+"""Builds the `Setup` of a run from its options. Every name is looked up here, once, and never again later.
 
 Environment, agent, viewers, results and workers are made from the setup (`sim.composition.runner`, `record`).
 """
@@ -33,7 +33,7 @@ class VerificationConfig:
     """How the agent verifies a candidate before it stops."""
 
     method: str = "naive-bayes"
-    """naive-bayes (the paper's), logistic, threshold or none."""
+    """`naive-bayes` (the paper's), `logistic`, `threshold` or `none`."""
     parameters: Path | None = None
     """File of fitted parameters; None takes those shipped for the kind of segmentation."""
     least_probability: float | None = None
@@ -65,7 +65,7 @@ class RunConfig:
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """Everything that determines the results of a run besides episode and seed, resolved once from its options.
+    """Everything that determines the results of a run except episode and seed, looked up once from its options.
 
     A worker gets it as its options and resolves them again in its own process: agents of users cannot be copied.
     """
@@ -80,7 +80,7 @@ class Setup:
     """Path and value of each field that the settings file or `--config` sets."""
     verifier: Verifier
     start: Pose | None
-    """With `--house`, the start of every episode; None: drawn."""
+    """With `--house`, the start of every episode; None: starts are sampled."""
 
     def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
         """Pickles the setup as its options."""

@@ -121,14 +121,14 @@ def read_demonstration(file: Path) -> Demonstration:
     """Returns the demonstration in a file.
 
     Raises:
-        ConfigError: there is no such file, or it is no demonstration.
+        ConfigError: there is no such file, or it is not a demonstration.
     """
     arrays = read_npz(file, (*_ARRAYS, "about"), what="demonstration", most_bytes=MAX_FILE_BYTES)
     try:
         about = parse_json(arrays.pop("about").tobytes(), _About, where="its header 'about'")
         _check(arrays, about.goal)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is no demonstration: {reason_of(error)}.") from None
+        raise ConfigError(f"'{file}' is not a demonstration: {reason_of(error)}.") from None
     return Demonstration(**arrays, goal=about.goal, house=about.house, success=about.success)
 
 
@@ -136,7 +136,7 @@ def list_demonstrations(folders: Sequence[Path]) -> list[Path]:
     """Returns the files of demonstrations in some folders and the folders in them, each once.
 
     Raises:
-        ConfigError: a folder has none.
+        ConfigError: a folder has no demonstration.
     """
     found: list[Path] = []
     for folder in folders:
@@ -162,7 +162,7 @@ def _check(arrays: Mapping[str, NDArray[Any]], goal: str) -> None:
     if arrays["depth_mm"].shape != arrays["semantic"].shape or arrays["poses"].shape[1:] != (3,):
         raise ValueError(f"the images are {arrays['depth_mm'].shape} and {arrays['semantic'].shape}")
     if goal not in GOAL_CATEGORIES:
-        raise ValueError(f"{goal!r} is no goal category")
+        raise ValueError(f"{goal!r} is not a goal category")
     if np.any(arrays["actions"] >= len(Action)) or np.any(arrays["semantic"] >= len(MPCAT40)):
         raise ValueError("an action or a category is out of range")
     if not np.isfinite(arrays["poses"]).all():

@@ -15,7 +15,7 @@ from sim.interface import FORWARD_M, TURN_RAD, wrap_angle
 from sim.world.freespace import FreeSpace
 
 VIEWS_PER_PATH = 12
-"""Largest number of views along one path, where they are no sequence."""
+"""Largest number of views along one path, where they are not a sequence."""
 MAX_TRIES = 40
 """Paths that may be too short for a sequence, and attempts for each view, before a house is refused."""
 

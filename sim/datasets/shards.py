@@ -2,7 +2,7 @@
 
 A shard `views-000012.tar` holds `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16 millimetres), `key.semantic.png`
 (uint8 mpcat40 id) and `key.json` for each view; where they were asked for, also `key.instances.png` (uint16) with
-`key.coco.json`, and `key.normals.png` (docs/datasets.md). The note beside it, `views-000012.json`, holds its statistics
+`key.coco.json`, and `key.normals.png` (docs/datasets.md). The note next to it, `views-000012.json`, has its statistics
 and its checksum; a shard without a note, or with another checksum, is broken and is made again.
 """
 
@@ -45,7 +45,7 @@ INDEX_FILE = "index.json"
 
 @dataclass
 class ShardNote:
-    """Content of the note, the JSON file beside a shard."""
+    """Content of the note, the JSON file next to a shard."""
 
     shard: str
     house: str
@@ -115,7 +115,7 @@ def read_note(folder: Path, name: str, *, verify: bool) -> ShardNote | None:
     Args:
         folder: folder of the shards.
         name: name of the shard.
-        verify: whether to compare the checksum of the file, besides its size.
+        verify: whether to compare the checksum of the file, in addition to its size.
     """
     tar = folder / f"{name}.tar"
     try:

@@ -31,7 +31,7 @@ BARE_SHARE = 0.97
 BARE_DEPTH_M = 1.2
 """Median depth below which such a view is rejected: a near wall holds no information."""
 EXTRAS: tuple[str, ...] = ("instances", "normals", "poses")
-"""Members of a view besides colour, depth and categories."""
+"""Members of a view in addition to colour, depth and categories."""
 _STRUCTURE = np.isin(np.arange(256), [MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 
 

@@ -1,12 +1,12 @@
 """`--semantics noisy`: a simulated detector, the ground truth with a seeded model of a network's errors.
 
-It imitates these errors: whole objects are classified as a similar category, and that over neighbouring views, because
+It imitates these errors: whole objects are classified as a similar category, in neighbouring views too, because
 the errors of a network depend on the image; some objects are hard from most sides; single frames differ from their
 neighbours; small and far objects are missed; scores vary in blobs, and outlines are inexact.
 
 A view of an object is a sector of directions and a range of distances from which it is seen. The errors of a view come
 from a hash of the episode's seed, the object and the view, so they are the same in every frame of the view. All other
-random numbers are drawn for each frame. The same seed and the same path give the same scores.
+random numbers are sampled for each frame. The same seed and the same path give the same scores.
 """
 
 from __future__ import annotations

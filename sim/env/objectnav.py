@@ -49,8 +49,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     `max_steps` actions.
 
     ## Starting state
-    `reset(seed=...)` draws an episode of the split, or a start and a goal in the house;
-    `reset(options={"episode_id": ...})` takes that episode of the split, `options={"episode": Episode(...)}` any.
+    `reset(seed=...)` samples an episode of the split, or a start and a goal in the house;
+    `reset(options={"episode_id": ...})` takes that episode of the split, and `options={"episode": Episode(...)}` takes
+    any other.
 
     ## Info
     The metrics of the task so far (`success`, `spl`, `distance_to_goal`, `collisions`, ...), `episode_id`, `house`,
@@ -58,14 +59,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     Args:
         split: name of a shipped split, or a folder with the same layout.
-        house: one MJCF file instead of a split; episodes are then drawn in it.
+        house: one MJCF file instead of a split; episodes are then sampled in it.
         labels: label rules for a house with other names.
-        root: folder whose files the house may use besides those of its own folder.
+        root: another folder whose files the house may use, in addition to its own folder.
         goal: only episodes with this goal category.
         start: with `house`, the start pose of every episode.
         sensors: sensors in the observation: names of `sim.sensors.standard`, or objects with the interface
             `sim.sensors.sensor.Sensor`.
-        truth: images that are rendered besides and kept in `truth_images`, for users of the ground truth.
+        truth: further images, rendered and kept in `truth_images`, for users of the ground truth.
         profile: rendering profile, `fast`, `good` or an object.
         noise: noise of sensors and drive: the name of a preset of `sim.sensors.noise`, or a `NoiseConfig`. The metrics
             are never noisy. A house whose sidecar (`sim.houses.sidecar`) fixes noise keeps its own.
@@ -157,7 +158,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
 
     @property
     def success_rule(self) -> SuccessRule:
-        """When a STOP succeeds."""
+        """The conditions under which a STOP succeeds."""
         return self.task_config.success
 
     @property

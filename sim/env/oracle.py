@@ -27,7 +27,7 @@ HEURISTIC_WEIGHT = 1.5
 TURN_COST_M = 0.02
 """Cost of a turn, in metres of path."""
 MARGIN_M = 0.05
-"""A step that passes an obstacle with less clearance than this beside the disc costs more."""
+"""A step that passes an obstacle with less clearance than this around the disc costs more."""
 TIGHT_COST_M = 0.25
 """Additional cost of such a step, in metres of path."""
 NODE_M = 0.05

@@ -31,7 +31,7 @@ class ProgressReward(gymnasium.Wrapper[Any, Any, Any, Any], gymnasium.utils.Reco
         per_collision: price of an action whose motion a contact stopped.
 
     Raises:
-        ConfigError: a weight is no finite number.
+        ConfigError: a weight is not a finite number.
     """
 
     def __init__(

@@ -43,7 +43,7 @@ class Scene:
 class SceneCache:
     """A cache of the scenes used last: to compile a house and compute its free space takes most of a second.
 
-    It holds one scene by default, because a run plays house by house and a scene takes 40 to 80 MB.
+    It holds one scene by default, because a run goes house by house and a scene takes 40 to 80 MB.
     """
 
     def __init__(self, make: Callable[[str], Scene], *, size: int = 1) -> None:

@@ -28,12 +28,12 @@ Json = dict[str, Any]
 
 
 def to_position(x_m: float, y_m: float, z_m: float) -> list[float]:
-    """Returns a position of our frame in Habitat's."""
+    """Returns a position of the project's frame in Habitat's."""
     return [x_m, z_m, 0.0 - y_m]
 
 
 def from_position(position: Sequence[float]) -> tuple[float, float, float]:
-    """Returns a position of Habitat's frame in ours."""
+    """Returns a position of Habitat's frame in the project's frame."""
     x, up, back = position
     return x, 0.0 - back, up
 

@@ -1,4 +1,4 @@
-"""Tells which hazards of a house lie on the shortest path of an episode (`sim.houses.hazards`)."""
+"""Finds the hazards of a house that lie on the shortest path of an episode (`sim.houses.hazards`)."""
 
 from __future__ import annotations
 

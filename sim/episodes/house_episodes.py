@@ -144,6 +144,6 @@ class StartDrawer:
         if second_best is None:
             raise EpisodeError(
                 f"House '{self._task.world.house.name}': '{ask.goal}' is visible in the first frame of all "
-                f"{MAX_HIDDEN_REDRAWS} starts that were drawn."
+                f"{MAX_HIDDEN_REDRAWS} starts that were sampled."
             )
         return second_best

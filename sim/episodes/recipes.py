@@ -16,7 +16,7 @@ from types import MappingProxyType
 from typing import Literal
 
 Rule = Literal["any", "hidden", "hazard"]
-"""Which starts a split allows besides the limits of the distance:
+"""The starts that a split allows, in addition to the limits of the distance:
 
 - `any`: all;
 - `hidden`: no instance of the goal is visible at the start by the rule of GT exploration, in whatever direction the
@@ -27,7 +27,7 @@ Rule = Literal["any", "hidden", "hazard"]
 
 @dataclass(frozen=True, kw_only=True)
 class EpisodeRecipe:
-    """The rules by which the episodes of a split are drawn."""
+    """The rules by which the episodes of a split are sampled."""
 
     per_house: int = 10
     """Number of episodes of each house."""

@@ -1,6 +1,6 @@
 """Splits: houses and their episodes (house, goal, start), in a fixed order.
 
-A split is a folder of house files with its episodes beside them in Habitat's ObjectNav layout (see
+A split is a folder of house files with its episodes next to them in Habitat's ObjectNav layout (see
 `sim.episodes.habitat`): `val/<house>.xml`, `val/val.json.gz`, `val/content/<house>.json.gz`. Instead of house files it
 may have a list of recipes, `train/houses.json` (see `sim.housegen.splits.house_list`), whose houses are generated on
 first use.
@@ -77,7 +77,7 @@ class Split:
     episodes: tuple[Episode, ...]
     labels_path: Path | None = None
     root: Path | None = None
-    """Folder whose files the houses may use besides those of the split's folder."""
+    """Another folder whose files the houses may use, in addition to the split's folder."""
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
 
@@ -106,7 +106,7 @@ class Split:
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
     def sidecar(self, house: str) -> Sidecar:
-        """Returns the settings that the sidecar of a house fixes; none without a sidecar, or if it holds label rules.
+        """Returns the settings that a house's sidecar fixes; empty if there is no sidecar, or if it holds label rules.
 
         Raises:
             HouseError: the file violates the format of `sim.houses.sidecar`.
@@ -149,7 +149,7 @@ def load_split(name_or_path: str | Path) -> Split:
     if not _index_of(folder).is_file():
         raise ConfigError(
             f"Split '{folder}' has no {_index_of(folder).name}: a split is a folder of house files with its episodes "
-            f"beside them (`{command('episodes')}` makes them)."
+            f"next to them (`{command('episodes')}` makes them)."
         )
     return _read_split(folder)
 
@@ -160,7 +160,7 @@ def one_house(path: str | Path, *, labels: str | Path | None = None, root: str |
     Args:
         path: the file.
         labels: its label rules.
-        root: folder whose files it may use besides those of its own folder.
+        root: another folder whose files it may use, in addition to its own folder.
 
     Raises:
         HouseError: there is no such file.
@@ -184,7 +184,7 @@ def write_split(
     version: str,
     unreachable: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Writes the episodes of a split beside its houses, in Habitat's layout; existing episodes are replaced.
+    """Writes the episodes of a split next to its houses, in Habitat's layout; existing episodes are replaced.
 
     Args:
         folder: the split's folder, which holds the house files; its name is the split's.
@@ -260,7 +260,7 @@ def _read_split(folder: Path) -> Split:
     house_list = read_house_list(folder) if has_house_list(folder) else None
     houses = house_list.paths if house_list else {path.stem: path for path in sorted(folder.glob("*.xml"))}
     if (bad := first_unprintable(houses)) is not None:
-        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is no plain text.")
+        raise ConfigError(f"Split '{folder}': the name of the house '{printable(bad)}.xml' is not plain text.")
     missing = sorted({episode.house for episode in ordered} - set(houses))
     if missing:
         where = "no such house in its list" if house_list else f"no {missing[0]}.xml"

@@ -1,6 +1,6 @@
-"""Where the episodes of a split may start: the rules of `sim.episodes.recipes`.
+"""Selects the starts of the episodes of a split, by the rules of `sim.episodes.recipes`.
 
-A rule restricts the cells of the free space from which a start is drawn (`start_cells`), and tests the drawn start
+A rule restricts the cells of the free space from which a start is sampled (`start_cells`), and tests that start
 (`Lookout`). A goal that leaves too few cells is not asked for.
 """
 
@@ -25,7 +25,7 @@ from sim.world.freespace import FreeSpace
 LEAST_START_M2 = 1.0
 """Smaller areas hold too few different starts for a rule."""
 FARTHER_PATH_M = 1.0
-"""Where no path leads within `NEAR_PATH_M` of a hazard, one within this distance counts."""
+"""If no path leads within `NEAR_PATH_M` of a hazard, one within this distance counts."""
 VIEWS = 6
 """Headings of the camera around a start that are checked, 60 degrees apart; the camera's view is 79 degrees wide."""
 EDGE_STRETCH = 2.5
@@ -98,7 +98,7 @@ def leads_past(distance_m: NDArray[np.floating], marked: NDArray[np.bool_]) -> N
 
 
 class Lookout:
-    """Tells whether a goal is visible from a start, by the rule of GT exploration.
+    """Returns whether a goal is visible from a start, by the rule of GT exploration.
 
     Args:
         task: of the house; its world is only read.

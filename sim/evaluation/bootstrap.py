@@ -1,11 +1,11 @@
 """Means over episodes with 95 % bootstrap intervals that resample houses, then the episodes of each house.
 
 Episodes in the same house are alike, so they are not independent samples. The two-stage cluster bootstrap (Davison and
-Hinkley 1997, section 3.8) draws houses with replacement and, within each drawn house, as many of its episodes with
-replacement as the house has. The mean is over all drawn episodes. The interval is the 2.5 % and 97.5 % percentiles of
+Hinkley 1997, section 3.8) samples houses with replacement and, within each sampled house, as many of its episodes with
+replacement as the house has. The mean is over all sampled episodes. The interval is the 2.5 % and 97.5 % percentiles of
 the means. It describes other houses of the same kind, not only these.
 
-It is conservative: the mean of a drawn house varies with its episodes twice, in the data and in the second stage. In
+It is conservative: the mean of a sampled house varies with its episodes twice, in the data and in the second stage. In
 simulations with 20 houses of 10 episodes, intervals were 1.4 times as wide as those over episodes and contained the
 true mean in 98 % of the samples where houses are alike, and in 95 % where they differ much (those over episodes: 92 %
 and 80 %).
@@ -27,9 +27,10 @@ from numpy.typing import NDArray
 Value = float | bool | None
 RESAMPLES = 10_000
 MIN_PAIRS = 20
-"""Fewer pairs resolve nothing: the bootstrap of a few values is too narrow, and of equal values it has no width."""
+"""A difference with fewer pairs is never significant: the interval of a few values is too narrow, and that of equal
+values has no width."""
 _BLOCK = 500_000
-"""Episodes that are drawn at once; bounds the memory to about 20 MB."""
+"""Episodes that are sampled at the same time; bounds the memory to about 20 MB."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +45,11 @@ class Estimate:
     houses: int
     """Houses of these episodes. 1: the interval is over the episodes of this one house."""
     neutral: float = 0.0
-    """What two equal runs give: 0 for a difference, 1 for a ratio."""
+    """The value that two equal runs give: 0 for a difference, 1 for a ratio."""
 
     @property
     def resolved(self) -> bool:
-        """For a comparison: True if its interval excludes `neutral` and it has at least `MIN_PAIRS` pairs."""
+        """True for a significant comparison: its interval excludes `neutral` and it has at least `MIN_PAIRS` pairs."""
         if self.low is None or self.high is None or self.count < MIN_PAIRS:
             return False
         return not self.low <= self.neutral <= self.high
@@ -155,7 +156,7 @@ def _ratio_of_medians(pairs: NDArray[np.float64]) -> float:
 def _resampled_sums(
     clusters: Sequence[NDArray[np.float64]], drawn: NDArray[np.int32], rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Returns (n,) sums, one for each drawn cluster: of as many of its values, drawn with replacement, as it has."""
+    """Returns (n,) sums, one for each sampled cluster: it has m values, and m of them are sampled with replacement."""
     by_cluster = np.argsort(drawn.astype(np.min_scalar_type(len(clusters))), kind="stable")  # radix sort below 65,536
     sums = []
     for cluster, count in zip(clusters, np.bincount(drawn, minlength=len(clusters)).tolist(), strict=True):

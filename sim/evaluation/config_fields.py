@@ -60,7 +60,7 @@ def _differences(path: str, a: Any, b: Any) -> list[Difference]:
 
 
 def _fields(value: Any, other: Any) -> Mapping[str, Any] | None:
-    """Returns the fields of an object; {} for an absent one beside an object with fields; None for any other value."""
+    """Returns the fields of an object; {} for an absent one paired with such an object; None for any other value."""
     if isinstance(value, Mapping):
         return value if value or other is not ABSENT else None
     return {} if value is ABSENT and isinstance(other, Mapping) and other else None

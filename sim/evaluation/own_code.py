@@ -1,4 +1,4 @@
-"""A user's own code: the line of it in which an error was raised, and a hash that tells two versions apart."""
+"""Finds the line of a user's own code in which an error was raised, and hashes the code to distinguish versions."""
 
 from __future__ import annotations
 

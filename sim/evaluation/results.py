@@ -32,7 +32,7 @@ SUMMARY_METRICS = (
 OF_ERRORS = ("success", "spl", "soft_spl")
 """Metrics in which an episode that ended with an error counts."""
 RESAMPLED, RESAMPLED_IN_ONE_HOUSE = "houses, then the episodes of each", "the episodes of the one house"
-"""What the intervals of a summary resample."""
+"""The units that the intervals of a summary resample."""
 PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
@@ -93,7 +93,7 @@ _NOT_WRITTEN = {
 
 
 class SplitIdentity(msgspec.Struct):
-    """What identifies the source of a run's episodes."""
+    """The fields that identify the source of a run's episodes."""
 
     name: Name
     version: str = ""
@@ -183,7 +183,7 @@ class RunDirectory:
         return dropped
 
     def require_of(self, episodes: Mapping[str, tuple[str, str]]) -> None:
-        """Raises ConfigError where a line is of none of the episodes, or of one with another house or goal.
+        """Raises ConfigError if a line belongs to no episode, or to one with another house or goal.
 
         Args:
             episodes: house and goal by id.
@@ -192,7 +192,9 @@ class RunDirectory:
             where = f"Results '{self.path / 'results.jsonl'}', line {number}"
             house, goal = episodes.get(line["episode_id"], (None, None))
             if house is None:
-                raise ConfigError(f"{where}: '{line['episode_id']}' is no episode of this run; choose another folder.")
+                raise ConfigError(
+                    f"{where}: '{line['episode_id']}' is not an episode of this run; choose another folder."
+                )
             for key, wanted in (("house", house), ("goal", goal)):
                 if line[key] != wanted:
                     raise ConfigError(f"{where}: {key} is '{line[key]}', but '{wanted}' in the episode of this run.")
@@ -293,8 +295,8 @@ class RunDirectory:
 def metric_value(line: Mapping[str, Any], metric: str) -> float | None:
     """Returns a metric of a result line; None where the line, for example of an older version, does not have it.
 
-    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it was not
-    played to its end, so that it has too few steps, collisions and metres.
+    An episode that ended with an error is a failure, whose success and SPL are 0. It has no other metric: it did not
+    run to its end, so that it has too few steps, collisions and metres.
 
     `never_seen` is 1 - `gt_explored`. It belongs to `steps_to_first_sight`, whose value is `max_steps` in an episode
     that never showed the goal: the mean is the restricted mean time to first sight.

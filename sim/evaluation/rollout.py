@@ -81,7 +81,7 @@ def play_episode(
 
 @dataclass
 class _Played:
-    """An episode as far as it has been played."""
+    """An episode as far as it has run."""
 
     env: ObjectNavEnv
     agent: Agent
@@ -122,7 +122,7 @@ class _Played:
     def _record_target(self, target_xy_m: tuple[float, float] | None) -> None:
         """Records, in the world frame, the place for which the agent stops.
 
-        It is taken relative to the pose that the agent was told, and put there from the true one: noise of `gps` and
+        It is taken relative to the pose that the agent observed, and applied to the true pose: noise of `gps` and
         `compass` then does not count as a wrong place.
         """
         if target_xy_m is None:
@@ -181,7 +181,7 @@ def next_action(agent: Agent, observation: Observation, where: str) -> Action:
 
 
 def confidence_of(agent: Agent, where: str) -> float | None:
-    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None where it does not tell.
+    """Returns how sure the agent is of the object for which it stops, in [0, 1]; None where it does not state it.
 
     Raises:
         AgentError: `stop_confidence` failed, or returned something else; the message begins with `where`.
@@ -199,7 +199,7 @@ def confidence_of(agent: Agent, where: str) -> float | None:
 
 
 def target_of(agent: Agent, where: str) -> tuple[float, float] | None:
-    """Returns the place for which the agent stops, x and y in the start frame; None where it does not tell.
+    """Returns the place for which the agent stops, x and y in the start frame; None where it does not state it.
 
     Raises:
         AgentError: `stop_target_xy_m` failed, or returned something else; the message begins with `where`.

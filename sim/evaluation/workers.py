@@ -49,9 +49,9 @@ class _Packed:
 
 @dataclass(frozen=True)
 class RunnerSpec:
-    """How to build a `Runner` in any process: `module:function` and its one argument (picklable).
+    """A recipe to build a `Runner` in any process: `module:function` and its one argument (picklable).
 
-    In another process the argument is read by `build`, not before: a worker first enters the folder of the user's code,
+    In another process only `build` reads the argument: a worker first enters the folder of the user's code,
     and an error is then reported as that of an item.
     """
 

@@ -1,6 +1,6 @@
 """Compiled loops over the cells of a grid near a convex polygon (`sim.geometry.convex`).
 
-They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
+They have a module of their own because numba compiles them, so that their annotations cannot be checked at run time.
 """
 
 import numpy as np

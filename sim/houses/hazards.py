@@ -1,4 +1,4 @@
-"""Reads the hazards that sites of a house declare, and tells how near a path comes to them.
+"""Reads the hazards that sites of a house declare, and measures how near a path comes to them.
 
 A hazard is an obstacle that depth cannot see, sees too late or takes for passable, placed by `sim.housegen.hazards`
 where paths lead. Its site is a box of the world body named `hazard_<kind>_<number>` around its geoms. Sites are never

@@ -26,7 +26,7 @@ class House:
     spec: mujoco.MjSpec
     """It is never changed; a caller that needs another one takes `spec.copy()`."""
     rules: Mapping[str, str] | None = None
-    """Label rules of a third-party scene, in the form that `read_labels` takes; None for a house in our format."""
+    """Label rules of a third-party scene, in the form that `read_labels` takes; None for a native house."""
     path: Path | None = None
     notes: tuple[str, ...] = ()
     """Sentences on what was removed from a third-party scene (`sim.houses.foreign`)."""

@@ -62,7 +62,7 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
 
     Args:
         path: the file.
-        root: a folder whose files it may use besides those of its own folder.
+        root: another folder whose files it may use, in addition to its own folder.
         error: class of the error.
 
     Raises:
@@ -146,7 +146,7 @@ class _Scan:
             self._refuse("attach: a house is one file; other files are put into it by include.")
 
     def _follow(self, path: Path, name: str, *, count: bool) -> None:
-        """Checks a file that a file names; MuJoCo looks beside the first file, then beside the one that names it."""
+        """Checks a file that a file names; MuJoCo looks next to the first file, then next to the one that names it."""
         for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
             file = folder / name
             if os.path.lexists(file) or folder == path.parent:
@@ -200,7 +200,7 @@ def _texture_bytes(spec: mujoco.MjSpec, texture: mujoco.MjsTexture, folder: Path
 
 
 def _numbers(text: str) -> list[float]:
-    """Returns the numbers of a list of numbers; none where a word is no number."""
+    """Returns the numbers of a list of numbers; none where a word is not a number."""
     try:
         return [float(word) for word in text.split()]
     except ValueError:

@@ -57,7 +57,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
         "plate", "pot", "basket", "bin", "crate", "bag", "lid", "toy",
     ),
 }  # fmt: skip
-"""For each category, words that name it besides the category's own name."""
+"""For each category, words that name it, in addition to the category's own name."""
 LEAST_ENDING = 4
 """A word with at least this many letters is also found at the end of a longer one: `hingecabinet`, `backwall`."""
 FLAT_M = 0.3
@@ -85,7 +85,7 @@ class Proposal:
     """A label for the geoms with one name."""
 
     name: str
-    """That of the geom or of a body around it; `#12` is the unnamed geom number 12."""
+    """Name of the geom or of a body around it; `#12` is the unnamed geom number 12."""
     category: str
     reason: str
     """`name`, `size` or `unknown`."""

@@ -3,7 +3,7 @@
 MuJoCo opens whatever path a file names: of an included file, a mesh, a texture. A file from elsewhere is data, so that
 it must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
 symbolic link. Textures may also lie in `../textures`, which the houses of a split share, and in the shipped folder. The
-user allows more with `--root FOLDER`, for packages whose files lie in folders beside each other.
+user allows more with `--root FOLDER`, for packages whose files lie in folders next to each other.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from sim.paths import assets_dir
 from sim.reading import printable
 
 SHARED_TEXTURES = "textures"
-"""Name of the folder, beside a split's folder, that all its houses may use."""
+"""Name of the folder, next to a split's folder, that all its houses may use."""
 MOST_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
@@ -29,9 +29,9 @@ class Reference:
     """One path that a file of a house names."""
 
     name: str
-    """As it is written in the file."""
+    """The path as the file writes it."""
     path: Path
-    """Where MuJoCo looks for it."""
+    """The path at which MuJoCo looks for it."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class Allowed:
     """The folders whose files one MJCF file may read."""
 
     file: Path
-    """The MJCF file, resolved."""
+    """The MJCF file, as an absolute path without symbolic links."""
     root: Path | None
-    """The folder that the user allows besides; None: no other."""
+    """The additional folder that the user allows; None: no other."""
     error: type[ObjectNavError]
     """Class of the error: a HouseError is about a house, for which there is `--root`."""
 
@@ -52,14 +52,14 @@ class Allowed:
             reference: the other file; it need not exist.
 
         Raises:
-            ObjectNavError: of class `error`; the path leads out of the allowed folders or is no regular file.
+            ObjectNavError: of class `error`; the path leads out of the allowed folders or is not a regular file.
         """
         name = printable(reference.name)
         try:
             target = reference.path.resolve()
             is_special = target.exists() and not target.is_file()
         except (OSError, ValueError, RuntimeError):
-            raise self.error(f"it uses '{name}', which is no name of a file.") from None
+            raise self.error(f"it uses '{name}', which is not the name of a file.") from None
         folder = self.file.parent
         textures = [folder.parent / SHARED_TEXTURES, (assets_dir() / SHARED_TEXTURES).resolve()]
         allowed = [folder, *textures, *([] if self.root is None else [self.root.resolve()])]

@@ -1,4 +1,4 @@
-"""Reads and writes `<name>.json` beside `<name>.xml`: the start, goal and sensor noise that a scene prescribes."""
+"""Reads and writes `<name>.json` next to `<name>.xml`: the start, goal and sensor noise that a scene prescribes."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def sidecar_path(house_file: Path) -> Path:
 
 
 def read_sidecar(house_file: Path) -> Sidecar:
-    """Returns the sidecar beside a house file; `EMPTY_SIDECAR` when there is none.
+    """Returns the sidecar next to a house file; `EMPTY_SIDECAR` when there is none.
 
     Raises:
         HouseError: it is not a JSON object, has an unknown key, or a value that is not allowed.

@@ -54,7 +54,7 @@ class PlanEpisode:
 
     @property
     def done(self) -> bool:
-        """Whether the robot has stopped, or the steps are used up."""
+        """True: the robot has stopped, or the steps are used up."""
         return self.stopped or self.num_steps >= self.max_steps
 
     def distance_m(self) -> float:
@@ -118,7 +118,7 @@ def draw_goal_and_start(plan: Plan, rng: np.random.Generator, goal: str | None =
     Args:
         plan: the plan.
         rng: draws the goal and the start.
-        goal: this goal is not drawn, only a start for it.
+        goal: this goal is used, and only a start for it is sampled.
 
     Raises:
         EpisodeError: no goal of the plan can be reached, or not the given one.

@@ -113,7 +113,7 @@ class Plan:
         return np.repeat(np.arange(self.floor.size), np.diff(self.span_start))
 
     def span_goals(self) -> NDArray[np.int8]:
-        """Returns for each span the index of its category in `GOAL_CATEGORIES`; -1: it is no goal."""
+        """Returns for each span the index of its category in `GOAL_CATEGORIES`; -1: it is not a goal."""
         goal_of = np.full(len(MPCAT40), -1, np.int8)
         goal_of[[MPCAT40_ID[goal] for goal in GOAL_CATEGORIES]] = np.arange(len(GOAL_CATEGORIES))
         return goal_of[self.categories][self.span_instance]
@@ -156,7 +156,7 @@ def read_plan(path: Path) -> Plan:
     """Returns the plan in a file.
 
     Raises:
-        HouseError: there is no such file, or it is no plan of this format.
+        HouseError: there is no such file, or it is not a plan of this format.
     """
     what = "house plan (`stubborn houses plans` writes them)"
     arrays = read_npz(path, (*_ARRAYS, "categories", "about"), what=what, most_bytes=MAX_FILE_BYTES, error=HouseError)
@@ -166,7 +166,7 @@ def read_plan(path: Path) -> Plan:
             raise ValueError(f"its format is {about.format}, this version reads {FORMAT}")
         _check(about, arrays)
     except ValueError as error:
-        raise HouseError(f"'{path}' is no {what}: {reason_of(error)}.") from None
+        raise HouseError(f"'{path}' is not a {what}: {reason_of(error)}.") from None
     for name in ("span_low_m", "span_high_m"):
         arrays[name] = arrays[name].astype(np.float32) * np.float32(HEIGHT_UNIT_M)
     arrays["slack_m"] = arrays["slack_m"].astype(np.float32)

@@ -38,7 +38,7 @@ class SightConfig:
     """Resolution of the image, and which of its pixels enter which layer (as in the agent's `MappingConfig`)."""
 
     stride_px: int = 4
-    """Every so many pixels of the camera, in rows and columns, are computed."""
+    """Spacing of the pixels that are computed, in rows and columns of the camera."""
     obstacle_min_height_m: float = 0.10
     """Lower surfaces are floor."""
     obstacle_max_height_m: float = 0.88
@@ -66,7 +66,7 @@ class Look:
     shares: NDArray[np.float64]
     """(goals,) Share of the frame that each category of `GOAL_CATEGORIES` covers."""
     goal_share: float
-    """That of the goal; 0 without a goal."""
+    """The value of the goal; 0 without a goal."""
     target_rows: NDArray[np.int64]
     """Rows on the map of the cells that show the goal."""
     target_cols: NDArray[np.int64]

@@ -207,7 +207,7 @@ def enter_frame(
     Args:
         flags: (rows, cols) of `cast_rays`.
         touched: (n,) the cells whose flags are not 0.
-        count: so many of them.
+        count: number of them.
         frames_in_view: (rows, cols) layers of `stubborn.mapping.navmap.NavMap`, as the next seven.
         obstacle_evidence: see above.
         seen_obstacle: see above.

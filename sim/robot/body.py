@@ -50,7 +50,7 @@ _NET_FORCE = 3
 
 
 def built_in_robot_spec(config: RobotConfig) -> mujoco.MjSpec:
-    """Returns our robot, to be attached to the world body with the prefix `PREFIX`."""
+    """Returns the default robot, to be attached to the world body with the prefix `PREFIX`."""
     spec = mujoco.MjSpec()
     spec.modelname = "robot"
     base = spec.worldbody.add_body(name="base", fuse=0)

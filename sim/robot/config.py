@@ -183,7 +183,7 @@ class PhysicsConfig:
 
 @dataclass(frozen=True)
 class RobotFile:
-    """A third-party body that replaces ours (`sim.robot.foreign`)."""
+    """A third-party body that replaces the default one (`sim.robot.foreign`)."""
 
     path: Path
     """The MJCF file."""
@@ -205,7 +205,7 @@ class RobotConfig:
     drive: DriveConfig = field(default_factory=DriveConfig)
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     file: RobotFile | None = None
-    """A third-party body, which `body` and `wheels` then describe; None: our body, which is built from them."""
+    """A third-party body, which `body` and `wheels` then describe; None: the default body, which is built from them."""
     camera_forward_m: float = 0.0
     """Distance of the camera ahead of the axle."""
 
@@ -213,7 +213,7 @@ class RobotConfig:
         if self.base not in get_args(Base):
             raise ConfigError(f"RobotConfig.base must be one of {', '.join(get_args(Base))}, got '{self.base}'.")
         if self.file is not None and self.base == "free":
-            raise ConfigError("RobotConfig.base 'free' is for our body only: one of a file is held upright (planar).")
+            raise ConfigError("RobotConfig.base 'free' is for the default body only; use 'planar' with a file.")
         steps = self.drive.tick_s / self.physics.timestep_s
         if abs(steps - round(steps)) > 1e-6 or round(steps) < 1:
             raise ConfigError(

@@ -25,7 +25,7 @@ class Contact:
     duration_s: float
     """Duration of the contact, a multiple of the controller's tick."""
     stopped: bool
-    """Whether this contact pushed against the motion when the motion was aborted."""
+    """True: this contact pushed against the motion when the motion was aborted."""
 
 
 class _Touch:

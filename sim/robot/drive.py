@@ -29,11 +29,11 @@ class Motion:
     displacement_m: float
     """Distance in plan between the robot's positions before and after the action."""
     yaw_change_rad: float
-    """In (-pi, pi], counter-clockwise."""
+    """Angle in (-pi, pi], counter-clockwise."""
     duration_s: float
     """Simulated time."""
     ended: Ended
-    """Why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
+    """The reason why it ended: it reached its end, it was blocked, or it did not come to rest in time."""
     contacts: tuple[Contact, ...]
     """All contacts of the hull, also those that did not stop the motion."""
     fell: bool = False
@@ -41,7 +41,7 @@ class Motion:
 
     @property
     def collided(self) -> bool:
-        """Whether a contact of the hull ended the motion early."""
+        """True: a contact of the hull ended the motion early."""
         return any(contact.stopped for contact in self.contacts)
 
 

@@ -1,6 +1,6 @@
 """Loads a third-party differential-drive robot from an MJCF file and its sidecar (`--robot`).
 
-Beside `carrier.xml` there is a sidecar `carrier.json`:
+Next to `carrier.xml` there is a sidecar `carrier.json`:
 
 | key | meaning |
 |---|---|
@@ -80,7 +80,7 @@ def _robot_config(path: Path, sidecar: dict[str, Any]) -> RobotConfig:
 
 
 def _wheels(measured: RobotMeasurements, radius_m: float, body: BodyConfig) -> WheelConfig:
-    """Returns wheels whose motors have the same force per kilogram and the same lag as those of our robot."""
+    """Returns wheels whose motors have the same force per kilogram and the same lag as those of the default robot."""
     default = RobotConfig()
     weight = max(1.0, measured.mass_kg / default.body.mass_kg)
     inertia = weight * (radius_m / default.wheels.radius_m) ** 2

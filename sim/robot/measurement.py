@@ -113,7 +113,7 @@ def measure(file: RobotFile, wheel_radius_m: float) -> RobotMeasurements:
     """Returns the measurements of a robot.
 
     Raises:
-        ConfigError: its two wheels are not beside each other, or it does not face +x.
+        ConfigError: its two wheels are not next to each other, or it does not face +x.
     """
     spec, root = read_body(file)
     hull = collision_geoms(root, file).hull
@@ -205,7 +205,7 @@ def _wheels(
     across = left.centre_m - right.centre_m
     if across[1] <= 0.0 or np.hypot(across[0], across[2]) > LEVEL_M:
         raise ConfigError(
-            "its wheels must be beside each other with the first of wheel_joints on the left (+y), but they are at "
+            "its wheels must be next to each other with the first of wheel_joints on the left (+y), but they are at "
             f"{_format(left.centre_m)} and {_format(right.centre_m)} m{_turned(file)}."
         )
     return left, right

@@ -1,4 +1,4 @@
-"""Builds the specification of the configured robot: our robot, or a third-party body on our base and motors."""
+"""Builds the specification of the configured robot: the default one, or a third-party body on its base and motors."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _prepare_body(
 
 
 def _set_hull_contact(geom: Any, body: BodyConfig) -> None:
-    """Gives a geom the collision mask and the contact parameters of our hull."""
+    """Gives a geom the collision mask and the contact parameters of the default hull."""
     geom.contype, geom.conaffinity = HULL_MASK
     geom.margin, geom.gap = body.skin_m, 0.0
     geom.friction = (body.friction, 0.0, 0.0)

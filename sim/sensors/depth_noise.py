@@ -166,7 +166,7 @@ class NoisyDepth:
         pixels, near_m = noisy_m.reshape(-1), self._near_m.reshape(-1)
         pixels[edges[chance < config.edge_dropout]] = 0.0
         fly = edges[(chance >= config.edge_dropout) & (chance < config.edge_dropout + config.edge_flying)]
-        fly = fly[near_m[fly] > 0.0]  # a surface beside pixels without return has no flying pixels
+        fly = fly[near_m[fly] > 0.0]  # a surface next to pixels without return has no flying pixels
         pixels[fly] = near_m[fly] + jump_m[fly] * rng.random(fly.size, np.float32)
 
     def _add_axial_noise(self, noisy_m: NDArray[np.float32], rng: np.random.Generator) -> None:

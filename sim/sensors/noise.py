@@ -1,4 +1,4 @@
-"""Noise of all sensors and of the drive: one configuration, presets by name, and what applies it to observations.
+"""Noise of all sensors and of the drive: one configuration, presets by name, and the class that applies it.
 
 Every part has a random stream of its own, all of them from the episode's one generator: an agent that also observes
 `rgb` gets the same `depth` as one that does not.

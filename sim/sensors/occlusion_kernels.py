@@ -47,7 +47,7 @@ def nearest_walls(
 ) -> tuple[Floats, NDArray[np.intp]]:
     """Returns the depth (strips,) at which the nearest wall blocks a strip, and its index; inf and 0 without one.
 
-    A wall counts where both edge rays of the strip enter it farther than `least_m`. Walls that lie completely beside
+    A wall counts where both edge rays of the strip enter it farther than `least_m`. Walls that lie completely outside
     the field of view, whose half width has the slope `right_max`, are skipped.
     """
     c, s = yaw

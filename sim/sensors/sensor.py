@@ -1,7 +1,7 @@
-"""The interfaces of sensors and of their noise: what a new sensor or a new noise model implements.
+"""The interfaces that a new sensor and a new noise model implement.
 
 A sensor is one object: its key in the observation, its Gymnasium space, the images it needs and how it is read.
-`ObjectNavEnv(sensors=("rgb", MySensor()))` takes such objects besides the names of `sim.sensors.standard`.
+`ObjectNavEnv(sensors=("rgb", MySensor()))` takes such objects in addition to the names of `sim.sensors.standard`.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class SensorContext:
 
 
 class DeclaredImages(dict[str, NDArray]):
-    """The rendered images that a sensor declares: what else is rendered, such as the truth, is not for it."""
+    """The rendered images that a sensor declares; it must not read others, such as the truth."""
 
     def __init__(self, sensor: Sensor, images: Mapping[str, NDArray]) -> None:
         super().__init__({name: images[name] for name in sensor.images})

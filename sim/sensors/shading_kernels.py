@@ -229,7 +229,7 @@ def _lamp_share(work: NDArray, lights: NDArray, lamp: NDArray, strength: np.floa
     for j in range(columns):
         far = work[6, j]
         direct = bright[j] / (lamp[4] + far * (lamp[5] + far * lamp[6]))
-        # the fade at the border of the map is a factor of the last row, beside the cosine
+        # the fade at the border of the map is a factor of the last row, in addition to the cosine
         work[8, j] = strength * work[8, j] * direct / (work[8, j] * direct + rest[j])
 
 

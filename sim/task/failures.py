@@ -9,10 +9,10 @@ The first rule that applies decides:
    states for which place it stops (`sim.interface.StatesTarget`) did so if that place is within `TARGET_ON_GOAL_M` of
    the footprint of an instance. One that states none is assumed to have done so if an instance is within
    `STOPPED_AT_GOAL_M` in plan, and the goal covered 0.8 % of one of the last `FACED_FRAMES` frames; this counts a STOP
-   for another object beside an instance in view as `stopped_short`, too. Else `false_detection`, however near an
-   instance is; an agent that gives up, or stops at random, is one, because the record does not distinguish them. This
-   rule comes before `stairs`, as in the paper: the agent that has 7 % stairs among its failures with true segmentation
-   has 0.4 % with its own.
+   for another object next to an instance in view as `stopped_short`, too. Otherwise it is `false_detection`, however
+   near an instance is, also for an agent that gives up or stops at random, because the record does not distinguish
+   them. This rule comes before `stairs`, as in the paper: the agent that has 7 % stairs among its failures with true
+   segmentation has 0.4 % with its own.
 3. `stairs`: the storey of the start has no instance.
 4. `missed_detection`: the goal covered 0.8 % of a frame, and from then on, before rules 5 and 6 applied, the agent had
    an opportunity: it was where a STOP would have succeeded and continued for `PATIENCE_STEPS`; or it never came within
@@ -22,7 +22,7 @@ The first rule that applies decides:
 6. `loop`: some window of `LOOP_STEPS` steps in which the robot drove `LOOP_PATH_M` or more, and less than `LOOP_NEW` of
    that over new ground. New ground is farther than `NEW_GROUND_M` from all earlier positions on new ground.
 7. `explore`: the goal never covered 0.8 % of a frame.
-8. `misc`: the rest. The agent saw the goal and reached `max_steps` on its path to it, or it came near and no nearer.
+8. `misc`: the rest. The agent saw the goal and reached `max_steps` on its path to it, or it came near but not to it.
 
 Rules 4 to 6 together name the first problem of an episode: an agent that sees the goal, passes it and is trapped in the
 next room has missed the goal; one that is trapped right after it saw the goal is trapped.

@@ -79,7 +79,7 @@ class Task:
         its distances are None, its SPL is 0. A goal on this storey that is walled in is an error.
 
         Raises:
-            EpisodeError: the goal is no goal category, is not in the house, or is on the storey of the start without
+            EpisodeError: the goal is not a goal category, is not in the house, or is on the storey of the start without
                 a path to it.
         """
         self._record = None
@@ -163,22 +163,22 @@ class Task:
 
     @property
     def terminated(self) -> bool:
-        """Whether the agent called STOP or drove over an edge."""
+        """True: the agent called STOP or drove over an edge."""
         return self._running.end_reason in ("stop", "fallen")
 
     @property
     def truncated(self) -> bool:
-        """Whether the episode reached `max_steps`."""
+        """True: the episode reached `max_steps`."""
         return self._running.end_reason == "max_steps"
 
     @property
     def done(self) -> bool:
-        """Whether the episode is over."""
+        """True: the episode is over."""
         return self._running.end_reason is not None
 
     @property
     def success(self) -> bool:
-        """Whether the agent called STOP where it succeeds."""
+        """True: the agent called STOP where it succeeds."""
         return self._running.success
 
     def distance_from(self, goal: str, pose: Pose) -> float | None:

@@ -28,7 +28,7 @@ SIGHT_BLOCKERS = ("wall", "door", "window")
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Geometry that does not depend on the goal: floors of the house, and what blocks the sight on one storey."""
+    """Geometry that does not depend on the goal: floors of the house, and the obstacles to sight on one storey."""
 
     floors: tuple[Floor, ...]
     blockers: tuple[ConvexPolygon, ...]
@@ -86,7 +86,7 @@ class GoalRegion:
         self._blockers = surroundings.blockers
         everywhere = [footprint_of(model, data, instance, surroundings.floors) for instance in labels.of_category(goal)]
         self.exists = any(footprint is not None for footprint in everywhere)
-        """Whether some storey of the house has an instance."""
+        """True: some storey of the house has an instance."""
         self.footprints = tuple(
             footprint
             for footprint in everywhere

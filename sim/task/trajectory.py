@@ -46,7 +46,7 @@ class Trajectory:
     collided: NDArray[np.bool_]  # (n,)
     """True: a contact of the body stopped the motion."""
     touched: NDArray[np.bool_]  # (n,)
-    """True: the body touched something, whether or not that stopped the motion."""
+    """True: the body was in contact, whether or not that stopped the motion."""
     goal_share: NDArray[np.float32]  # (n + 1,)
     """Share of the frame that the goal's true mask covers, in [0, 1]; nan: there was no frame."""
     distance_m: NDArray[np.float32]  # (n + 1,)
@@ -54,7 +54,7 @@ class Trajectory:
     contacts: NDArray[np.float32]  # (m, 3)
     """Contacts that stopped a motion: number of the action, x and y in the world, metres."""
     goal_on_storey: bool
-    """Whether the storey of the start has an instance."""
+    """True: the storey of the start has an instance."""
     nearest_instance_m: float | None
     """Metres in plan from the end of the episode to the nearest instance, walls ignored; None: storey has none."""
     success: bool
@@ -195,7 +195,7 @@ def read_trajectory(file: Path) -> Trajectory:
     """Returns the trajectory in a file.
 
     Raises:
-        ConfigError: there is no such file, or it is no trajectory.
+        ConfigError: there is no such file, or it is not a trajectory.
     """
     if not file.is_file():
         raise ConfigError(f"There is no trajectory '{file}': it is written with --record.")
@@ -208,7 +208,7 @@ def read_trajectory(file: Path) -> Trajectory:
         trajectory = Trajectory(**arrays, **scalars, about=header.about)
         _check(trajectory)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is no trajectory: {reason_of(error)}.") from None
+        raise ConfigError(f"'{file}' is not a trajectory: {reason_of(error)}.") from None
     return trajectory
 
 

@@ -83,7 +83,7 @@ def play(
 
 
 def _end_reason(episode: PlanEpisode, until_sight: bool) -> str:
-    """Returns why an episode of `play` ended."""
+    """Returns the reason why an episode of `play` ended."""
     if episode.stopped:
         return "stop"
     return "sight" if until_sight and episode.first_seen_step is not None else "max_steps"

@@ -55,8 +55,8 @@ class TwinConfig:
     quarter of the time, and obstacles grow by up to a map cell."""
     arrived_m: float | None = None
     """With `actions="goal"`, a step also ends when the path to the goal is not longer than this. A robot that is
-    already there, because it is enclosed, plans on the small collision marks, and else pushes on for one action. None:
-    all `goal_steps` are used up."""
+    already there, because it is enclosed, plans on the small collision marks, and otherwise moves for one action. None:
+    all `goal_steps` are used."""
     ends_at_sight: bool = False
     """True: the episode ends with the first frame that shows the target by the rule of GT exploration."""
     max_steps: int = MAX_STEPS
@@ -111,8 +111,9 @@ class TwinEnv(gymnasium.Env[Any, Any]):
     actions.
 
     ## Starting state
-    `reset(seed=...)` draws a plan, a goal in it and a start; `reset(options={"plan": 3, "goal": "bed", "start": pose})`
-    fixes all or some of them; a start needs its plan. The goal can be reached from the start, unless both are fixed.
+    `reset(seed=...)` samples a plan, a goal in it and a start;
+    `reset(options={"plan": 3, "goal": "bed", "start": pose})` fixes all or some of them; a start needs its
+    plan. The goal can be reached from the start, unless both are fixed.
 
     ## Info
     The metrics of `sim.plans.episode.PlanEpisode`, and `house` and `goal`.
@@ -214,7 +215,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
 
         Raises:
             ConfigError: there is no such option or plan.
-            EpisodeError: the plan has no such goal, or none that can be reached.
+            EpisodeError: the plan does not have this goal, or it cannot be reached.
         """
         unknown = sorted(map(str, set(options) - {"plan", "goal", "start"}))
         if unknown:
@@ -237,7 +238,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
         """Returns a plan from which a goal can be reached, the first that fits in a cycle over all, and a start.
 
         Raises:
-            EpisodeError: there is none.
+            EpisodeError: there is no such goal.
         """
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
@@ -285,7 +286,7 @@ class TwinEnv(gymnasium.Env[Any, Any]):
                 route, planned = self._plan(xy_m), number
             if escape is not None:
                 self._move(escape)
-            elif route is None or (self._arrived(route) and number == 0):  # as the agent: push one way after the other
+            elif route is None or (self._arrived(route) and number == 0):  # like the agent: turns and pushes
                 self._move(Action.MOVE_FORWARD if self._last is Action.TURN_LEFT else Action.TURN_LEFT)
             elif self._arrived(route):
                 return

@@ -1,4 +1,4 @@
-"""How often predicted potentials choose the frontier that is truly the best, against a random and the nearest one."""
+"""Measures how often predicted potentials choose the best frontier, against a random and the nearest one."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ GOALS = len(GOAL_CATEGORIES)
 SYMMETRIES = 8
 """Turns by 90 degrees and mirror images of a square."""
 HELD_BACK = 8
-"""One house in so many is held back from training, by its name."""
+"""One of this number of houses is held back from training, selected by its name."""
 MAX_FILE_BYTES = 256 << 20
 _OF_SAMPLES = ("masks", "robot", "seen_goals")
 _OF_GOAL_CELLS = ("goal_cell", "goal_bits")
@@ -132,7 +132,7 @@ class SampleSet:
             config: the configuration that all must have; by default that of the first one.
 
         Raises:
-            ConfigError: a file is broken, is of another configuration, or there is no sample at all.
+            ConfigError: a file is broken, is of another configuration, or there is no sample.
         """
         parts = []
         for file in files:
@@ -212,7 +212,7 @@ def _read(file: Path) -> tuple[SampleConfig, dict[str, NDArray]]:
         if set(arrays) - _WITHOUT_SAMPLES:
             _check(arrays, config.cells)
     except ValueError as error:
-        raise ConfigError(f"'{file}' is no {what}: {reason_of(error)}.") from None
+        raise ConfigError(f"'{file}' is not a {what}: {reason_of(error)}.") from None
     return config, arrays
 
 

@@ -1,7 +1,7 @@
 """Partial maps of a house plan with the true potentials of their frontiers, to train a predictor without interaction.
 
 A walk imitates an exploration: the robot follows shortest paths to places that it has not seen, and its camera fills
-the agent's map. Some of the maps on the way become samples. For each frontier of such a map, the area potential is the
+the agent's map. Some of these maps become samples. For each frontier of such a map, the area potential is the
 share of the unexplored free floor in the connected parts that it borders on, and the object potential of a goal
 category falls linearly with the geodesic distance to the nearest place where a STOP for it succeeds (Ramakrishnan et
 al. 2022, arXiv:2201.10029, where a path is masked by squares instead of looked at with a camera).

@@ -1,4 +1,4 @@
-"""The twin as the global policy of `semexp` is trained in it: it sees what it sees in play, and chooses goal cells."""
+"""The environment that trains the global policy of `semexp`, with the observations and actions of a real episode."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class SemExpEnv(TwinEnv):
 
     @property
     def given(self) -> PolicyInput:
-        """The last observation, as the policy gets it in play; raises ResetNeeded before the first episode."""
+        """The last observation, as the policy gets it in an episode; raises ResetNeeded before the first episode."""
         return require_reset(self._given)
 
     def _act(self, action: Any) -> None:

@@ -70,12 +70,12 @@ class MapPanel:
     """(MAP_PX, MAP_PX, 3)."""
     title: str
     words: str = ""
-    """What the agent is doing."""
+    """Text that says what the agent is doing."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Perceived:
-    """What the agent's segmentation says about one frame."""
+    """The result of the agent's segmentation for one frame."""
 
     scores: Scores
     categories: NDArray[np.uint8] | None

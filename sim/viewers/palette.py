@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sim.interface import MPCAT40, MPCAT40_ID
 
 _GREYS = {"void": 0, "wall": 200, "floor": 110, "ceiling": 235, "door": 150, "window": 175}
-"""Structure is grey, so that furniture stands out."""
+"""Structure is grey, so that furniture is easy to see."""
 _GOLDEN_RATIO = 0.618034
 
 

@@ -26,7 +26,7 @@ HALF_BLOCK = "\u2580"
 RESET = "\x1b[0m"
 ARROWS = {"A": "up", "B": "down", "C": "right", "D": "left"}
 _ESCAPE_S = 0.05
-"""The rest of an arrow key's sequence arrives within this time; a single Escape key has none."""
+"""The rest of an arrow key's sequence arrives within this time; nothing follows a single Escape key."""
 _ENTER_SCREEN, _LEAVE_SCREEN = "\x1b[?1049h\x1b[?25l\x1b[2J", "\x1b[0m\x1b[?25h\x1b[?1049l"
 
 
@@ -89,7 +89,7 @@ class Terminal:
 
     def __enter__(self) -> Terminal:
         self._before = termios.tcgetattr(self._keys.fileno())
-        tty.setcbreak(self._keys.fileno())  # keys arrive at once and without echo; Ctrl-C still interrupts
+        tty.setcbreak(self._keys.fileno())  # keys arrive immediately and without echo; Ctrl-C still interrupts
         self._write(_ENTER_SCREEN)
         return self
 

@@ -27,7 +27,7 @@ WHOLE_HOUSE_M = 14.0
 """A storey of at most this width and depth is shown whole, of a larger one where the robot can drive, and the goals."""
 _MARGIN_CELLS = 8
 _STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
-"""Length of a step to each neighbour of a cell; the cell itself is none."""
+"""Length of a step to each neighbour of a cell; infinite for the cell itself."""
 
 
 class TopView:
@@ -167,6 +167,6 @@ def _pulled_taut(points_m: NDArray[np.float64], space: FreeSpace) -> NDArray[np.
 def _is_free(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDArray[np.float64]) -> bool:
     """Returns whether the robot can drive straight from one point to another."""
     samples = max(2, math.ceil(float(np.hypot(*(end_m - begin_m))) / space.frame.cell_m) * 2)
-    along = np.linspace(0.0, 1.0, samples)[1:, None]  # the start itself may lie beside the free cells
+    along = np.linspace(0.0, 1.0, samples)[1:, None]  # the start itself may lie next to the free cells
     cells = space.frame.to_cells(begin_m + along * (end_m - begin_m))
     return bool(space.free[cells[:, 0], cells[:, 1]].all())

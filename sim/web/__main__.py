@@ -32,7 +32,7 @@ class Args:
     port: Annotated[int, Meta(ge=0, le=65535)] = 8008
     """Port of the page; 0 takes a free one."""
     host: str = "127.0.0.1"
-    """Address to listen on. Everybody who can reach it can see and drive the robot: there is no password."""
+    """Address to listen on. Every person with access to it can see and drive the robot: there is no password."""
     name: tuple[str, ...] = ()
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
     weights: Path | None = None

@@ -1,4 +1,4 @@
-"""What the page offers: houses, goals and agents to choose from, and finished runs to look at."""
+"""Lists what the page offers: houses, goals and agents to choose from, and finished runs to look at."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class Runs:
         """Returns the video of an episode.
 
         Raises:
-            ConfigError: there is none.
+            ConfigError: it does not exist.
         """
         run = self._run(name)
         if any(line["episode_id"] == episode_id for line in _lines(run)):
@@ -143,7 +143,7 @@ class Runs:
         """Returns the report of a run.
 
         Raises:
-            ConfigError: there is none.
+            ConfigError: it does not exist.
         """
         file = self._run(name) / REPORT
         if not self._inside(file):

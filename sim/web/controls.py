@@ -1,4 +1,4 @@
-"""What the page's users ask of the running episode, shared between the server and the thread that simulates."""
+"""Holds the requests of the page's users, shared between the server and the thread that simulates."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _WAITING_ACTIONS = 4
 class Interrupted(BaseException):
     """The episode is to end without a result: another was asked for, or the server stops.
 
-    Like KeyboardInterrupt it is no Exception, which `play_episode` would take for a failure of the agent.
+    Like KeyboardInterrupt it is not an Exception, which `play_episode` would take for a failure of the agent.
     """
 
 
@@ -39,7 +39,7 @@ class Wish:
 
 
 class Choice(NamedTuple):
-    """The action that is due, and who chose it."""
+    """The action that is due, and its source: the agent or a person."""
 
     action: Action
     driver: Driver

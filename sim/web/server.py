@@ -84,7 +84,7 @@ class Hub:
         self._in_loop(lambda: self._keep(told=state))
 
     def changed(self) -> None:
-        """Tells all clients the state again, after a command."""
+        """Sends the state to all clients again, after a command."""
         self._keep()
 
     def count_wishes(self) -> None:

@@ -1,4 +1,4 @@
-"""The running episode: one thread that simulates, and tells the server what there is to show."""
+"""The running episode: one thread that simulates, and gives the server what there is to show."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ class Audience(Protocol):
 
 
 class Session:
-    """Plays one episode after the other, as users ask for them; all users see the same one."""
+    """Runs one episode after the other, as users ask for them; all users see the same one."""
 
     def __init__(self, audience: Audience, weights: Path | None = None) -> None:
         """Makes a session; `start` starts it.
 
         Args:
-            audience: is told what there is to show.
+            audience: receives what there is to show.
             weights: of the network of `rednet`; the shipped one when None.
         """
         self.controls = Controls()

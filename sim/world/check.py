@@ -24,7 +24,7 @@ from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
 
 MAX_OVERLAP_M = 0.01
-"""Largest overlap of two objects that is no fault."""
+"""Largest overlap of two objects that is allowed."""
 SUPPORT_GAP_M = 0.02
 """An object has no support when its bounding box is at least this far from every other one."""
 SETTLE_S, SETTLE_STEP_S = 1.0, 0.004
@@ -118,7 +118,7 @@ def _overlaps(house: _CompiledHouse) -> list[str]:
 
 
 def _without_support(house: _CompiledHouse) -> list[str]:
-    """Finds objects that are near no other object, so that they neither stand on, hang from nor lie in one."""
+    """Finds objects that are near no other object, so that nothing supports them: no object below, above or around."""
     low, high = house.boxes(np.arange(house.model.ngeom))
     instance = house.labels.geom_instance
     supported = set()

@@ -37,7 +37,7 @@ MAX_CELLS = 25_000_000
 NEAREST_FREE_M = 0.3
 """A position at most this far from a free cell still has a geodesic distance: the robot may have pushed an object."""
 SEAM_M = 0.06
-"""Narrower gaps between floors are no edges: a wheel crosses them."""
+"""Narrower gaps between floors are not edges: a wheel crosses them."""
 _RIM_POINTS = 32
 """Points on the rim of the disc that the exact test looks for a floor at."""
 
@@ -70,7 +70,7 @@ class FreeSpace:
             robot: its radius, height and clearance count; the default robot when None.
             rule: says how far apart storeys are; the default rule when None.
             floor_z_m: height of the storey's floor.
-            robot_prefix: geoms with this prefix are no obstacles.
+            robot_prefix: geoms with this prefix are not obstacles.
         """
         robot, rule = robot or RobotModel(), rule or SuccessRule()
         self.radius_m = robot.radius_m
@@ -84,7 +84,7 @@ class FreeSpace:
 
     @classmethod
     def from_world(cls, world: World, floor_z_m: float = 0.0) -> FreeSpace:
-        """Returns the free space of a storey of a world in its current state; the robot is no obstacle."""
+        """Returns the free space of a storey of a world in its current state; the robot is not an obstacle."""
         return cls(
             world.model,
             world.data,

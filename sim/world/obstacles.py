@@ -1,4 +1,4 @@
-"""What the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
+"""Finds what the robot cannot drive over, in plan: objects between clearance and height, and edges between floors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from sim.interface import MPCAT40_ID, RobotModel
 from sim.world.plan import polygons_between
 
 STEP_HEIGHT_M = 0.03
-"""Lower geoms are no obstacles for a robot with at least this clearance: they pass under its body."""
+"""Lower geoms are not obstacles for a robot with at least this clearance: they pass under its body."""
 CLIMB_M = 0.013
 """An edge between floors of which one is higher than this above the other is an obstacle: up to 14 mm the wheels climb
 it wherever they meet it in the course of an action, from 15 mm on only at some places."""
@@ -41,7 +41,7 @@ def obstacle_polygons(
         labels: of `model`.
         robot: its height and clearance count.
         floor_z_m: height of the storey's floor.
-        robot_prefix: geoms with this prefix are no obstacles.
+        robot_prefix: geoms with this prefix are not obstacles.
     """
     candidates = collidable_geoms(model) & ~geoms_of(model, robot_prefix)
     is_floor = labels.geom_category == MPCAT40_ID["floor"]

@@ -22,7 +22,7 @@ def floor_geoms(model: mujoco.MjModel, labels: Labels) -> NDArray[np.intp]:
 def floor_levels(model: mujoco.MjModel, labels: Labels) -> tuple[float, ...]:
     """Returns the heights of the levels of floors in metres, lowest first; (0.0,) for a world without a static floor.
 
-    A storey may have several levels; storeys are told apart by `SuccessRule.same_storey_m`.
+    A storey may have several levels; storeys are distinguished by `SuccessRule.same_storey_m`.
     """
     floors: list[float] = []
     for top in sorted(_floor_tops(model, labels).tolist()):

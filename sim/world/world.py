@@ -22,7 +22,7 @@ from sim.world.storeys import floor_geoms, floor_levels
 from sim.world.support import FloorSupport
 
 _PLACE_ATTEMPTS = 3
-"""How often `reset` lifts the wheels out of a floor that they overlap; each rug on a rug needs one more."""
+"""Number of times that `reset` lifts the wheels out of a floor that they overlap; each rug on a rug needs one more."""
 _FLOOR_CONTACT_M = 0.0005
 """Wheels that overlap the floor by at most this stand on it."""
 

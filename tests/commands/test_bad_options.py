@@ -111,9 +111,9 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--views nowhere --val-views nowhere --out OUT --networks vast", "No network 'vast'"),
         ("--views nowhere --val-views nowhere --out OUT", "No shards"),
     ],
-    "sim.commands.compare": [("nowhere nowhere", "is no run")],
+    "sim.commands.compare": [("nowhere nowhere", "is not a run")],
     "tools.maintenance.describe_houses": [("--root nowhere --out OUT", "nowhere")],
-    "tools.research.draw_trajectories": [("nowhere", "is no run")],
+    "tools.research.draw_trajectories": [("nowhere", "is not a run")],
     "sim.commands.evaluate.segmentation": [
         ("--views nowhere --weights nowhere", "No weights at 'nowhere'"),
         ("--views nowhere --weights FILE", "cannot be read"),
@@ -141,13 +141,13 @@ BAD: dict[str, list[tuple[str, str]]] = {
     ],
     "sim.commands.importing.furniture": [("--source nowhere --out OUT", "nowhere")],
     "sim.commands.episodes": [("--split nowhere", "0 houses"), ("--split nowhere --recipe cake", "0 houses|cake")],
-    "sim.commands.merge": [("nowhere", "Give one folder"), ("nowhere nowhere --out OUT", "is no run")],
+    "sim.commands.merge": [("nowhere", "Give one folder"), ("nowhere nowhere --out OUT", "is not a run")],
     "tools.maintenance.readme_picture": [
         ("nowhere.mp4 --out OUT", "'nowhere.mp4' cannot be read as a video"),
         ("README.md --out OUT", "'README.md' cannot be read as a video"),
     ],
     "tools.training.render_demonstrations": [
-        ("nowhere --out OUT", "is no run"),
+        ("nowhere --out OUT", "is not a run"),
         ("--out OUT", "Name at least one run"),
     ],
     "sim.commands.reproduce.reproduce": [
@@ -155,7 +155,7 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("ablation --split nowhere --out OUT", "Unknown split"),
     ],
     "sim.commands.evaluate.mistakes": [
-        ("nowhere --out OUT", "is no run"),
+        ("nowhere --out OUT", "is not a run"),
         ("nowhere --out OUT --cause hunger", "--cause must be one of"),
     ],
     "sim.commands.views.show": [("--views nowhere --out OUT", "No shards")],

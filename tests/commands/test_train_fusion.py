@@ -74,7 +74,7 @@ def test_a_log_of_another_seed_and_a_broken_file_are_refused(split: Path, tmp_pa
     whole = file.read_bytes()
     for broken in (b"PK", whole[: len(whole) // 2], whole[:200] + b"\xff" * 50 + whole[250:]):
         file.write_bytes(broken)
-        with pytest.raises(ConfigError, match=r"tiny_0\.npz' is no file of `stubborn train fusion`"):
+        with pytest.raises(ConfigError, match=r"tiny_0\.npz' is not a file of `stubborn train fusion`"):
             train_tracks.main(args)
 
 

@@ -146,13 +146,13 @@ def test_a_damaged_npz_is_named_in_a_message(content: bytes, tmp_path: Path) -> 
     file = tmp_path / "rows.npz"
     file.write_bytes(content)
     for names in (None, ("a",)):
-        with pytest.raises(ConfigError, match=r"rows\.npz' is no table: \S"):
+        with pytest.raises(ConfigError, match=r"rows\.npz' is not a table: \S"):
             reading.read_npz(file, names, what="table", most_bytes=1 << 20)
 
 
 def test_the_arrays_of_an_npz_are_read_by_name(tmp_path: Path) -> None:
     file = tmp_path / "rows.npz"
-    with pytest.raises(HouseError, match=r"rows\.npz' is no table: No such file or directory\."):
+    with pytest.raises(HouseError, match=r"rows\.npz' is not a table: No such file or directory\."):
         reading.read_npz(file, what="table", most_bytes=1 << 20, error=HouseError)
     np.savez(file, a=np.arange(3), b=np.array("text"), c=np.asfortranarray(np.eye(3)))
     whole = reading.read_npz(file, what="table", most_bytes=1 << 20)
@@ -160,10 +160,10 @@ def test_the_arrays_of_an_npz_are_read_by_name(tmp_path: Path) -> None:
     assert str(whole["b"]) == "text"
     np.testing.assert_array_equal(whole["c"], np.eye(3))
     assert list(reading.read_npz(file, ("b", "a"), what="table", most_bytes=1 << 20)) == ["b", "a"]
-    with pytest.raises(ConfigError, match=r"is no table: it has no 'd'\."):
+    with pytest.raises(ConfigError, match=r"is not a table: it has no 'd'\."):
         reading.read_npz(file, ("a", "d"), what="table", most_bytes=1 << 20)
     np.savez_compressed(file, a=np.zeros(1 << 20))
-    with pytest.raises(ConfigError, match=r"is no table: it expands to 8 MB; at most 1 MB are read\."):
+    with pytest.raises(ConfigError, match=r"is not a table: it expands to 8 MB; at most 1 MB are read\."):
         reading.read_npz(file, what="table", most_bytes=1 << 20)
 
 

@@ -102,7 +102,7 @@ def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[s
         ("config.json", "{}", "has no field 'agent'"),
         ("config.json", '{"agent": "stubborn", "semantics": "gt"}', "has no field 'config'"),
         ("config.json", '{"agent": "stubborn", "semantics": "gt", "config": {}}', "has no field 'config.camera'"),
-        ("trajectories/e0.npz", "", "is no trajectory"),
+        ("trajectories/e0.npz", "", "is not a trajectory"),
     ],
 )
 def test_a_broken_run_is_named_in_a_sentence(run: Path, name: str, content: str, told: str):

@@ -162,7 +162,7 @@ def _episodes(
 
 
 def _thumbnail(run: Run, episode_id: str, problems: list[str]) -> str | None:
-    """Returns the thumbnail of an episode, None without a picture; adds a sentence about a file that is none."""
+    """Returns the thumbnail of an episode, None without a picture; adds a sentence if the file is not a picture."""
     file = picture_of(run, episode_id)
     try:
         return None if file is None else thumbnail(file)

@@ -56,7 +56,7 @@ class Histogram:
 
     labels: Sequence[str]
     counts: Sequence[Sequence[int]]
-    """Of each run: one for each label."""
+    """Counts of each run, one for each label."""
 
     @property
     def totals(self) -> list[int]:
@@ -122,7 +122,7 @@ class Calibration:
     stops: int
     """Episodes that ended with STOP."""
     correct: Proportion
-    """Of the stops with a confidence."""
+    """Share of correct ones among the stops with a confidence."""
     confidence: float
     """Mean of the stops with a confidence; 0 without any."""
 

@@ -26,7 +26,7 @@ from sim.task.trajectory import Trajectory, read_trajectory, trajectory_file
 from sim.world.world import World
 
 Trajectories = Mapping[str, Sequence[Trajectory | None]]
-"""For each episode the trajectory of each run."""
+"""Trajectories by episode, one for each run."""
 HouseTruth = GroundTruth | None
 """Ground truth of a house; None where the house cannot be loaded."""
 
@@ -44,7 +44,7 @@ def split_of(run: Run) -> Split:
         one_house(house, labels=config.get("labels"), root=config.get("root")) if house else load_split(config["split"])
     )
     if split.sha256 != config["split_identity"]["sha256"]:
-        raise ConfigError(f"'{run.path}' was played in another version of '{split.name}' than the present one.")
+        raise ConfigError(f"'{run.path}' was run in another version of '{split.name}' than the present one.")
     return split
 
 
@@ -68,11 +68,11 @@ class Drawings:
     """All drawings of a page; those that several episodes share are stored once."""
 
     plans: dict[str, Any] = field(default_factory=dict)
-    """By house and storey (`sim.analysis.report.plans.draw_plan`)."""
+    """Plans by house and storey (`sim.analysis.report.plans.draw_plan`)."""
     areas: dict[str, str] = field(default_factory=dict)
     """The area where a STOP succeeds, by plan and goal."""
     episodes: dict[str, Any] = field(default_factory=dict)
-    """By id: the names of plan and area, the shortest path, and a path for each run."""
+    """Drawings by episode id: the names of plan and area, the shortest path, and a path for each run."""
     house_m2: dict[str, float | None] = field(default_factory=dict)
     """Floor area of all rooms of each house; None where the house declares none."""
 
@@ -120,14 +120,14 @@ class Drawings:
 def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Drawings, list[str]]:
     """Returns drawings of the episodes with a trajectory in some run, and sentences about houses without a drawing.
 
-    Episodes in houses that do not exist any more, or have changed, are drawn without a plan.
+    Episodes in houses that do not exist any more, or have changed, are shown without a plan.
     """
     drawings, problems = Drawings(), []
     split, robot = None, None
     try:
         split, robot = split_of(runs[0]), robot_of(runs[0])
     except (ConfigError, HouseError, KeyError) as error:
-        problems.append(f"The houses are not drawn, and their sizes are unknown: {error}")
+        problems.append(f"The houses are not shown, and their sizes are unknown: {error}")
     for house, episode_ids in _by_house(runs[0], trajectories).items():
         recorded = [i for i in episode_ids if any(trajectory is not None for trajectory in trajectories[i])]
         truth: HouseTruth = None
@@ -138,7 +138,7 @@ def draw_episodes(runs: Sequence[Run], trajectories: Trajectories) -> tuple[Draw
                 rooms = truth.world.rooms if truth is not None else read_rooms(loaded.spec.copy().compile())
                 drawings.house_m2[house] = sum(room.area_m2 for room in rooms) or None
             except (ConfigError, HouseError) as error:
-                problems.append(f"House '{house}' is not drawn, and its size is unknown: {error}")
+                problems.append(f"House '{house}' is not shown, and its size is unknown: {error}")
         for episode_id in recorded:
             drawings.add(runs, episode_id, trajectories[episode_id], truth)
     return drawings, problems
@@ -164,7 +164,7 @@ def ground_truth_of(run: Run, house: House, robot: RobotConfig | None = None) ->
 
 
 def robot_of(run: Run) -> RobotConfig:
-    """Returns the robot of a run: ours or that of `--robot`, with the fields that `--config` changed."""
+    """Returns the robot of a run: the default robot or that of `--robot`, with the fields that `--config` changed."""
     robot = load_robot(Path(run.config["robot"]))[0] if run.config.get("robot") else RobotConfig()
     recorded = run.config.get("config", {}).get("robot", {})
     return with_fields(robot, {name: value for name, value in recorded.items() if name != "file"})

@@ -44,7 +44,7 @@ def thumbnail(file: Path) -> str:
     """Returns a small copy of an image as base64 of a JPEG file.
 
     Raises:
-        ConfigError: the file is no image, or too large.
+        ConfigError: the file is not an image, or too large.
     """
     content = read_bytes(file, what="Picture")
     require_small_image(content, where=f"Picture '{file}'")

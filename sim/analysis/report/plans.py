@@ -244,4 +244,4 @@ def _is_free_between(space: FreeSpace, begin_m: NDArray[np.float64], end_m: NDAr
     count = 2 + int(np.hypot(*(end_m - begin_m)) / (0.5 * space.frame.cell_m))
     cells = space.frame.to_cells(begin_m + np.linspace(0.0, 1.0, count)[:, None] * (end_m - begin_m))
     cells = np.clip(cells, 0, np.array(space.frame.shape) - 1)
-    return bool(space.free[tuple(cells[1:].T)].all())  # the start may lie beside a free cell
+    return bool(space.free[tuple(cells[1:].T)].all())  # the start may lie next to a free cell

@@ -12,7 +12,7 @@ from sim.analysis.tables import Cell
 
 METRICS: tuple[Metric, ...] = (SUCCESS, SPL, FIRST_SIGHT, COLLISIONS)
 LEAST_RUNS = 3
-"""Fewer runs are no trend."""
+"""Least number of runs that make a trend."""
 WIDTH, HEIGHT = 320, 170
 """Size of a chart in its own units, margins included."""
 LEFT, RIGHT, TOP, BOTTOM = 44, 8, 10, 24

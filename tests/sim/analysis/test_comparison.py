@@ -159,7 +159,7 @@ def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"it has no results\.jsonl"):
         read_run(tmp_path)
     (tmp_path / "results.jsonl").write_text("[]\n")
-    with pytest.raises(ConfigError, match="is no run"):
+    with pytest.raises(ConfigError, match="is not a run"):
         read_run(tmp_path)
 
 

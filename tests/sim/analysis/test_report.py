@@ -259,7 +259,7 @@ def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(played: Path, t
     config["split_identity"]["sha256"] = "0" * 64
     (tmp_path / "run/config.json").write_text(json.dumps(config))
     page = _page(tmp_path / "run")
-    assert "was played in another version of &#39;lounge&#39;" in page
+    assert "was run in another version of &#39;lounge&#39;" in page
     assert _data(page)["plans"] == {}
     assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
@@ -276,9 +276,9 @@ def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path])
 @pytest.mark.parametrize(
     ("broken", "sentence"),
     [
-        (lambda folder: shutil.rmtree(folder), "is no run: it has no config.json"),
+        (lambda folder: shutil.rmtree(folder), "is not a run: it has no config.json"),
         (lambda folder: (folder / "results.jsonl").write_text(""), "has no result yet"),
-        (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), "is no run"),
+        (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), "is not a run"),
     ],
 )
 def test_what_is_no_run_is_one_sentence(played: Path, tmp_path: Path, broken: Any, sentence: str) -> None:
@@ -294,7 +294,7 @@ def test_a_trajectory_that_cannot_be_read_is_told_and_the_rest_is_drawn(played: 
     first = _lines(tmp_path / "run")[0]["episode_id"]
     trajectory_file(tmp_path / "run", first).write_bytes(b"PK rubbish")
     page = _page(tmp_path / "run")
-    assert "is no trajectory" in page
+    assert "is not a trajectory" in page
     drawn = ["paths" in episode for episode in _data(page)["episodes"]]
     assert drawn == [False, True, True, True]
 

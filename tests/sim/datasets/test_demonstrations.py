@@ -98,7 +98,7 @@ def test_a_file_holds_the_demonstration(shown: Demonstration, tmp_path: Path):
             },
             "it has no action",
         ),
-        ({"goal": "spoon"}, "'spoon' is no goal category"),
+        ({"goal": "spoon"}, "'spoon' is not a goal category"),
     ],
 )
 def test_a_file_that_makes_no_sense_is_refused(shown: Demonstration, tmp_path: Path, change: dict, message: str):

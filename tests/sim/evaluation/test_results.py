@@ -232,7 +232,7 @@ def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: l
     ("episodes", "told"),
     [
         ({"e1": ("h1", "bed")}, None),
-        ({"e2": ("h1", "bed")}, "line 1: 'e1' is no episode of this run"),
+        ({"e2": ("h1", "bed")}, "line 1: 'e1' is not an episode of this run"),
         ({"e1": ("h9", "bed")}, "line 1: house is 'h1', but 'h9'"),
         ({"e1": ("h1", "sofa")}, "line 1: goal is 'bed', but 'sofa'"),
     ],

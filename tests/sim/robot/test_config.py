@@ -37,7 +37,7 @@ def test_agents_get_the_size_of_the_hull():
         (lambda: RobotConfig(body=BodyConfig(mass_kg=0.4)), "mass"),
         (
             lambda: RobotConfig(base="free", file=RobotFile(Path("robot.xml"), ("left", "right"))),
-            "is for our body only",
+            "is for the default body only",
         ),
     ],
 )

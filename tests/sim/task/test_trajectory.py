@@ -148,10 +148,10 @@ def _pickled(file: Path) -> None:
     ("harm", "told"),
     [
         (lambda file: file.unlink(), "--record"),
-        (lambda file: file.write_text("no archive"), "is no trajectory"),
-        (_truncated, "is no trajectory"),
+        (lambda file: file.write_text("no archive"), "is not a trajectory"),
+        (_truncated, "is not a trajectory"),
         (lambda file: np.savez(file, poses=np.zeros(3)), "has no 'actions'|has no"),
-        (_pickled, "is no trajectory"),
+        (_pickled, "is not a trajectory"),
         (_another_format, "its format is 99"),
         (_shorter_actions, "for 4 actions"),
         (_place_of_one_number, "stop_target_xy_m"),

@@ -144,7 +144,7 @@ def test_samples_are_read_back_as_they_were_written(tmp_path: Path, samples: lis
     with pytest.raises(ConfigError, match=r"made with other options \(walks\)"):
         SampleSet.read(files, SampleConfig(walks=9, maps=3, most_steps=60, cells=64, map_cells=700))
     (tmp_path / "broken.npz").write_bytes(b"no zip")
-    with pytest.raises(ConfigError, match="is no file of samples"):
+    with pytest.raises(ConfigError, match="is not a file of samples"):
         SampleSet.read([tmp_path / "broken.npz"], CONFIG)
 
 
