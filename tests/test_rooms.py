@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 ROOMS = (
     ("sim.errors",),
     ("sim.geometry",),
-    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.memory", "sim.configuration"),
+    ("sim.reading", "sim.interface", "sim.gl", "sim.files", "sim.paths", "sim.configuration"),
     ("sim.invocation", "sim.cli"),
     ("sim.houses",),
     ("sim.robot",),

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from sim.evaluation.bootstrap import Estimate
 
-RESOLVED, UNRESOLVED = "resolved", "unresolved"
+SIGNIFICANT, NOT_SIGNIFICANT = "significant", "not significant"
 CSV_COLUMNS = ("table", "row", "column", "value", "low95", "high95", "episodes", "houses", "verdict")
 LEAST_PAIRS = 2
 """A single pair is only a difference: its bootstrap interval has no width."""
@@ -29,17 +29,17 @@ class Cell:
     """Shown times 100."""
     digits: int = 1
     difference: bool = False
-    """A difference, shown with its sign, or a ratio; unresolved where the interval holds `Estimate.neutral`."""
-    say_resolved: bool = False
-    """A comparison that is resolved is shown with that word too."""
+    """A difference, shown with its sign, or a ratio; not significant where the interval holds `Estimate.neutral`."""
+    say_significant: bool = False
+    """A significant comparison is shown with that word too."""
 
     @property
     def verdict(self) -> str:
-        """`unresolved`, `higher` or `lower` for a comparison; "" for a mean and for a comparison without pairs."""
+        """`not significant`, `higher` or `lower` for a comparison; "" for a mean and for a comparison without pairs."""
         if not self.difference or self.estimate.mean is None:
             return ""
-        if not self.estimate.resolved:
-            return UNRESOLVED
+        if not self.estimate.significant:
+            return NOT_SIGNIFICANT
         return "higher" if self.estimate.mean > self.estimate.neutral else "lower"
 
     @property
@@ -56,8 +56,14 @@ class Cell:
         return f"[{self._number(low)}, {self._number(high)}]" + ONE_HOUSE * (self.estimate.houses == 1)
 
     def text(self, separator: str = " ") -> str:
-        """Returns `12.0 [8.0, 16.0]`, for a difference `+4.0 [-1.0, 9.0] unresolved`."""
-        word = UNRESOLVED if self.verdict == UNRESOLVED else RESOLVED if self.verdict and self.say_resolved else ""
+        """Returns `12.0 [8.0, 16.0]`, for a difference `+4.0 [-1.0, 9.0] not significant`."""
+        word = (
+            NOT_SIGNIFICANT
+            if self.verdict == NOT_SIGNIFICANT
+            else SIGNIFICANT
+            if self.verdict and self.say_significant
+            else ""
+        )
         return separator.join(filter(None, (self.mean_text, self.interval_text, word)))
 
     def _number(self, value: float) -> str:

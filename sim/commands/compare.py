@@ -3,7 +3,7 @@
 stubborn compare runs/before runs/after
 
 Differences are the second run minus the first, paired by episode, over the episodes of both runs. Their 95 % bootstrap
-intervals resample houses, then the episodes of each house. A difference is unresolved if its interval holds 0.
+intervals resample houses, then the episodes of each house. A difference is not significant if its interval holds 0.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def compare(first: Run, second: Run) -> ResultTable:
     changed = [i for i in common if bool(first.lines[i]["success"]) != bool(second.lines[i]["success"])]
     notes = [
         f"A: {first.path}, B: {second.path}; {len(common)} episodes of both runs.",
-        f"unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
+        f"not significant: the interval holds 0, or there are fewer than {MIN_PAIRS} pairs.",
     ]
     errors = [sum(line["end_reason"] == "error" for line in lines) for lines in (a, b)]
     if any(errors):

@@ -11,13 +11,13 @@ from sim.composition.environments import make_env
 from sim.composition.record import error_line, identity_of, versions
 from sim.composition.segmenters import NoSegmentation
 from sim.composition.setup import Setup
+from sim.env.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.last_view import write_last_view
 from sim.evaluation.rollout import episode_seed, play_episode, record_episode
 from sim.interface import Agent, Segmenter
-from sim.memory import give_large_blocks_pages_of_their_own, return_freed_memory
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter
 

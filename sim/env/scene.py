@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Callable
 
+from sim.env.memory import return_freed_memory
 from sim.houses.house import House
 from sim.interface import CameraModel
-from sim.memory import return_freed_memory
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.sensors.gloss import geom_gloss

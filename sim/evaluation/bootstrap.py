@@ -48,7 +48,7 @@ class Estimate:
     """The value that two equal runs give: 0 for a difference, 1 for a ratio."""
 
     @property
-    def resolved(self) -> bool:
+    def significant(self) -> bool:
         """True for a significant comparison: its interval excludes `neutral` and it has at least `MIN_PAIRS` pairs."""
         if self.low is None or self.high is None or self.count < MIN_PAIRS:
             return False

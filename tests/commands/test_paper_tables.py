@@ -55,7 +55,7 @@ def test_causes_are_shares_of_the_failed_episodes_and_their_differences_of_all()
     explore = cell(differences, "explore", "stubborn - stubborn --verification none")
     assert explore.estimate.mean == pytest.approx(-10 / 40)
     assert explore.verdict == "lower"
-    assert cell(differences, "trapped", "stubborn - stubborn --verification none").verdict == "unresolved"
+    assert cell(differences, "trapped", "stubborn - stubborn --verification none").verdict == "not significant"
 
 
 def test_an_agent_that_never_fails_has_no_causes() -> None:
@@ -71,7 +71,7 @@ def test_the_ablation_compares_each_row_with_the_one_before_and_the_last_with_th
     assert [row for row, _ in differences.rows] == ["II - I", "III - II", "IV - III", "V - IV", "V - I"]
     last = cell(differences, "V - I", "success %")
     assert (last.estimate.mean, last.verdict) == (pytest.approx(0.5), "higher")
-    assert cell(differences, "V - I", "collisions").verdict == "unresolved"
+    assert cell(differences, "V - I", "collisions").verdict == "not significant"
 
 
 def test_rows_of_the_ablation_have_roman_numerals_and_the_last_is_the_whole_agent() -> None:

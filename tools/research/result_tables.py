@@ -155,7 +155,7 @@ def comparison_record(pair: Comparison, runs: Mapping[RunKey, ArchivedRun]) -> R
     record = {"table": pair.table, **_identity(pair.first), **minus, **_counts(first)}
     for metric in COMPARED:
         found = metric.difference(second, first).estimate
-        record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.resolved)}
+        record |= _estimate_columns(metric, found) | {f"{metric.key}_significant": _yes(found.significant)}
     outcomes = [(bool(a["success"]), bool(b["success"])) for a, b in zip(first, second, strict=True)]
     return record | {
         "only_first_succeeds": str(outcomes.count((True, False))),

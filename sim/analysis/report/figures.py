@@ -151,8 +151,8 @@ def verdict(difference: Estimate) -> str:
         return "no pairs"
     if difference.count < MIN_PAIRS:
         return f"fewer than {MIN_PAIRS} pairs"
-    if not difference.resolved:
-        return "unresolved"
+    if not difference.significant:
+        return "not significant"
     return "higher" if difference.mean > 0.0 else "lower"
 
 

@@ -146,7 +146,7 @@ def splits(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
     title = f"Agents, {setups[0].semantics} segmentation"
     means, differences = _means_and_differences("splits", title, lines, setups, pairs, metrics, {})
     rows = [
-        (name, [replace(cell, say_resolved=True) if isinstance(cell, Cell) else cell for cell in cells])
+        (name, [replace(cell, say_significant=True) if isinstance(cell, Cell) else cell for cell in cells])
         for name, cells in differences.rows
     ]
     note = "Steps to first sight: restricted mean; an episode that never showed the goal counts with the step limit."
@@ -290,7 +290,7 @@ def _against(first: Sequence[Line], second: Sequence[Line]) -> list[Cell | str]:
         return ["1", "", ""]
     values = [[metric_value(line, FIRST_SIGHT.key) for line in lines] for lines in (first, second)]
     changes = [b - a for a, b in zip(*values, strict=True) if a is not None and b is not None]
-    ratio = replace(FIRST_SIGHT.ratio_of_medians(first, second), say_resolved=True)
+    ratio = replace(FIRST_SIGHT.ratio_of_medians(first, second), say_significant=True)
     return [ratio, str(sum(change < 0.0 for change in changes)), str(sum(change > 0.0 for change in changes))]
 
 

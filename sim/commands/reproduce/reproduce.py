@@ -254,7 +254,8 @@ def notes_of(args: Args, name: str, runs: Mapping[AgentSetup, Run], common: Sequ
         f"{len(common)} episodes in {houses} houses of {split['name']} {split['version']} ({split['sha256'][:8]}), "
         f"sensor noise {config['noise']}, seed {config['seed']}, mujoco {versions['mujoco']}.",
         f"Mean [95 % bootstrap interval]: {RESAMPLES:,} resamples of houses, then of the episodes of each house. "
-        f"Differences are paired by episode; unresolved: the interval holds 0, or there are fewer than {MIN_PAIRS} "
+        "Differences are paired by episode; not significant: the interval holds 0, or there are fewer than "
+        f"{MIN_PAIRS} "
         "pairs.",
         "`" + " ".join(["stubborn reproduce", name, *_named_options(args)]) + "`",
     ]

@@ -41,7 +41,7 @@ def test_a_fifth_of_a_hundred_pairs_gained() -> None:
     assert difference.mean == pytest.approx(0.2)
     # Binomial(100, 0.2): 2.5 % and 97.5 % quantiles are 12 and 28.
     assert (difference.low, difference.high) == (pytest.approx(0.12, abs=0.011), pytest.approx(0.28, abs=0.011))
-    assert difference.resolved
+    assert difference.significant
 
 
 def test_the_difference_has_the_sign_of_second_minus_first() -> None:
@@ -58,7 +58,7 @@ def test_pairing_resolves_what_separate_intervals_do_not() -> None:
     assert separate[0].high is not None
     assert separate[1].low is not None
     assert separate[1].low < separate[0].high
-    assert paired_difference(list(first), list(second), houses(60)).resolved
+    assert paired_difference(list(first), list(second), houses(60)).significant
 
 
 def test_a_pair_without_one_of_its_values_does_not_count() -> None:
@@ -69,7 +69,7 @@ def test_a_pair_without_one_of_its_values_does_not_count() -> None:
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "pairs", "resolved"),
+    ("low", "high", "pairs", "significant"),
     [
         (0.1, 0.3, MIN_PAIRS, True),
         (-0.3, -0.1, MIN_PAIRS, True),
@@ -80,12 +80,12 @@ def test_a_pair_without_one_of_its_values_does_not_count() -> None:
         (None, None, 0, False),
     ],
 )
-def test_an_interval_that_holds_zero_and_one_of_few_pairs_resolve_nothing(
-    low: float | None, high: float | None, pairs: int, resolved: bool
+def test_an_interval_that_holds_zero_and_one_of_few_pairs_are_not_significant(
+    low: float | None, high: float | None, pairs: int, significant: bool
 ) -> None:
     cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs, pairs), difference=True)
-    assert cell.estimate.resolved == resolved
-    assert ("unresolved" in cell.text()) == (not resolved and low is not None)
+    assert cell.estimate.significant == significant
+    assert ("not significant" in cell.text()) == (not significant and low is not None)
 
 
 def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object) -> Path:
@@ -179,11 +179,11 @@ def test_a_cell_is_shown_in_percent_and_written_as_a_share(tmp_path: Path) -> No
         "t", "A title", ("who", "a|b", "gain"), [("stubborn", [mean, difference]), ("none", ["-", "-"])]
     )
     assert "| who | a\\|b | gain |\n| --- | ---: | ---: |\n" in to_markdown([table])
-    assert "| stubborn | 50.0 [25.0, 75.0] | -12.5 [-25.0, +0.0] unresolved |" in to_markdown([table])
+    assert "| stubborn | 50.0 [25.0, 75.0] | -12.5 [-25.0, +0.0] not significant |" in to_markdown([table])
     assert to_csv([table]).splitlines() == [
         "table,row,column,value,low95,high95,episodes,houses,verdict",
         "t,stubborn,a|b,0.5,0.25,0.75,40,8,",
-        "t,stubborn,gain,-0.125,-0.25,0.0,40,8,unresolved",
+        "t,stubborn,gain,-0.125,-0.25,0.0,40,8,not significant",
     ]
 
 

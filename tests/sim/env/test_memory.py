@@ -92,7 +92,7 @@ def test_maps_take_no_memory_for_unseen_parts() -> None:
 LAYERS = """
 import numpy as np
 
-from sim.memory import give_large_blocks_pages_of_their_own
+from sim.env.memory import give_large_blocks_pages_of_their_own
 from tests.sim.env.test_memory import resident_mb
 
 give_large_blocks_pages_of_their_own()

@@ -88,8 +88,8 @@ def test_pairs_in_the_same_house_are_drawn_together() -> None:
     gains = np.repeat([0.0, 0.0, 0.0, 1.0], 25)  # all gains are in one of four houses
     over_houses = paired_difference([0.0] * 100, list(gains), houses_of(4, 25))
     over_episodes = paired_difference([0.0] * 100, list(gains), each_in_its_house(100))
-    assert over_episodes.resolved
-    assert not over_houses.resolved
+    assert over_episodes.significant
+    assert not over_houses.significant
 
 
 def test_a_split_of_a_thousand_episodes_takes_well_under_a_second() -> None:
@@ -108,7 +108,7 @@ def test_a_ratio_of_medians_is_resolved_against_one() -> None:
     )
     assert half.mean == pytest.approx(0.5)
     assert half.low == half.high == pytest.approx(0.5)  # each resample keeps the pairs together
-    assert (half.resolved, same.mean, same.resolved) == (True, 1.0, False)
+    assert (half.significant, same.mean, same.significant) == (True, 1.0, False)
 
 
 def test_the_interval_of_a_ratio_of_medians_holds_the_true_one_in_about_95_of_100_samples() -> None:
