@@ -174,7 +174,7 @@ def play(setup: Setup, episode: Episode, cockpit: Cockpit, content: dict[str, An
     assert options.out is not None
     env = make_env(setup, sensors=setup.sensors, truth=VIEWER_IMAGES)
     human = Human(env, cockpit)
-    viewers = [VideoRecorder(options.out, AgentMapPainter(human.mapper, show_plan=False))] if options.video else []
+    viewers = [VideoRecorder(options.out, AgentMapPainter(human.mapper, show_route=False))] if options.video else []
     try:
         seed = episode_seed(options.seed, episode.episode_id)
         metrics = judged(play_episode(env, human, episode, seed=seed, viewers=viewers))

@@ -55,7 +55,7 @@ class Human:
     def __init__(self, env: ObjectNavEnv, cockpit: Cockpit) -> None:
         self._env, self._cockpit = env, cockpit
         self.mapper = StubbornAgent(camera=env.camera_model, robot=env.robot_model, segmenter=GroundTruthSegmenter())
-        self.painter = AgentMapPainter(self.mapper, show_plan=False)
+        self.painter = AgentMapPainter(self.mapper, show_route=False)
         self.camera, self.layout = CAMERAS[0], LAYOUTS[0]
 
     def reset(self, goal: str, seed: int) -> None:
@@ -92,9 +92,9 @@ class Human:
             self.layout = _next(LAYOUTS, self.layout)
             return f"layout: {self.layout}"
         if key == "p":
-            self.painter.show_plan = not self.painter.show_plan
+            self.painter.show_route = not self.painter.show_route
             advised = self.mapper.last_action
-            if advised is None or not self.painter.show_plan:
+            if advised is None or not self.painter.show_route:
                 return "the agent's plan is hidden"
             return f"the agent would: {ACTION_WORDS[advised]} ({describe_intention(self.mapper)})"
         return "that key does nothing"

@@ -74,10 +74,10 @@ class AgentMapPainter:
     legend = (*LEGEND, *GROUND)
     """Name and colour of each item in the picture."""
 
-    def __init__(self, agent: StubbornAgent, *, show_plan: bool = True) -> None:
-        """Without `show_plan` the route and its goal are not drawn."""
+    def __init__(self, agent: StubbornAgent, *, show_route: bool = True) -> None:
+        """Without `show_route` the route and its goal are not drawn."""
         self.agent = agent
-        self.show_plan = show_plan
+        self.show_route = show_route
         self._navmap: NavMap | None = None
         self._middle_m, self._side_m = (0.0, 0.0), _SMALLEST_SIDE_M
 
@@ -92,7 +92,7 @@ class AgentMapPainter:
         cells = round(self._side_m / agent.config.cell_m)
         view = agent.navmap.view(agent.navmap.frame.window_at(*self._middle_m, cells))
         canvas = Canvas(_paint_layers(view, agent.config.mapping.candidate_score), view.frame, size_px)
-        if self.show_plan:
+        if self.show_route:
             _draw_intention(canvas, agent, pose)
         canvas.robot(pose, agent.robot.radius_m)
         if size_px >= ROOM_FOR_TEXT_PX:
@@ -101,7 +101,7 @@ class AgentMapPainter:
 
     def words(self) -> str:
         """Returns what the agent is doing; "" where its route is not shown."""
-        return describe_intention(self.agent) if self.show_plan else ""
+        return describe_intention(self.agent) if self.show_route else ""
 
     def _grow(self, pose: Pose) -> None:
         """Enlarges the area of the picture when the known ground, or the robot, comes near its edge."""
