@@ -78,10 +78,35 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
     except (ValueError, OSError, RecursionError) as fault:
         raise error(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)}") from None
     spec.memory = spec.nconmax = spec.njmax = spec.nstack = -1  # as much as the model needs
+    orient_by_quaternions(spec)
     for reference in asset_references(spec, path.parent):
         allowed.require(reference)
     _require_small_assets(spec, path.parent, error)
     return spec
+
+
+def orient_by_quaternions(spec: mujoco.MjSpec) -> None:
+    """Replaces Euler angles, axis-angle pairs and axes of a specification by quaternions, with its own angle settings.
+
+    `fusestatic` reads the angles of an attached model with the settings of the model that it is attached to. Quaternions
+    have no settings.
+    """
+    for element in (*spec.bodies, *spec.geoms, *spec.sites, *spec.cameras, *spec.frames):
+        if element.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+            element.quat = _quaternion(spec, element.alt)
+            element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+    for body in spec.bodies:
+        if body.ialt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+            body.iquat = _quaternion(spec, body.ialt)
+            body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+
+
+def _quaternion(spec: mujoco.MjSpec, orientation: mujoco.MjsOrientation) -> list[float]:
+    """Returns an orientation as the quaternion w, x, y, z."""
+    compiler = spec.compiler
+    return mujoco.MjSpec.resolve_orientation(
+        degree=bool(compiler.degree), sequence=compiler.eulerseq, orientation=orientation
+    )
 
 
 def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
