@@ -8,14 +8,16 @@ message names the file, the line, the field, what was found and what is wanted.
 from __future__ import annotations
 
 import gzip
+import os
 import re
+import stat
 import struct
 import unicodedata
 import zipfile
 import zlib
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Annotated, Any, BinaryIO, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -51,6 +53,35 @@ class Lines(NamedTuple):
     """A sentence on an incomplete last line that was left out; "" where there is none."""
 
 
+def open_plain(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError) -> BinaryIO:
+    """Returns a plain file, open for reading. A pipe, a device or a folder in its place is refused, without waiting.
+
+    Every file that a user or data names is opened by this function.
+
+    Args:
+        file: the file.
+        what: kind of the file for the error message, for example "Episode file".
+        error: class of the error.
+
+    Raises:
+        ObjectNavError: of class `error`; the file does not exist, cannot be opened or is no plain file.
+    """
+    try:
+        return _open_plain(file)
+    except (OSError, ValueError) as fault:
+        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+
+
+def _open_plain(file: Path) -> BinaryIO:
+    """Returns a plain file, open for reading; raises OSError or ValueError."""
+    # Without O_NONBLOCK, opening a pipe waits for a writer. A plain file does not have that flag.
+    handle = os.open(file, os.O_RDONLY | os.O_CLOEXEC | getattr(os, "O_NONBLOCK", 0))
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise OSError("it is not a plain file")
+    return os.fdopen(handle, "rb")
+
+
 def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigError, most: int = MAX_BYTES) -> bytes:
     """Returns the content of a file.
 
@@ -63,11 +94,11 @@ def read_bytes(file: Path, *, what: str, error: type[ObjectNavError] = ConfigErr
     Raises:
         ObjectNavError: of class `error`; the file does not exist, cannot be read or is too large.
     """
-    try:
-        with file.open("rb") as stream:
+    with open_plain(file, what=what, error=error) as stream:
+        try:
             content = stream.read(most + 1)
-    except (OSError, ValueError) as fault:
-        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+        except OSError as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if len(content) > most:
         raise error(f"{what} '{file}' is too large: at most {most >> 20} MB are read.")
     return content
@@ -89,11 +120,11 @@ def read_gzip_json(file: Path, kind: type[T] | Any, *, what: str, error: type[Ob
         ObjectNavError: of class `error`; the file cannot be read, expands to more than `MAX_BYTES`, or has other
             content.
     """
-    try:
-        with gzip.open(file, "rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
-        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    with open_plain(file, what=what, error=error) as packed:
+        try:
+            content = gzip.GzipFile(fileobj=packed).read(MAX_BYTES + 1)
+        except (OSError, EOFError, zlib.error, struct.error, ValueError) as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if len(content) > MAX_BYTES:
         raise error(f"{what} '{file}' expands to more than {MAX_BYTES >> 20} MB.")
     return parse_json(content, kind, where=f"{what} '{file}'", error=error)
@@ -174,11 +205,11 @@ def convert(
 
 def require_small_zip(file: Path, *, what: str, most: int, error: type[ObjectNavError] = ConfigError) -> None:
     """Raises an error if a file is not a zip file (`.npz`, a PyTorch file), or expands to more than `most` bytes."""
-    try:
-        with zipfile.ZipFile(file) as archive:
-            size = sum(member.file_size for member in archive.infolist())
-    except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError, struct.error) as fault:
-        raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
+    with open_plain(file, what=what, error=error) as stream:
+        try:
+            size = sum(member.file_size for member in zipfile.ZipFile(stream).infolist())
+        except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError, struct.error) as fault:
+            raise error(f"{what} '{file}' cannot be read: {reason_of(fault)}.") from None
     if size > most:
         raise error(f"{what} '{file}' expands to {size >> 20} MB; at most {most >> 20} MB are read.")
 
@@ -204,7 +235,7 @@ def read_npz(
         ObjectNavError: of class `error`; the file cannot be read, is damaged or too large, or lacks an array.
     """
     try:
-        with zipfile.ZipFile(file) as archive:
+        with _open_plain(file) as stream, zipfile.ZipFile(stream) as archive:
             size = sum(member.file_size for member in archive.infolist())
             if size > most_bytes:
                 raise ValueError(f"it expands to {size >> 20} MB; at most {most_bytes >> 20} MB are read")
@@ -225,6 +256,8 @@ def image_size_px(content: bytes) -> tuple[int, int] | None:
         return width, height
     position = 2
     while content[:2] == b"\xff\xd8" and position + 9 <= len(content) and content[position] == 0xFF:
+        while position + 10 <= len(content) and content[position + 1] == 0xFF:
+            position += 1  # a marker may follow any number of fill bytes
         marker, length = content[position + 1], int.from_bytes(content[position + 2 : position + 4], "big")
         if 0xC0 <= marker <= 0xCF and marker not in (0xC4, 0xC8, 0xCC):
             height, width = struct.unpack(">HH", content[position + 5 : position + 9])

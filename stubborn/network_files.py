@@ -21,7 +21,7 @@ from torch import Tensor, nn
 from torch.overrides import TorchFunctionMode
 
 from sim.interface import ConfigError
-from sim.reading import convert, reason_of
+from sim.reading import convert, open_plain, reason_of
 
 MAX_WEIGHT = 1e12
 """Largest magnitude of a number in a file of weights."""
@@ -105,6 +105,7 @@ def read_weights(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
     Raises:
         ConfigError: the file cannot be read.
     """
+    open_plain(file, what="Weights").close()  # safetensors would wait for the writer of a pipe
     try:
         with safe_open(file, framework="pt") as stream:
             header = stream.metadata() or {}

@@ -19,7 +19,7 @@ import numpy as np
 
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
-from sim.houses.references import Allowed, Reference, asset_path, asset_references
+from sim.houses.references import Allowed, Reference, asset_path, asset_references, path_as_read
 from sim.reading import image_size_px, printable, read_bytes, reason_of
 
 MAX_ELEMENTS = 100_000
@@ -54,7 +54,11 @@ _NAMES = frozenset((
     "geom", "geom1", "geom2", "joint", "joint1", "joint2", "site", "model", "prefix", "data",
 ))  # fmt: skip
 """Attributes whose value is a name."""
-_NOT_FINITE = frozenset(("nan", "inf", "infinity"))
+_NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\(\w*\))?|inf(?:inity)?)", re.IGNORECASE)
+"""A word that C reads as a number that is not finite; `nan(1)` is one."""
+_FILE_NAME = re.compile(rb"""\bfile\s*=\s*(?:"[^"]*"|'[^']*')""")
+"""The attribute `file` of an element, in the bytes of a file."""
+_CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
 
 
 def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavError] = HouseError) -> mujoco.MjSpec:
@@ -78,10 +82,35 @@ def read_spec(path: Path, *, root: Path | None = None, error: type[ObjectNavErro
     except (ValueError, OSError, RecursionError) as fault:
         raise error(f"it is not an MJCF file that MuJoCo can read: {reason_of(fault)}") from None
     spec.memory = spec.nconmax = spec.njmax = spec.nstack = -1  # as much as the model needs
+    orient_by_quaternions(spec)
     for reference in asset_references(spec, path.parent):
         allowed.require(reference)
     _require_small_assets(spec, path.parent, error)
     return spec
+
+
+def orient_by_quaternions(spec: mujoco.MjSpec) -> None:
+    """Replaces Euler angles, axis-angle pairs and axes of a specification by quaternions, with its own angle settings.
+
+    `fusestatic` reads the angles of an attached model with the settings of the model that it is attached to.
+    Quaternions have no settings.
+    """
+    for element in (*spec.bodies, *spec.geoms, *spec.sites, *spec.cameras, *spec.frames):
+        if element.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+            element.quat = _quaternion(spec, element.alt)
+            element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+    for body in spec.bodies:
+        if body.ialt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+            body.iquat = _quaternion(spec, body.ialt)
+            body.ialt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+
+
+def _quaternion(spec: mujoco.MjSpec, orientation: mujoco.MjsOrientation) -> list[float]:
+    """Returns an orientation as the quaternion w, x, y, z."""
+    compiler = spec.compiler
+    return mujoco.MjSpec.resolve_orientation(
+        degree=bool(compiler.degree), sequence=compiler.eulerseq, orientation=orientation
+    )
 
 
 def require_sizes(model: mujoco.MjModel, *, error: type[ObjectNavError] = HouseError) -> None:
@@ -114,7 +143,7 @@ class _Scan:
             self._refuse(f"it includes more than {MAX_FILES} files.")
         content = read_bytes(path, what="its file", error=self._error)
         parser = expat.ParserCreate()
-        parser.StartElementHandler = lambda tag, values: self._start(path, tag, values)
+        parser.StartElementHandler = lambda tag, values: self._start(path, tag, values, content, parser)
         parser.EndElementHandler = lambda tag: self._factors.pop()
         parser.StartDoctypeDeclHandler = lambda *_: self._refuse("a document type is not allowed in MJCF.")
         try:
@@ -122,7 +151,9 @@ class _Scan:
         except expat.ExpatError as fault:
             self._refuse(f"it is not an MJCF file that MuJoCo can read: {fault} of '{path.name}'.")
 
-    def _start(self, path: Path, tag: str, values: Mapping[str, str]) -> None:
+    def _start(
+        self, path: Path, tag: str, values: Mapping[str, str], content: bytes, parser: expat.XMLParserType
+    ) -> None:
         where = f"{tag} '{values['name']}'" if "name" in values else tag
         for key, text in values.items():
             if key not in _NAMES and _SUSPECT.match(text):
@@ -139,16 +170,29 @@ class _Scan:
         if self._elements > MAX_ELEMENTS:
             self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
         if tag in ("include", "model", "flexcomp") and values.get("file"):
+            self._require_name(values["file"], content, parser.CurrentByteIndex)
             self._follow(path, values["file"], count=tag != "flexcomp")
         if tag == "robot" and len(self._factors) == 2:
             self._refuse("it is not an MJCF file that MuJoCo can read here but URDF: MuJoCo's `compile` converts it.")
         if tag == "attach":
             self._refuse("attach: a house is one file; other files are put into it by include.")
 
+    def _require_name(self, name: str, content: bytes, start: int) -> None:
+        """Refuses a control character in the name of a file: expat reads a line break as a space, MuJoCo does not.
+
+        Args:
+            name: as expat reads it.
+            content: the file that holds it.
+            start: first byte of the element in the content.
+        """
+        written = _FILE_NAME.search(content, start)
+        if printable(name) != name or "\n" in name or "\t" in name or (written and _CONTROL.search(written[0])):
+            self._refuse(f"it uses '{printable(name)}', whose name holds a control character.")
+
     def _follow(self, path: Path, name: str, *, count: bool) -> None:
         """Checks a file that a file names; MuJoCo looks next to the first file, then next to the one that names it."""
         for folder in dict.fromkeys((self._allowed.file.parent, path.parent)):
-            file = folder / name
+            file = path_as_read(folder, name)
             if os.path.lexists(file) or folder == path.parent:
                 self._allowed.require(Reference(name, file))
                 if count:
@@ -164,7 +208,8 @@ class _Scan:
     def _require_finite(self, where: str, text: str) -> None:
         """Refuses a list of numbers of which one is not finite or too large."""
         words = text.split()
-        if any(word.lower().lstrip("+-") in _NOT_FINITE for word in words) and _all_numbers(words):
+        others = [word for word in words if not _NOT_FINITE.fullmatch(word)]
+        if len(others) < len(words) and _all_numbers(others):
             self._refuse(f"{where} = '{printable(text)}' is not finite.")
         if any(abs(number) > LARGEST for number in _numbers(text)):
             self._refuse(f"{where} = '{printable(text)}' is too large; at most {LARGEST:g} is allowed.")

@@ -98,8 +98,18 @@ def asset_references(spec: mujoco.MjSpec, folder: Path) -> Iterator[Reference]:
 
 def asset_path(spec: mujoco.MjSpec, folder: Path, name: str, *, texture: bool = False) -> Path:
     """Returns where MuJoCo looks for the file of a mesh or of a texture."""
-    name = os.path.basename(name) if spec.strippath else name
-    return folder / ((spec.texturedir if texture else spec.meshdir) or "") / name
+    if spec.strippath:
+        name = name.replace("\\", "/").rpartition("/")[2]
+    return path_as_read(folder, (spec.texturedir if texture else spec.meshdir) or "", name)
+
+
+def path_as_read(folder: Path, *names: str) -> Path:
+    """Returns the path that MuJoCo opens for names in a file of a folder.
+
+    MuJoCo also separates folders by backslashes, and it removes `..` before the file system follows symbolic links:
+    `link/../x.xml` is `x.xml`.
+    """
+    return Path(os.path.normpath(os.path.join(folder, *(name.replace("\\", "/") for name in names))))
 
 
 def require_root(root: Path | None) -> None:

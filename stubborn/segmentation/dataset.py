@@ -23,7 +23,7 @@ from jaxtyping import Float32, Float64, Shaped, UInt8, UInt16
 from torch.utils.data import IterableDataset, get_worker_info
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID, ConfigError
-from sim.reading import MAX_BYTES, Count, parse_json, read_json, require_small_image
+from sim.reading import MAX_BYTES, Count, open_plain, parse_json, read_json, require_small_image
 
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES])
 """mpcat40 ids of the goal categories."""
@@ -134,7 +134,10 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
     parts: dict[str, bytes] = {}
     key, number = "", -1
     try:
-        with tarfile.open(file, mode="r:") as archive:  # a compressed file could expand without end
+        with (
+            open_plain(file, what="Shard") as stream,
+            tarfile.open(fileobj=stream, mode="r:") as archive,  # a compressed file could expand without end
+        ):
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import os
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -165,6 +166,29 @@ def test_the_arrays_of_an_npz_are_read_by_name(tmp_path: Path) -> None:
     np.savez_compressed(file, a=np.zeros(1 << 20))
     with pytest.raises(ConfigError, match=r"is not a table: it expands to 8 MB; at most 1 MB are read\."):
         reading.read_npz(file, what="table", most_bytes=1 << 20)
+
+
+@pytest.mark.parametrize("kind", ["bytes", "JSON", "gzipped JSON", "zip", "npz"])
+def test_a_pipe_in_place_of_a_file_is_refused_and_not_waited_for(kind: str, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    readers = {
+        "bytes": lambda: reading.read_bytes(pipe, what="Table"),
+        "JSON": lambda: reading.read_json(pipe, dict, what="Table"),
+        "gzipped JSON": lambda: reading.read_gzip_json(pipe, dict, what="Table"),
+        "zip": lambda: reading.require_small_zip(pipe, what="Table", most=1),
+        "npz": lambda: reading.read_npz(pipe, what="table", most_bytes=1),
+    }
+    with pytest.raises(ConfigError, match="not a plain file"):
+        readers[kind]()
+    with pytest.raises(ConfigError, match=r"a plain file|directory"):
+        reading.read_bytes(tmp_path, what="Table")
+
+
+def test_the_size_of_a_jpeg_is_found_behind_fill_bytes() -> None:
+    content = cv2.imencode(".jpg", np.zeros((30, 50, 3), np.uint8))[1].tobytes()
+    filled = content.replace(b"\xff\xc0", b"\xff" * 700 + b"\xc0", 1)
+    assert reading.image_size_px(filled) == (50, 30)
 
 
 @pytest.mark.parametrize("suffix", [".png", ".jpg"])

@@ -64,6 +64,8 @@ TOO_MUCH = {
     "itself": (house(more='<include file="house.xml"/>'), "more than 100 files"),
 }
 NO_NUMBERS = {
+    "a nan with a payload": (house(box(pos="0 nan(1) 0")), r"geom 'wall_00': pos = '0 nan\(1\) 0' is not finite"),
+    "a nan with letters": (house(box(size="-NaN(x) 1 1")), r"size = '-NaN\(x\) 1 1' is not finite"),
     "nan": (house(box(pos="nan 0 0")), r"geom 'wall_00': pos = 'nan 0 0' is not finite"),
     "an infinite size": (house(box(size="inf 1 1")), r"geom 'wall_00': size = 'inf 1 1' is not finite"),
     "a huge position": (house(box(pos="0 0 1e308")), r"geom 'wall_00': pos = '0 0 1e308' is too large"),

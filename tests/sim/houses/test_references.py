@@ -48,6 +48,10 @@ OUTSIDE = {
     "a symbolic link": '<include file="parts/link.xml"/>',
     "a model": '<asset><model name="m" file="../common/sofa.xml"/></asset>',
     "a flexible body": '<worldbody><flexcomp name="f" type="mesh" file="../common/cube.obj"/></worldbody>',
+    "folders separated by backslashes": '<include file="..\\common\\sofa.xml"/>',
+    "a mesh behind backslashes": MESH.format(file="parts\\..\\..\\common\\cube.obj"),
+    "a folder of meshes with a backslash": '<compiler meshdir="..\\common"/>' + MESH.format(file="cube.obj"),
+    "a link that MuJoCo does not follow": '<include file="to_deeper/../../common/sofa.xml"/>',
     "a height field": '<asset><hfield name="h" size="1 1 1 1" file="../common/wood.png"/></asset>',
 }
 
@@ -57,6 +61,9 @@ def test_a_file_outside_of_the_folder_of_the_house_is_refused(more: str, tmp_pat
     file = write(tmp_path, more)
     (file.parent / "parts" / "more.xml").write_text('<mujoco><include file="../../common/sofa.xml"/></mujoco>')
     os.symlink(file.parent.parent / "common" / "sofa.xml", file.parent / "parts" / "link.xml")
+    (file.parent / "common").mkdir()
+    (file.parent / "common" / "sofa.xml").write_text(SOFA)  # where the file system leads
+    os.symlink(file.parent / "parts", file.parent / "to_deeper")
     with pytest.raises(HouseError, match="which is outside of its folder") as refused:
         load_house(file)
     assert "\n" not in str(refused.value)
@@ -105,6 +112,15 @@ def test_a_pipe_is_not_read(tmp_path: Path) -> None:
     file = write(tmp_path, '<include file="parts/pipe.xml"/>')
     os.mkfifo(file.parent / "parts" / "pipe.xml")
     with pytest.raises(HouseError, match="not a regular file"):
+        load_house(file)
+
+
+@pytest.mark.parametrize("name", ["parts/a\nb.xml", "parts/a&#10;b.xml", "parts/a\tb.xml", "parts/a&#x7f;b.xml"])
+def test_a_control_character_in_the_name_of_an_included_file_is_refused(name: str, tmp_path: Path) -> None:
+    file = write(tmp_path, f'<include file="{name}"/>')
+    for harmless in ("a b.xml", "ab.xml"):  # expat reads a line break as a space
+        (file.parent / "parts" / harmless).write_text(SOFA)
+    with pytest.raises(HouseError, match="whose name holds a control character"):
         load_house(file)
 
 
