@@ -65,7 +65,7 @@ def read_run(path: Path) -> Run:
 
 
 def code_of(run: Run, episode_id: str) -> str:
-    """Returns the hash of the code that ran an episode (its trajectory's), else all hashes of the run ("a1 or b2")."""
+    """Returns the hash of the code that ran an episode (its trajectory's), or all hashes of the run ("a1 or b2")."""
     file = trajectory_file(run.path, episode_id)
     if file.is_file():
         return str(read_trajectory(file).about.get("versions", {}).get("code", "unknown"))

@@ -74,7 +74,7 @@ class Human:
             self._cockpit.show(self._screen(observation, message))
             key = self._cockpit.key()
             if key in KEYS:
-                self.mapper.overridden(KEYS[key])  # it learns about collisions from the action really taken
+                self.mapper.overridden(KEYS[key])  # it infers collisions from the action that was carried out
                 return KEYS[key]
             if key in ("q", ""):
                 raise Quit

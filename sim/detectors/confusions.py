@@ -3,7 +3,7 @@
 A row is a true category; its entries are the wrong categories with their shares of the errors. A row that sums to less
 than 1 reduces the error rate of its category by that factor; a category without a row has no errors. The groups are
 those that indoor networks confuse: seats, fronts of furniture, flat objects on a wall, cloth, ceramics. The shares are
-our choice, not a measurement of a network.
+an assumption, not a measurement of a network.
 """
 
 from __future__ import annotations

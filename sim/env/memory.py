@@ -1,4 +1,4 @@
-"""Keeps the memory of a long run small, by switches of glibc's `malloc`; with other C libraries these do nothing."""
+"""Keeps the memory of a long run small with options of glibc's `malloc`; no effect with other C libraries."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import ctypes
 
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3  # malloc.h
 _APART_BYTES = 4_000_000
-"""Blocks from this size on get pages of their own: layers of maps, activations of a network. With 1 MB also the images
-of a frame would, and new pages for them cost 8 ms a step."""
+"""Blocks from this size on get pages of their own: layers of maps, activations of a network. With 1 MB the images of
+a frame would get them too, and new pages for them cost 8 ms per step."""
 _KEPT_BYTES = 16_000_000
-"""So much freed memory at the end of the heap is kept for the next blocks."""
+"""Amount of freed memory at the end of the heap that is kept for the next blocks."""
 
 
 def give_large_blocks_pages_of_their_own() -> None:
-    """Lets the system have each large block back as soon as it is freed.
+    """Makes `malloc` return each large block to the system as soon as it is freed.
 
     By itself glibc stops this after the first large block: it then puts blocks of up to 32 MB on the heap, where
     smaller ones between them keep freed ones from being returned (docs/performance.md has the difference).
@@ -28,7 +28,7 @@ def give_large_blocks_pages_of_their_own() -> None:
 def return_freed_memory() -> None:
     """Returns freed memory to the system; glibc would keep tens of megabytes, in ever smaller pieces.
 
-    What it keeps grows with each house, and with a network by about 10 MB with each episode.
+    The memory that it keeps grows with each house, and with a network by about 10 MB with each episode.
     """
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).malloc_trim(0)

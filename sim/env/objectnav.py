@@ -201,7 +201,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     def draw_episode(self, rng: np.random.Generator, *, episode_id: str = "drawn") -> Episode:
         """Returns a new episode in the one house of this environment.
 
-        Goal and start are those of the environment, else those of the house's sidecar, else random.
+        Goal and start are those of the environment, otherwise those of the house's sidecar, otherwise random.
 
         Raises:
             EpisodeError: the goal is not in the house or cannot be reached, or the robot does not fit at the start.

@@ -1,4 +1,4 @@
-"""Draws the episodes of one house by the recipe of its split: which goals it can ask for, and their starts."""
+"""Draws the episodes of one house by the recipe of its split: the goals that it offers, and their starts."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ class EpisodeRecipe:
     min_distance_m: float = 2.0
     """Least geodesic distance from a start to its goal."""
     only_instance_min_distance_m: float | None = None
-    """The same for a goal with one reachable instance on the storey; None: no other limit."""
+    """Least distance to a goal with only one reachable instance on the storey; None: `min_distance_m`."""
     max_distance_m: float = 30.0
     """Largest geodesic distance; 30 m are 120 forwards, so 500 steps suffice with the turns."""
     view_points: int = 8

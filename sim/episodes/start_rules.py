@@ -1,7 +1,7 @@
 """Selects the starts of the episodes of a split, by the rules of `sim.episodes.recipes`.
 
 A rule restricts the cells of the free space from which a start is sampled (`start_cells`), and tests that start
-(`Lookout`). A goal that leaves too few cells is not asked for.
+(`Lookout`). A goal that leaves too few cells is not used.
 """
 
 from __future__ import annotations

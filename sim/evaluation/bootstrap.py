@@ -1,13 +1,13 @@
 """Means over episodes with 95 % bootstrap intervals that resample houses, then the episodes of each house.
 
-Episodes in the same house are alike, so they are not independent samples. The two-stage cluster bootstrap (Davison and
+Episodes in one house are similar, so they are not independent samples. The two-stage cluster bootstrap (Davison and
 Hinkley 1997, section 3.8) samples houses with replacement and, within each sampled house, as many of its episodes with
 replacement as the house has. The mean is over all sampled episodes. The interval is the 2.5 % and 97.5 % percentiles of
 the means. It describes other houses of the same kind, not only these.
 
 It is conservative: the mean of a sampled house varies with its episodes twice, in the data and in the second stage. In
 simulations with 20 houses of 10 episodes, intervals were 1.4 times as wide as those over episodes and contained the
-true mean in 98 % of the samples where houses are alike, and in 95 % where they differ much (those over episodes: 92 %
+true mean in 98 % of the samples where houses are similar, and in 95 % where they differ much (those over episodes: 92 %
 and 80 %).
 
 With one house there is no sample of houses. Its episodes are resampled alone, and the interval describes other
@@ -75,7 +75,7 @@ def estimate(values: Sequence[Value], houses: Sequence[str]) -> Estimate:
 
 
 def paired_difference(first: Sequence[Value], second: Sequence[Value], houses: Sequence[str]) -> Estimate:
-    """Returns the mean of second minus first over pairs, and its interval; a pair with a None does not count.
+    """Returns the mean of second minus first over pairs, and its interval; pairs with a None are ignored.
 
     Args:
         first: one value for each episode.
@@ -92,7 +92,7 @@ def paired_difference(first: Sequence[Value], second: Sequence[Value], houses: S
 def ratio_of_medians(
     first: Sequence[Value], second: Sequence[Value], houses: Sequence[str], *, resamples: int = RESAMPLES
 ) -> Estimate:
-    """Returns the median of second over the median of first, and its interval; a pair with a None does not count.
+    """Returns the median of second over the median of first, and its interval; pairs with a None are ignored.
 
     Each resample draws houses and then pairs of their episodes, as the module says, and takes both medians of them. A
     ratio to 0 is infinite.

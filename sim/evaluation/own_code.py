@@ -17,8 +17,8 @@ _LIBRARIES = tuple(Path(sysconfig.get_path(name)).resolve() for name in ("stdlib
 def place_of(error: BaseException, *, below: str) -> str:
     """Returns " (mine/agent.py, line 12)": the innermost line of the code that raised an error.
 
-    Code of the user counts before that of this project, and that before libraries: where a network of the user is fed
-    an array of a wrong shape, the line of the call is named and not one inside of PyTorch.
+    Code of the user has priority over this project, and this project over libraries: if a user's network gets an array
+    of a wrong shape, the message names the line of the call and not one inside of PyTorch.
 
     Args:
         error: it has been raised.

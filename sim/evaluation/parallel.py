@@ -94,7 +94,7 @@ class _NumberedItem:
 
     @property
     def house(self) -> str:
-        """The same for all items: a worker keeps nothing from one to the next."""
+        """The same for all items, because a worker keeps no state between items."""
         return ""
 
 

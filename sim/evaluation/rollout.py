@@ -98,7 +98,7 @@ class _Played:
     """The agent's confidence at its STOP."""
 
     def step(self) -> None:
-        """Asks the agent for an action and carries it out; what fails ends the episode."""
+        """Asks the agent for an action and carries it out; a failure ends the episode."""
         try:
             action = self._decide()
             self._carry_out(action)

@@ -1,8 +1,8 @@
 """Runs many work items on workers that may die: it assigns items, retries lost ones and ends when all are done.
 
 Each item gives one result line. A worker builds its runner when its first item arrives, and keeps a loaded house while
-items in that house remain. When a worker dies, its item is tried once more; no other item is affected. The kind of
-worker (process, Ray actor) is not known here; see `sim.evaluation.executors`.
+items in that house remain. When a worker dies, its item is tried once more; no other item is affected. This module
+does not depend on the kind of worker (process, Ray actor); see `sim.evaluation.executors`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""`njit` of numba without the import of numba, which takes longer than those of NumPy and OpenCV together.
+"""Defers the import of numba to the first call of a kernel; it takes longer than NumPy and OpenCV together.
 
-A list of the agents imports the agents with their kernels, but calls none of them.
+`--list-agents` imports the agents with their kernels, but does not call a kernel.
 """
 
 from __future__ import annotations

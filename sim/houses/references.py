@@ -1,7 +1,7 @@
 """Checks which other files an MJCF file may read: those of its own folder, and of folders that the user allows.
 
-MuJoCo opens whatever path a file names: of an included file, a mesh, a texture. A file from elsewhere is data, so that
-it must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
+MuJoCo opens every path that a file names: of an included file, a mesh, a texture. A file from elsewhere is data and
+must not choose paths: `<include file="../../x.xml"/>` and `<mesh file="/home/me/x.obj"/>` are refused, also behind a
 symbolic link. Textures may also lie in `../textures`, which the houses of a split share, and in the shipped folder. The
 user allows more with `--root FOLDER`, for packages whose files lie in folders next to each other.
 """

@@ -14,8 +14,8 @@ Next to `carrier.xml` there is a sidecar `carrier.json`:
 
 The file shows the robot at rest: +x ahead (or `heading_deg`), wheels on the ground. Masses, inertias and collision
 shapes are those of the file. The rest is replaced: the base is held upright, each wheel collides as a sphere of its
-radius, two motors with the same force per kilogram as those of our robot drive the wheels, and all other joints are
-fixed.
+radius, two motors with the same force per kilogram as those of the default robot drive the wheels, and all other
+joints are fixed.
 """
 
 from __future__ import annotations

@@ -41,13 +41,13 @@ class NoiseConfig:
 
 
 _D435_FOCAL_BASELINE = 388.0 * 0.05
-"""px m: our camera's focal length times the baseline of a RealSense D435; s px of disparity are s / this in 1 / z."""
+"""px m: the default focal length times the baseline of a RealSense D435; s px of disparity are s / this in 1 / z."""
 
 NOISE_PRESETS: Mapping[str, NoiseConfig] = MappingProxyType(
     {
         "none": NoiseConfig(),
         # Depth error 0.08 px and steps of 1/32 px (Intel); jitter 0.5 px (Handa). The shares at edges, the holes and
-        # the numbers of the other sensors are our choice for a good wheeled robot indoors.
+        # the numbers of the other sensors are assumptions for a good wheeled robot indoors.
         "realsense": NoiseConfig(
             depth=DepthNoise(
                 axial_m=0.001,

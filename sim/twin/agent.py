@@ -1,4 +1,4 @@
-"""The Stubborn agent in a plan: its map comes from the plan's camera, everything else is the agent itself."""
+"""Runs the Stubborn agent in a plan: its map comes from the plan's camera, the rest of the agent is unchanged."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class TwinConfig:
     window_cells: int = AgentConfig.window_cells
     """Edge of the window around the robot that is observed and planned on."""
     goal_radius_m: float = 0.5
-    """Any cell this near the goal will do."""
+    """Largest distance of an acceptable cell from the goal."""
     sight: SightConfig = field(default_factory=SightConfig)
     planning: PlanningConfig = field(default_factory=PlanningConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)

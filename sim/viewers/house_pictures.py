@@ -104,7 +104,7 @@ def draw_top(house: House, *, colours: NDArray[np.uint8] | None = None) -> Pictu
 def distinct_colours(categories: Sequence[str]) -> NDArray[np.uint8]:
     """Returns uint8 (41, 3): colours that are far from each other for these categories; structure is grey.
 
-    `PALETTE` gives a category the same colour in every picture, so that some of its 41 colours are alike.
+    `PALETTE` gives a category the same colour in every picture, so that some of its 41 colours are similar.
     """
     colours = PALETTE.copy()
     furniture = [name for name in categories if MPCAT40_ID[name] not in _STRUCTURE]

@@ -122,7 +122,7 @@ class LiveView:
         self._model, self._data = copy.copy(world.model), mujoco.MjData(world.model)
         ceiling = world.labels.geom_category == MPCAT40_ID["ceiling"]
         self._model.geom_group[ceiling] = CEILING_GROUP
-        self._model.geom_group[self._model.geom_group == ROBOT_GROUP] = 0  # hidden from our cameras, but not here
+        self._model.geom_group[self._model.geom_group == ROBOT_GROUP] = 0  # hidden from the sensors, but not here
         self._data.qpos[:] = world.data.qpos
         threads_before = set(threading.enumerate())
         self._handle, self._scene = _launch(self._model, self._data), scene

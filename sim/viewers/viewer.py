@@ -1,6 +1,6 @@
 """The interface of viewers: objects such as a video, a window or a log that are informed of each step of an episode.
 
-`sim.evaluation.rollout.play_episode` calls the methods of each `Viewer`; a viewer changes nothing. The agent's map is
+`sim.evaluation.rollout.play_episode` calls the methods of each `Viewer`; a viewer changes no state. The agent's map is
 drawn by a `MapPainter` that comes with the agent; `sim.viewers.topview` is one that draws the true floor plan.
 """
 

@@ -22,7 +22,7 @@ _WAITING_ACTIONS = 4
 class Interrupted(BaseException):
     """The episode is to end without a result: another was asked for, or the server stops.
 
-    Like KeyboardInterrupt it is not an Exception, which `play_episode` would take for a failure of the agent.
+    Like KeyboardInterrupt it is not an Exception: `play_episode` would count one as a failure of the agent.
     """
 
 
@@ -89,13 +89,13 @@ class Controls:
             self._changed.notify_all()
 
     def redraw(self) -> None:
-        """Asks for the pictures of the current moment once more, because a client shows others."""
+        """Requests the pictures of the current moment again, because a client shows others."""
         with self._changed:
             self._redraw = True
             self._changed.notify_all()
 
     def ask_for(self, wish: Wish) -> None:
-        """Asks for another episode; the running one ends."""
+        """Requests another episode; the running one ends."""
         with self._changed:
             self._wish = wish
             self._changed.notify_all()
@@ -121,7 +121,7 @@ class Controls:
             return wish
 
     def choose(self, advised: Action) -> Choice | None:
-        """Waits until an action is due, and returns it: the agent's, or that of the person who drives.
+        """Waits until an action is due, and returns it: the agent's, or the driver's.
 
         None: the current moment is to be shown again.
 

@@ -47,7 +47,7 @@ HOUSE_SIZES = Bins((0.0, 60.0, 80.0, 100.0, 125.0, 150.0, 300.0, 500.0), "m²", 
 """Bins of the floor area of all rooms of a house."""
 FIRST_SIGHTS = Bins((0.0, 1.0, 10.0, 25.0, 50.0, 100.0, 200.0), "steps", NEVER)
 FIRST_SIGHT_LABELS = ("0", "1 to 9", "10 to 24", "25 to 49", "50 to 99", "100 to 199", "200 on", NEVER)
-"""Labels of the bins of `FIRST_SIGHTS`, whose numbers are whole."""
+"""Labels of the bins of `FIRST_SIGHTS`, which are whole numbers."""
 
 
 @dataclass(frozen=True)
