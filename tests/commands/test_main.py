@@ -84,7 +84,7 @@ def test_a_group_alone_lists_its_commands(group: str, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
-    ("typed", "told"),
+    ("typed", "message"),
     [
         ("rnu --episodes 3", "There is no command 'rnu'. Did you mean 'run'?"),
         ("houses generat", "There is no command 'houses generat'. Did you mean 'houses generate'?"),
@@ -94,10 +94,10 @@ def test_a_group_alone_lists_its_commands(group: str, capsys: pytest.CaptureFixt
     ],
 )
 def test_an_unknown_command_is_one_line_with_the_nearest_name(
-    typed: str, told: str, capsys: pytest.CaptureFixture[str]
+    typed: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert entry(typed.split(" ")) == 2
-    assert capsys.readouterr().err == f"error: {told} `stubborn` lists all commands.\n"
+    assert capsys.readouterr().err == f"error: {message} `stubborn` lists all commands.\n"
 
 
 def test_a_group_with_a_default_takes_options_directly(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -55,9 +55,9 @@ def test_a_table_of_two_agents_is_played_written_and_not_played_again(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert reproduce.main(args) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     # The agents take turns.
-    assert [part.split(" ")[0] for part in told.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
+    assert [part.split(" ")[0] for part in output.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
     page = (args.out / "tables" / f"{stem(args)}.md").read_text()
     assert "| goal (episodes) | oracle | examples.my_agent:make | oracle - examples.my_agent:make |" in page
     assert "| all (2) | 100.0" in page
@@ -108,7 +108,7 @@ def test_minutes_that_are_used_up_leave_a_table_of_what_all_have_played(
 
 
 def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduce.Args) -> None:
-    failing = replace(args, table="failures", agents=("tests.helpers.players:make_quitter", "oracle"), episodes=1)
+    failing = replace(args, table="failures", agents=("tests.helpers.runners:make_quitter", "oracle"), episodes=1)
     reproduce.main(failing)
     results = next(args.out.glob("tests.helpers*")) / "results.jsonl"
     line = json.loads(results.read_text())
@@ -205,8 +205,8 @@ def test_many_options_get_a_checksum_in_the_name_of_the_folder(args: reproduce.A
 def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
     reproduce.main(args)
     setup, other = reproduce.AgentSetup("oracle", "gt"), replace(args, seed=7, noise="harsh")
-    told = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
-    assert "sensor noise none, seed 0," in told
+    note = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
+    assert "sensor noise none, seed 0," in note
 
 
 def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: Path, tmp_path: Path) -> None:
@@ -234,7 +234,7 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"table": "everything"}, "There is no table 'everything'"),
         ({"agents": ("stuborn",)}, "stuborn"),
@@ -242,8 +242,8 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
         ({"episodes": 5}, "has 4 episodes"),
     ],
 )
-def test_what_cannot_be_played_is_told_before_anything_is(args: reproduce.Args, change: dict, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_what_cannot_be_played_is_told_before_anything_is(args: reproduce.Args, change: dict, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         reproduce.main(replace(args, **change))
     assert not list(args.out.iterdir())
 
@@ -255,9 +255,9 @@ def test_two_folders_of_runs_are_compared_pair_by_pair(
     capsys.readouterr()
     folders = compare_runs.Args(first=args.out / MINE, second=args.out / ORACLE, out=args.out / "compared")
     assert compare_runs.main(folders) == 0
-    told = capsys.readouterr().out
-    assert "B - A, paired over 2 episodes" in told
-    assert "Fields in which the runs differ" in told
+    output = capsys.readouterr().out
+    assert "B - A, paired over 2 episodes" in output
+    assert "Fields in which the runs differ" in output
     page = (args.out / "compared" / "comparison.md").read_text()
     assert "| success % |" in page
     assert f'| agent | "{AGENTS[1]}" | "oracle" |' in page
@@ -271,8 +271,8 @@ def test_several_splits_take_turns_and_share_a_page(
     (other / "tiny.json.gz").rename(other / "small.json.gz")
     both = replace(args, table="splits", splits=(str(split), str(other)))
     assert reproduce.main(both) == 0
-    told = capsys.readouterr().out
-    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes? of (tiny|small)", told)
+    output = capsys.readouterr().out
+    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes? of (tiny|small)", output)
     assert order == [(agent, of) for _ in range(2) for of in ("tiny", "small") for agent in ("oracle", "my_agent:make")]
     names = {file.name for file in (args.out / "tables").glob("splits_*.md")}
     agents = "gt_oracle+examples.my_agent_make"

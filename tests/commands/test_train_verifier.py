@@ -36,7 +36,7 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
+def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
     """The log after this number of episodes; it holds too few candidates for a fit."""
     args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
     with pytest.raises(ConfigError, match="500 of either are needed"):
@@ -45,7 +45,7 @@ def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> lis
 
 
 def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
-    first = played(split, tmp_path, 2)
+    first = log_after(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     candidates = [each for line in first for each in line["candidates"]]
     assert any(each[4] == 1.0 for each in candidates)  # it reached the sofa, where a STOP would have succeeded
@@ -58,7 +58,7 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split
         assert 0.5 < highest <= 1.0
         assert highest <= total + 1e-3 <= views + 2e-3
         assert 0.0 <= other <= 1.0
-    more = played(split, tmp_path, 3)
+    more = log_after(split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
@@ -71,7 +71,7 @@ def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, 
         return observation, reward, env.scene.task.num_steps >= 5, truncated, info
 
     monkeypatch.setattr(ObjectNavEnv, "step", fallen_after_5)
-    (line,) = played(split, tmp_path, 1)
+    (line,) = log_after(split, tmp_path, 1)
     assert line["steps"] == 5
 
 
@@ -135,13 +135,13 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
     monkeypatch.setattr(train_verifier, "KINDS", {"noisy": exact})
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
-    played(folder, tmp_path / "log", 3, max_steps=120)
+    log_after(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
     assert len(asked) == len(judged)  # candidates that are only seen from afar are not logged
 
 
 def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
-    one = played(split, tmp_path / "one", 3)
+    one = log_after(split, tmp_path / "one", 3)
     args = train_verifier.Args(
         split=str(split), episodes=3, max_steps=30, least_of_either=500, log=tmp_path / "two", workers=2
     )

@@ -35,7 +35,7 @@ class Browser:
             profile: an empty folder that the browser may fill.
             width: of the page, pixels.
             height: of the page, pixels.
-            dark: whether pages are told to be dark.
+            dark: whether pages prefer the dark colour scheme.
         """
         binary = next(path for path in map(shutil.which, BINARIES) if path)
         self._driver = subprocess.Popen(
@@ -73,7 +73,7 @@ class Browser:
 
     def visit(self, address: str) -> None:
         """Open a page by its address, as `open` does."""
-        self.complaints()
+        self.console_errors()
         self.requests()
         self._call("POST", "/url", {"url": address})
 
@@ -89,7 +89,7 @@ class Browser:
         """Type into the first element that fits."""
         self._call("POST", f"/element/{self._find(css)}/value", {"text": text})
 
-    def complaints(self) -> list[str]:
+    def console_errors(self) -> list[str]:
         """Errors and warnings of the console since the last time."""
         log = self._call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in log if entry["level"] in {"SEVERE", "WARNING"}]

@@ -28,7 +28,7 @@ class Row(msgspec.Struct):
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         ("", "is empty"),
         ("\0\0\0\0", "is empty"),
@@ -47,17 +47,17 @@ class Row(msgspec.Struct):
         ("1" * 10_000, "rows.json"),
     ],
 )
-def test_content_of_another_type_is_one_line_that_names_the_field(content: str, told: str, tmp_path: Path) -> None:
+def test_content_of_another_type_is_one_line_that_names_the_field(content: str, message: str, tmp_path: Path) -> None:
     file = tmp_path / "rows.json"
     file.write_text(content)
-    with pytest.raises(HouseError, match=told) as caught:
+    with pytest.raises(HouseError, match=message) as caught:
         reading.read_json(file, Row, what="Rows", error=HouseError)
     assert str(file) in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b'{"name": "a", "at": []}\n\n{"name": "b", "at": []}\n', "line 2 is empty"),
         (b'{"name": "a", "at": []}\n\0\0\0\0\n', "line 2 is empty"),
@@ -65,9 +65,9 @@ def test_content_of_another_type_is_one_line_that_names_the_field(content: str, 
         (b'{"name": "a", "at": []}\n[]\n', "line 2: expected object, got array"),
     ],
 )
-def test_a_broken_line_is_named_by_its_number(content: bytes, told: str, tmp_path: Path) -> None:
+def test_a_broken_line_is_named_by_its_number(content: bytes, message: str, tmp_path: Path) -> None:
     (tmp_path / "rows.jsonl").write_bytes(content)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         reading.read_lines(tmp_path / "rows.jsonl", Row, what="Rows")
 
 

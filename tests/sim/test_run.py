@@ -182,7 +182,7 @@ BROKEN_HOUSES = {
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (("--agent", "stuborn"), "stuborn"),
         (("--agent", "nowhere.at_all:make"), "nowhere"),
@@ -206,7 +206,7 @@ BROKEN_HOUSES = {
 )
 def test_a_wrong_option_is_one_line_and_status_2(
     options: tuple[str, ...],
-    told: str,
+    message: str,
     house: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -218,10 +218,10 @@ def test_a_wrong_option_is_one_line_and_status_2(
         (tmp_path / name).write_text(content)
     monkeypatch.chdir(tmp_path)
     assert entry([str(house) if option == "HOUSE" else option for option in options]) == 2
-    complaint = capsys.readouterr().err
-    assert complaint.startswith("error: ")
-    assert complaint.count("\n") == 1
-    assert told in complaint
+    printed = capsys.readouterr().err
+    assert printed.startswith("error: ")
+    assert printed.count("\n") == 1
+    assert message in printed
 
 
 def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
@@ -229,20 +229,20 @@ def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
 ) -> None:
     from sim.run import entry
 
-    def played(episodes: int) -> tuple[str, list[str]]:
-        options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+    def run_quitter(episodes: int) -> tuple[str, list[str]]:
+        options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
         assert entry([*options, "--episodes", str(episodes)]) == 0
         return capsys.readouterr().out, json.loads((tmp_path / "config.json").read_text())["codes"]
 
-    out, (code,) = played(1)
+    out, (code,) = run_quitter(1)
     assert "by other code" not in out
     assert re.fullmatch(rf"{code_hash()}\+[0-9a-f]{{12}}", code)  # "+" and the user's own
     config = json.loads((tmp_path / "config.json").read_text())
     (tmp_path / "config.json").write_text(json.dumps(config | {"codes": ["0lder"]}))
-    out, codes = played(1)
-    assert "by other code" not in out  # nothing was played
+    out, codes = run_quitter(1)
+    assert "by other code" not in out  # no episode was run
     assert codes == ["0lder"]
-    out, codes = played(2)
+    out, codes = run_quitter(2)
     assert [line for line in out.splitlines() if "0lder" in line] == [
         f"The episodes that were there were run by other code (0lder) than these ({code})."
     ]
@@ -254,7 +254,7 @@ def test_a_run_that_goes_on_after_an_edit_of_the_agent_says_so(
 ) -> None:
     monkeypatch.syspath_prepend(tmp_path)
     mine = tmp_path / "edited_agent.py"
-    mine.write_text("from tests.helpers.players import make_quitter as make\n")
+    mine.write_text("from tests.helpers.runners import make_quitter as make\n")
     options = ["--agent", "edited_agent:make", "--house", str(house), "--out", str(tmp_path / "run")]
     assert entry([*options, "--episodes", "1"]) == 0
     mine.write_text(mine.read_text() + "GAIN = 2\n")
@@ -275,20 +275,20 @@ def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path
 def test_the_split_for_last_measurements_is_announced_in_one_line_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
     for split, lines in (("test", 2), ("val", 1)):
         assert entry(["--split", split, "--episodes", "100000"]) == 2
-        told = capsys.readouterr()
-        assert ("last measurement" in told.err) == (split == "test")
-        assert len(told.err.strip().splitlines()) == lines
-        assert told.out == ""
+        captured = capsys.readouterr()
+        assert ("last measurement" in captured.err) == (split == "test")
+        assert len(captured.err.strip().splitlines()) == lines
+        assert captured.out == ""
 
 
 def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_numba_nor_video() -> None:
     """They take more than half of the time of a start."""
     code = "import sys; from sim.run import entry; entry(['--list-agents']); print(sorted(sys.modules))"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert "stubborn-plus" in told
-    assert "sim.composition.agents" in told
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert "stubborn-plus" in output
+    assert "sim.composition.agents" in output
     for package in ("'mujoco'", "'torch'", "'numba'", "'av'", "'OpenGL'"):
-        assert package not in told
+        assert package not in output
 
 
 def test_only_the_named_episodes_of_a_split_are_run_and_others_can_follow(
@@ -301,21 +301,21 @@ def test_only_the_named_episodes_of_a_split_are_run_and_others_can_follow(
     assert entry([*options, "--only", "narrow_gap_1", "low_slab_0"]) == 0
     assert len(lines_of(tmp_path / "run")) == 3
     assert entry([*options, "--only", "narow_gap_1"]) == 2
-    told = "error: --only 'narow_gap_1': split 'traps' has no such episode. Did you mean 'narrow_gap_1'?"
-    assert capsys.readouterr().err.strip() == told
+    message = "error: --only 'narow_gap_1': split 'traps' has no such episode. Did you mean 'narrow_gap_1'?"
+    assert capsys.readouterr().err.strip() == message
     assert entry(["--house", "examples/my_house.xml", "--only", "narrow_gap_1"]) == 2
     assert "--only names episodes of a split" in capsys.readouterr().err
 
 
 def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(["--goal", "toilett"]) == 2
-    told = capsys.readouterr().err
-    assert "--goal 'toilett'" in told
-    assert "Did you mean 'toilet'? It has: chair, table," in told
-    assert "--episodes" not in told
+    message = capsys.readouterr().err
+    assert "--goal 'toilett'" in message
+    assert "Did you mean 'toilet'? It has: chair, table," in message
+    assert "--episodes" not in message
     assert entry(["--goal", "toilet", "--episodes", "9999"]) == 2
-    told = capsys.readouterr().err
-    assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", told)
+    message = capsys.readouterr().err
+    assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", message)
 
 
 def test_a_shard_without_episodes_says_so_and_leaves_nothing(

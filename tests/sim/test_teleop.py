@@ -109,9 +109,9 @@ def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request
     cockpit = Script(["g", "c", "m", "p", "p", "?", "x"])
     line = play_episode(env, teleop.Human(env, cockpit), env.split.episodes[0], seed=0)
     assert line["num_steps"] == 1
-    told = [" ".join(screen[:2]) for screen in cockpit.screens]
-    assert [f"{line['shortest_path']:.1f} m" in head for head in told] == [False, True] + [False] * 5
-    assert "the agent would" in told[4]
+    heads = [" ".join(screen[:2]) for screen in cockpit.screens]
+    assert [f"{line['shortest_path']:.1f} m" in head for head in heads] == [False, True] + [False] * 5
+    assert "the agent would" in heads[4]
 
 
 def test_the_map_learns_collisions_from_what_was_driven_not_from_what_it_would_have_done(env: ObjectNavEnv) -> None:

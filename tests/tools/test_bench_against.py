@@ -15,9 +15,9 @@ pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reas
 
 def test_a_wrong_ref_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
     assert bench_against.entry(["--against", "no-such-release"]) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: --against 'no-such-release' names no commit, tag or branch")
-    assert told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: --against 'no-such-release' names no commit, tag or branch")
+    assert message.count("\n") == 1
 
 
 @pytest.mark.parametrize("ref", ["", "--all", "HEAD:README.md"])

@@ -72,7 +72,7 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"agent": "stubborn-plus"}, "the agent 'stubborn-plus', which the twin cannot play. It plays: stubborn, "),
         ({"agent": "latest-frame"}, "the twin cannot play"),
@@ -85,14 +85,14 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
         ({"semantics": "noisy"}, "has --semantics noisy; the twin has ground truth"),
     ],
 )
-def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[str, Any], told: str):
+def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[str, Any], message: str):
     record(run, **options)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         check_twin.main(check_twin.Args(plans=run.parent / "plans", runs=(run,), explore=True))
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "told"),
+    ("name", "content", "message"),
     [
         ("results.jsonl", "{\n", "line 1 is not JSON"),
         ("results.jsonl", json.dumps(FAILED) + "\n", "has no trajectory: give folders of runs made with --record"),
@@ -105,9 +105,9 @@ def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[s
         ("trajectories/e0.npz", "", "is no trajectory"),
     ],
 )
-def test_a_broken_run_is_named_in_a_sentence(run: Path, name: str, content: str, told: str):
+def test_a_broken_run_is_named_in_a_sentence(run: Path, name: str, content: str, message: str):
     (run / name).write_text(content)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         check_twin.main(check_twin.Args(plans=run.parent / "plans", runs=(run,), explore=True))
 
 

@@ -129,7 +129,7 @@ def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("other", "told"),
+    ("other", "message"),
     [
         ({"house": "house_1"}, 'house "house_0" and "house_1"'),
         ({"goal": "sofa"}, 'goal "bed" and "sofa"'),
@@ -137,9 +137,9 @@ def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) 
         ({"shortest_path": None}, "shortest_path 4.2 and null"),
     ],
 )
-def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, told: str, tmp_path: Path) -> None:
+def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, message: str, tmp_path: Path) -> None:
     first, second = read_run(run_folder(tmp_path / "a", "ab")), read_run(run_folder(tmp_path / "b", "bc", **other))
-    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(told)}"):
+    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(message)}"):
         require_same_episodes(first, second)
 
 

@@ -63,12 +63,12 @@ def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semanti
     ],
 )
 def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
-    assignment: str, message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    assignment: str, expected: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert entry(["--semantics", "gt", "--config", assignment, "--out", str(tmp_path / "run")]) == 2
-    complaint = capsys.readouterr().err
-    assert message in complaint
-    assert complaint.count("\n") == 1
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
     assert not (tmp_path / "run").exists()
 
 

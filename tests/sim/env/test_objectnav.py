@@ -185,7 +185,7 @@ def test_the_robot_is_in_no_image(house: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "error", "told"),
+    ("options", "error", "message"),
     [
         ({"sensors": ("rgb", "thermal")}, ConfigError, "thermal"),
         ({"profile": "best"}, ConfigError, "best"),
@@ -196,8 +196,8 @@ def test_the_robot_is_in_no_image(house: Path) -> None:
         ({"house": None, "split": "nosplit"}, ConfigError, "val"),
     ],
 )
-def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exception], told: str) -> None:
-    with pytest.raises(error, match=told):
+def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
         ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
 
 
@@ -228,7 +228,7 @@ def test_a_closed_environment_says_so(house: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"episode": None, "episode_id": "a"}, "one of the options episode and episode_id"),
         ({"epsiode_id": "a"}, "got epsiode_id"),
@@ -236,13 +236,13 @@ def test_a_closed_environment_says_so(house: Path) -> None:
         ({"episode": None}, "must be an Episode, got None"),
     ],
 )
-def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         env.reset(options=options)
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "message"),
     [
         (lambda: ObjectNavEnv(labels="rules.json"), "labels, root and start need house"),
         (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels, root and start need house"),
@@ -260,6 +260,6 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
         (lambda: Episode("e", "h", "spoon", Pose(0.0, 0.0, 0.0)), "Unknown goal 'spoon'"),
     ],
 )
-def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], told: str) -> None:
-    with pytest.raises((ConfigError, EpisodeError), match=told):
+def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], message: str) -> None:
+    with pytest.raises((ConfigError, EpisodeError), match=message):
         make()

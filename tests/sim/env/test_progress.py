@@ -56,9 +56,9 @@ def test_a_collision_costs_its_price(options: dict[str, Any]) -> None:
 
 def test_a_step_without_a_path_counts_as_no_progress(options: dict[str, Any]) -> None:
     env = gymnasium.make(ENV_ID, **options)
-    told = ProgressReward(_Told(env, [3.0, None, 2.0, 1.5]), per_step=0.0)
-    told.reset(seed=0)
-    assert [told.step(LEFT)[1] for _ in range(3)] == [0.0, 0.0, 0.5]
+    rewarded = ProgressReward(_GivenDistances(env, [3.0, None, 2.0, 1.5]), per_step=0.0)
+    rewarded.reset(seed=0)
+    assert [rewarded.step(LEFT)[1] for _ in range(3)] == [0.0, 0.0, 0.5]
     env.close()
 
 
@@ -79,7 +79,7 @@ def test_an_environment_without_distances_and_weights_that_are_no_numbers_are_re
         ProgressReward(gymnasium.make("CartPole-v1"), per_metre=math.nan)
 
 
-class _Told(gymnasium.Wrapper):
+class _GivenDistances(gymnasium.Wrapper):
     """An environment that reports given distances."""
 
     def __init__(self, env: gymnasium.Env, distances: list[float | None]) -> None:

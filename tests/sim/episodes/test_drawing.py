@@ -44,12 +44,12 @@ def test_no_start_is_in_a_closet_without_a_door():
 
 
 def test_the_same_stream_draws_the_same_episode_and_another_another():
-    def drawn(seed):
+    def sampled(seed):
         return sample_episode(TASK, "h", np.random.default_rng(seed))
 
-    assert drawn(3) == drawn(3)
-    assert drawn(3) != drawn(4)
-    assert {drawn(seed).goal for seed in range(12)} == {"bed", "table"}
+    assert sampled(3) == sampled(3)
+    assert sampled(3) != sampled(4)
+    assert {sampled(seed).goal for seed in range(12)} == {"bed", "table"}
 
 
 def test_a_given_goal_and_start_are_kept():

@@ -22,10 +22,10 @@ from sim.evaluation.results import RunDirectory
 from sim.evaluation.rollout import TIMES
 from sim.evaluation.workers import MAX_FAILED_STARTS, RunnerSpec, WorkerLost, run_in_pool
 from sim.interface import ConfigError
-from tests.helpers.players import Job, die, die_the_first_time, slow_double
+from tests.helpers.runners import Job, die, die_the_first_time, slow_double
 from tests.helpers.worlds import room, with_box
 
-SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
+SPEC = RunnerSpec("tests.helpers.runners:make_runner", None)
 
 
 def jobs(count: int) -> list[Job]:
@@ -124,9 +124,9 @@ def test_a_shard_that_does_not_exist_is_refused(text: str) -> None:
     ],
 )
 def test_options_that_contradict_each_other_are_refused(options: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(ConfigError) as told:
+    with pytest.raises(ConfigError) as raised:
         make_executor(**{"workers": 1, **options})
-    assert str(told.value) == sentence
+    assert str(raised.value) == sentence
 
 
 def test_without_ray_one_sentence_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -218,9 +218,9 @@ def test_workers_end_with_the_process_that_started_them_in_the_middle_of_an_item
     code = f"""
 from pathlib import Path
 from sim.evaluation.parallel import ordered_map
-from tests.helpers.players import tell_and_sleep
+from tests.helpers.runners import write_pid_and_sleep
 if __name__ == "__main__":
-    list(ordered_map(tell_and_sleep, [Path({str(markers[0])!r}), Path({str(markers[1])!r})], workers=2))
+    list(ordered_map(write_pid_and_sleep, [Path({str(markers[0])!r}), Path({str(markers[1])!r})], workers=2))
 """
     (tmp_path / "main.py").write_text(code)
     path = os.pathsep.join([str(Path(__file__).parents[3]), os.environ.get("PYTHONPATH", "")])

@@ -203,7 +203,7 @@ def write_lines(folder: Path, *lines: dict | str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         ([line(1), line(1)], "line 2: episode 'e1' has the same result in line 1"),
         ([line(1), line(2), line(1, success=0.0)], "line 3: episode 'e1' has another result in line 1"),
@@ -220,16 +220,18 @@ def write_lines(folder: Path, *lines: dict | str) -> None:
         (['{"spl": NaN}'], "line 1 is not JSON"),
     ],
 )
-def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: list, told: str, tmp_path: Path) -> None:
+def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(
+    lines: list, message: str, tmp_path: Path
+) -> None:
     write_lines(tmp_path, *lines)
-    with pytest.raises(ConfigError, match=re.escape(told)):
+    with pytest.raises(ConfigError, match=re.escape(message)):
         RunDirectory(tmp_path, CONFIG | {"seed": 0})
     (tmp_path / "results.jsonl").write_text("")
     RunDirectory(tmp_path, CONFIG | {"seed": 0}).close()  # it is not locked
 
 
 @pytest.mark.parametrize(
-    ("episodes", "told"),
+    ("episodes", "message"),
     [
         ({"e1": ("h1", "bed")}, None),
         ({"e2": ("h1", "bed")}, "line 1: 'e1' is no episode of this run"),
@@ -237,10 +239,10 @@ def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: l
         ({"e1": ("h1", "sofa")}, "line 1: goal is 'bed', but 'sofa'"),
     ],
 )
-def test_lines_of_another_split_are_refused(episodes: dict, told: str | None, tmp_path: Path) -> None:
+def test_lines_of_another_split_are_refused(episodes: dict, message: str | None, tmp_path: Path) -> None:
     write_lines(tmp_path, line(1))
     run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
-    with contextlib.nullcontext() if told is None else pytest.raises(ConfigError, match=told):
+    with contextlib.nullcontext() if message is None else pytest.raises(ConfigError, match=message):
         run.require_of(episodes)
     run.close()
 

@@ -47,8 +47,8 @@ import numpy as np
 from stubborn.kernels.grids import distance_within
 print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0], "numba" in sys.modules)
 """
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert told.split() == ["False", "0.0", "True"]
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert output.split() == ["False", "0.0", "True"]
 
 
 def test_an_empty_cache_means_that_kernels_are_compiled_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

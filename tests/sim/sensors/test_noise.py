@@ -324,7 +324,7 @@ def noisy(house: Path) -> Iterator[ObjectNavEnv]:
     env.close()
 
 
-def play(env: ObjectNavEnv, seed: int, steps: int = 4) -> list[dict[str, np.ndarray]]:
+def observations_of(env: ObjectNavEnv, seed: int, steps: int = 4) -> list[dict[str, np.ndarray]]:
     seen = [env.reset(seed=seed)[0]]
     return seen + [env.step(Action.MOVE_FORWARD)[0] for _ in range(steps)]
 
@@ -336,9 +336,9 @@ def same(one: list[dict[str, np.ndarray]], other: list[dict[str, np.ndarray]], *
 
 
 def test_the_same_seed_gives_the_same_noise_after_any_other_episode(noisy: ObjectNavEnv) -> None:
-    first = play(noisy, 7)
-    other = play(noisy, 8)
-    assert same(first, play(noisy, 7))
+    first = observations_of(noisy, 7)
+    other = observations_of(noisy, 8)
+    assert same(first, observations_of(noisy, 7))
     for name in ("rgb", "depth", "gps", "compass"):
         assert not same(first, other, name), name
 
@@ -353,7 +353,7 @@ def test_depth_does_not_depend_on_the_other_sensors(noisy: ObjectNavEnv, house: 
     lone = ObjectNavEnv(
         house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.3), camera=SMALL, noise="harsh", sensors=("depth",)
     )
-    assert same(play(lone, 7), play(noisy, 7), "depth", "gps", "compass")
+    assert same(observations_of(lone, 7), observations_of(noisy, 7), "depth", "gps", "compass")
     lone.close()
 
 
@@ -368,7 +368,7 @@ def test_noise_none_changes_nothing_and_needs_no_image(house: Path) -> None:
         ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.3), camera=SMALL, **options)
         for options in options_of_each
     )
-    assert same(play(default, 0), play(named, 3))
+    assert same(observations_of(default, 0), observations_of(named, 3))
     default.close()
     named.close()
 
@@ -424,7 +424,7 @@ def test_the_true_readings_are_not_changed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("config", "values", "told"),
+    ("config", "values", "message"),
     [
         (DepthNoise, {"axial_m": -0.1}, "axial_m"),
         (DepthNoise, {"lateral_px": math.nan}, "lateral_px"),
@@ -443,8 +443,8 @@ def test_the_true_readings_are_not_changed() -> None:
         (Conditions, {"motor_gain_scale": (1.0, math.nan)}, "motor_gain_scale"),
     ],
 )
-def test_a_value_out_of_range_is_refused(config: type, values: Mapping[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_a_value_out_of_range_is_refused(config: type, values: Mapping[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         config(**values)
 
 
@@ -461,7 +461,7 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "message"),
     [
         ("loud", "none, realsense, harsh"),
         ({"preset": "loud"}, "none, realsense, harsh"),
@@ -474,6 +474,6 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
         (7, "7"),
     ],
 )
-def test_an_invalid_noise_file_is_refused_with_what_is_allowed(given: Any, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_an_invalid_noise_file_is_refused_with_what_is_allowed(given: Any, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         noise_from_dict(given)

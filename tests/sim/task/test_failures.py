@@ -30,7 +30,7 @@ def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = 
     share = np.full(n + 1, UNSEEN, np.float32)
     if seen_at is not None:
         share[seen_at] = SEEN
-    told = {"distance_m": np.full(n + 1, 9.0, np.float32), "nearest_instance_m": 9.0, "goal_on_storey": True} | known
+    values = {"distance_m": np.full(n + 1, 9.0, np.float32), "nearest_instance_m": 9.0, "goal_on_storey": True} | known
     return Trajectory(
         poses=poses,
         actions=np.ones(n, np.uint8),
@@ -41,7 +41,7 @@ def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = 
         contacts=np.zeros((0, 3), np.float32),
         success=False,
         end_reason=end,
-        **told,  # pyright: ignore[reportArgumentType]
+        **values,  # pyright: ignore[reportArgumentType]
     )
 
 

@@ -145,7 +145,7 @@ def _pickled(file: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("harm", "told"),
+    ("harm", "message"),
     [
         (lambda file: file.unlink(), "--record"),
         (lambda file: file.write_text("no archive"), "is no trajectory"),
@@ -157,10 +157,10 @@ def _pickled(file: Path) -> None:
         (_place_of_one_number, "stop_target_xy_m"),
     ],
 )
-def test_a_file_that_is_no_trajectory_is_named(harm, told: str, tmp_path: Path) -> None:
+def test_a_file_that_is_no_trajectory_is_named(harm, message: str, tmp_path: Path) -> None:
     file = tmp_path / "e.npz"
     write_trajectory(file, walked(5), {})
     harm(file)
-    with pytest.raises(ConfigError, match=told) as complaint:
+    with pytest.raises(ConfigError, match=message) as refusal:
         read_trajectory(file)
-    assert "e.npz" in str(complaint.value)
+    assert "e.npz" in str(refusal.value)

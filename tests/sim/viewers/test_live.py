@@ -48,7 +48,7 @@ def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
     env.close()
 
 
-def played(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
+def line_of(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
     line = play_episode(env, Script(), EPISODE, seed=0, viewers=viewers)
     return {key: value for key, value in line.items() if key not in TIMES}
 
@@ -93,9 +93,9 @@ def windows(monkeypatch: pytest.MonkeyPatch) -> list[Handle]:
 def test_the_viewer_shows_each_action_glide_to_where_it_led_and_changes_no_line(
     env: ObjectNavEnv, windows: list[Handle]
 ) -> None:
-    plain = played(env)
+    plain = line_of(env)
     view = live.LiveView()
-    assert played(env, view) == plain
+    assert line_of(env, view) == plain
     (window,) = windows
     assert len(window.shown) > 3 * len(ACTIONS)
     assert np.array_equal(window.shown[-1], env.scene.world.data.qpos)
@@ -133,15 +133,15 @@ def test_each_house_has_its_window_but_one_that_was_closed_stays_closed_and_the_
         monkeypatch.setattr(env, "_scenes", SceneCache(env._scenes._make))
 
     view = live.LiveView()
-    plain = played(env, view)
-    played(env, view)
+    plain = line_of(env, view)
+    line_of(env, view)
     assert len(windows) == 1
     next_house()
-    played(env, view)
+    line_of(env, view)
     assert [window.open for window in windows] == [False, True]
     windows[1].close()
     next_house()
-    assert played(env, view) == plain
+    assert line_of(env, view) == plain
     assert len(windows) == 2
 
 
@@ -160,15 +160,15 @@ def options(**given: Any) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "message"),
     [
         ({"view": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "rerun_save": True}, "only one of them"),
     ],
 )
-def test_what_does_not_go_together_is_told(given: dict[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_what_does_not_go_together_is_told(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         selection.check(options(**given))
 
 
@@ -202,8 +202,8 @@ def test_points_lie_on_the_walls_they_were_seen_on(env: ObjectNavEnv) -> None:
 
 def test_a_recording_holds_poses_images_points_and_map_and_changes_no_line(env: ObjectNavEnv, tmp_path: Path) -> None:
     pytest.importorskip("rerun", reason="the extra `rerun` (170 MB) is not installed")
-    plain = played(env)
-    assert played(env, rerun_log.RerunLog(tmp_path)) == plain
+    plain = line_of(env)
+    assert line_of(env, rerun_log.RerunLog(tmp_path)) == plain
     (file,) = (tmp_path / "rerun").iterdir()
     assert file == rerun_log.rerun_file(tmp_path, EPISODE.episode_id)
     content = file.read_bytes()

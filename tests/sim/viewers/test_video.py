@@ -110,7 +110,7 @@ def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tm
 
 
 def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp_path: Path) -> None:
-    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+    options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
     assert entry([*options, "--episodes", "1"]) == 0
     assert not (tmp_path / "videos").exists()
     assert entry([*options, "--episodes", "3", "--video", "--workers", "2"]) == 0

@@ -212,7 +212,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
     browser.click("#close-outcome")
     assert browser.run(closing)
     assert browser.run("return document.getElementById('doing').textContent").startswith("The STOP counts")
-    with server.connect():  # another page tells this one the same end again
+    with server.connect():  # another page sends this page the same end again
         wait_for(lambda: "2 pages" in browser.run("return document.getElementById('link').textContent"))
         assert browser.run(closing)
     drawn = browser.run("""
@@ -223,7 +223,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
         }).map((figure) => figure.dataset.name);
     """)
     assert {"camera", "chase", "plan", "semantic", "depth"} <= set(drawn)
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
     assert all(address.startswith((server.address, "blob:", "data:")) for address in browser.requests())
 
 
@@ -258,9 +258,10 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
         assert browser.run("return document.querySelector('#driver').textContent") == "stubborn"
         browser.click('[data-action="0"]')
         ended = state_of(second, "ended")
-    told = ended["outcome"]["sentence"]  # a person's STOP is no false detection; the agent may have driven near the bed
-    assert "came too early" in told or "The STOP counts" in told
-    assert browser.complaints() == []
+    # The STOP of a person is not a false detection. The agent may have driven near the bed.
+    sentence = ended["outcome"]["sentence"]
+    assert "came too early" in sentence or "The STOP counts" in sentence
+    assert browser.console_errors() == []
 
 
 def frame_now(browser: Browser) -> int:
@@ -293,7 +294,7 @@ def test_a_page_that_was_left_is_not_counted_and_the_back_button_brings_it_back(
     browser.open(tmp_path / "other.html")
     browser.visit(f"{server.address}/#again")
     wait_for(lambda: browser.run(link).startswith("connected"))
-    time.sleep(0.3)  # a page that were counted would be told at once
+    time.sleep(0.3)  # a counted page would get the state at once
     assert browser.run(link) == "connected"
     browser.run("history.go(-2)")
     wait_for(lambda: browser.run("return location.hash") == "")
@@ -344,7 +345,7 @@ def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Bro
     assert [("Video" in row) for row in rows] == [True, False, False]
     assert "error" in rows[2]
     assert "misc" not in rows[2]
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser) -> None:
@@ -364,7 +365,7 @@ def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser
         wait_for(lambda: browser.run(large))
         browser.run("const film = document.querySelector('video'); film.preload = 'auto'; film.load();")
         wait_for(lambda: browser.run("return document.querySelector('video').readyState"))
-        assert browser.complaints() == []
+        assert browser.console_errors() == []
     finally:
         server.kill()
 

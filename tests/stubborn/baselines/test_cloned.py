@@ -79,11 +79,11 @@ def test_the_small_image_shows_the_middles_of_its_blocks():
 def test_motion_is_measured_in_commanded_motions():
     start = Pose(1.0, 0.0, math.radians(90.0))
     moved = motion_of(Pose(1.0, 0.125, math.radians(120.0)), start, 50)
-    told = dict(zip(MOTION, moved.tolist(), strict=True))
-    assert told["moved ahead"] == pytest.approx(0.5)
-    assert told["moved left"] == pytest.approx(0.0, abs=1e-6)
-    assert told["turned"] == pytest.approx(1.0)
-    assert (told["ahead"], told["left"], told["steps done"]) == pytest.approx((0.1, 0.0125, 0.1))
+    inputs = dict(zip(MOTION, moved.tolist(), strict=True))
+    assert inputs["moved ahead"] == pytest.approx(0.5)
+    assert inputs["moved left"] == pytest.approx(0.0, abs=1e-6)
+    assert inputs["turned"] == pytest.approx(1.0)
+    assert (inputs["ahead"], inputs["left"], inputs["steps done"]) == pytest.approx((0.1, 0.0125, 0.1))
     np.testing.assert_allclose(motion_of(Pose(0.0, 0.0, 0.0), None, 0), [0, 0, 1, 0, 0, 0, 0, 0])
 
 

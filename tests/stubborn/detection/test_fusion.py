@@ -123,7 +123,7 @@ def test_a_track_is_what_a_quarter_of_its_pixels_are():
     assert true_category(counts) == -1
 
 
-def drawn(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
+def sampled(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
     """Returns tracks of chairs and tables whose network takes some chairs for tables, or is wrong from far away."""
     rng = np.random.default_rng(0)
     result = []
@@ -141,7 +141,7 @@ def drawn(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) 
 
 
 def test_the_fit_finds_how_often_a_category_is_missed():
-    samples = drawn(400, chairs_called_tables=0.4)
+    samples = sampled(400, chairs_called_tables=0.4)
     fusion = fit(samples)
     assert fusion.offsets["chair"] - fusion.offsets["table"] > 0.3
     p = probabilities(fusion, [each for each in samples if each.mean[0].argmax() == TABLE])
@@ -152,11 +152,11 @@ def test_the_fit_finds_how_often_a_category_is_missed():
 
 
 def test_the_fit_finds_that_far_views_are_worth_less():
-    assert fit(drawn(400, far_lies=True)).ring_weights[3] < 0.3 < fit(drawn(400)).ring_weights[3]
+    assert fit(sampled(400, far_lies=True)).ring_weights[3] < 0.3 < fit(sampled(400)).ring_weights[3]
 
 
 def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
-    samples = drawn(200, far_lies=True)
+    samples = sampled(200, far_lies=True)
     fusion = fit(samples)
     free = {
         "rings": torch.tensor(np.log(fusion.ring_weights)),
@@ -172,7 +172,7 @@ def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
 
 def test_too_few_tracks_are_refused():
     with pytest.raises(ConfigError, match="100 are needed"):
-        fit(drawn(50))
+        fit(sampled(50))
 
 
 def test_each_track_enters_whole_and_in_parts():

@@ -512,20 +512,20 @@ def test_the_known_window_holds_all_that_was_seen_and_a_margin():
 
 
 class Rated(Doubtful):
-    """A verifier that also tells a probability."""
+    """A verifier that also states a probability."""
 
     def probability(self, goal: str, features: Features) -> float:
         return 0.9 if self.accepts(goal, features) else 0.2
 
 
 def test_the_confidence_is_the_verifiers_probability_of_what_it_accepted_last_else_the_highest_score():
-    for verifier, told in ((Rated(), 0.9), (AcceptAll(), 0.8), (RefuseAll(), None)):
+    for verifier, confidence in ((Rated(), 0.9), (AcceptAll(), 0.8), (RefuseAll(), None)):
         navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
         navmap.score_sum[30, 60], navmap.score_max[30, 60] = 0.8, 0.8
         seek = seeker(verifier)
         assert seek.confidence is None
-        assert seek.judge(navmap, (30, 60)) == (told is not None)
-        assert seek.confidence == (None if told is None else pytest.approx(told))
+        assert seek.judge(navmap, (30, 60)) == (confidence is not None)
+        assert seek.confidence == (None if confidence is None else pytest.approx(confidence))
         seek.reset("bed")
         assert seek.confidence is None
 

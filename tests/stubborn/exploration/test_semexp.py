@@ -152,17 +152,17 @@ def test_without_semantics_the_policy_sees_the_geometry_only():
 
 
 def test_the_wrong_goal_is_another_one_of_the_episode_and_never_the_true_one():
-    policy, navmap, told = Always(), open_map(), []
+    policy, navmap, goals = Always(), open_map(), []
     explore = explorer(policy, goal="wrong")
     for seed in range(30):
         explore.reset(seed)
         for step in range(2):
             explore.place_xy_m = None
             route_of(explore, ground(navmap, goal="sink"))
-            told.append(policy.given[-1].goal)
-            assert told[-1] == told[-1 - step]
-    assert SINK not in told
-    assert len(set(told)) > 8
+            goals.append(policy.given[-1].goal)
+            assert goals[-1] == goals[-1 - step]
+    assert SINK not in goals
+    assert len(set(goals)) > 8
 
 
 def test_draws_follow_the_policy_and_the_seed():

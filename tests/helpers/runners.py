@@ -46,7 +46,7 @@ class JobRunner:
 
 
 def make_runner(config: None) -> JobRunner:
-    """Entry point `tests.helpers.players:make_runner`."""
+    """Entry point `tests.helpers.runners:make_runner`."""
     return JobRunner()
 
 
@@ -63,8 +63,8 @@ def die_the_first_time(marker: Path) -> str:
     return marker.name
 
 
-def tell_and_sleep(marker: Path) -> None:
-    """Writes the number of this process to a file, and sleeps longer than any test."""
+def write_pid_and_sleep(marker: Path) -> None:
+    """Writes the id of this process to a file, and sleeps longer than any test."""
     marker.write_text(str(os.getpid()))
     time.sleep(300)
 
@@ -92,7 +92,7 @@ class FaultyAgent:
 
 
 def make_faulty(**options: object) -> FaultyAgent:
-    """Entry point `tests.helpers.players:make_faulty`."""
+    """Entry point `tests.helpers.runners:make_faulty`."""
     return FaultyAgent()
 
 
@@ -107,5 +107,5 @@ class Quitter:
 
 
 def make_quitter(**options: object) -> Quitter:
-    """Entry point `tests.helpers.players:make_quitter`."""
+    """Entry point `tests.helpers.runners:make_quitter`."""
     return Quitter()
