@@ -126,7 +126,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
     graphlib.TopologicalSorter(graph).prepare()  # raises CycleError and names the circle
 
 
-def test_every_room_says_what_it_holds() -> None:
+def test_every_package_has_a_docstring_about_its_content() -> None:
     for name, file in FILES.items():
         if file.name == "__init__.py":
             assert len(ast.get_docstring(ast.parse(file.read_text())) or "") > 40, f"{name} has no docstring."

@@ -75,7 +75,7 @@ def test_a_stopwatch_counts_methods_and_leaves_them_as_they_were() -> None:
         (None, None),
     ],
 )
-def test_a_goal_is_met_by_what_it_is_set_for(goal: Goal | None, met: bool | None) -> None:
+def test_a_figure_is_met_according_to_its_goal(goal: Goal | None, met: bool | None) -> None:
     assert Figure(**{**vars(FIGURE), "goal": goal}).met is met
 
 
@@ -105,7 +105,7 @@ def test_a_hall_has_as_many_geoms_as_asked_and_is_a_house() -> None:
         assert sum(not name.startswith("robot/") for name in geoms) == count
 
 
-def test_memory_is_told_in_megabytes() -> None:
+def test_memory_is_reported_in_megabytes() -> None:
     memory = memory_mb()
     assert 30 < memory["VmRSS"] <= memory["VmHWM"] < 20_000
 

@@ -134,7 +134,7 @@ def test_documented_commands_and_their_trials_are_such_as_their_tools_take() -> 
     assert not refused, "\n".join(refused)
 
 
-def test_what_documented_commands_read_is_there_or_made_by_another() -> None:
+def test_files_that_documented_commands_read_exist_or_are_written_by_another_command() -> None:
     parsed = {command: _parse(command) for command in documented.commands()}
     made = {str(value) for args in parsed.values() for name, value in _paths(args) if name in OUTPUTS}
     made |= {shlex.split(command)[-1] for command in parsed if "my_furniture.py" in command}

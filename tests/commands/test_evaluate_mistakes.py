@@ -57,7 +57,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: 
     assert sheet[row, column].tolist() == PALETTE[ahead].tolist()
 
 
-def test_what_is_not_drawn_is_told_with_the_option_that_draws_it(
+def test_omitted_failures_are_reported_with_the_option_that_draws_them(
     recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shutil.copytree(recorded / "run", tmp_path / "run")
@@ -119,7 +119,7 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
         ({"files_sha256": {"weights": "0" * 64}}, "other weights"),
     ],
 )
-def test_what_another_camera_or_network_saw_is_not_drawn_with_ours(
+def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
     recorded: Path, changes: dict[str, object], message: str
 ) -> None:
     run_of = read_run(recorded / "run")

@@ -159,7 +159,9 @@ def test_labels_without_a_floor_are_refused_after_the_table(
     assert "must get the category 'floor' from a label rule" in captured.err
 
 
-def test_a_refused_scene_is_told_of_labels(scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_refusal_of_a_scene_names_the_labels_option(
+    scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run.entry(["--house", str(scene[0]), "--episodes", "1"]) == 2
     assert "A scene from elsewhere needs --labels: `stubborn label` proposes" in capsys.readouterr().err
 

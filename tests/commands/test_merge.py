@@ -109,7 +109,7 @@ def test_runs_of_named_episodes_become_one_of_all_these(tmp_path: Path, capsys: 
     assert json.loads((tmp_path / "more" / "config.json").read_text())["only"] == []
 
 
-def test_all_the_code_that_played_is_named(tmp_path: Path) -> None:
+def test_all_code_that_ran_episodes_is_named(tmp_path: Path) -> None:
     runs = (write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], versions={"code": "0lder"}))
     main(Args(runs=runs, out=tmp_path / "both"))
     assert json.loads((tmp_path / "both" / "config.json").read_text())["codes"] == ["c0de", "0lder"]

@@ -112,7 +112,7 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     assert ratio.verdict == "lower"
 
 
-def test_tables_share_their_runs_and_the_oracle_plays_once() -> None:
+def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
     assert set(TABLES["categories"].setups()) <= set(TABLES["failures"].setups()) <= set(TABLES["overall"].setups())
     assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "gt")
     assert AgentSetup("oracle", "gt") in TABLES["overall"].setups(semantics="rednet")
@@ -165,7 +165,7 @@ def test_the_table_of_verification_has_all_methods() -> None:
     assert methods == ["naive-bayes", "none", "logistic", "threshold"]
 
 
-def test_a_table_that_there_is_not_is_told_what_there_is() -> None:
+def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:
     with pytest.raises(ConfigError, match="failures, ablation, exploration, categories, overall"):
         table_named("failure")
 

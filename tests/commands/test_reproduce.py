@@ -51,7 +51,7 @@ def stem(args: reproduce.Args) -> str:
     return reproduce.stem_of(args, args.table)
 
 
-def test_a_table_of_two_agents_is_played_written_and_not_played_again(
+def test_the_agents_of_a_table_run_once_and_the_table_is_written(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert reproduce.main(args) == 0
@@ -70,7 +70,7 @@ def test_a_table_of_two_agents_is_played_written_and_not_played_again(
     assert "] e" not in capsys.readouterr().out
 
 
-def test_another_table_takes_the_episodes_that_are_there_and_plays_the_rest(
+def test_another_table_reuses_existing_episodes_and_runs_the_rest(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     reproduce.main(args)
@@ -94,7 +94,7 @@ def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(args: reprod
     assert first == second
 
 
-def test_minutes_that_are_used_up_leave_a_table_of_what_all_have_played(
+def test_after_the_time_limit_the_table_has_the_episodes_that_all_agents_ran(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert reproduce.main(replace(args, minutes=0.0)) == 1
@@ -202,7 +202,7 @@ def test_many_options_get_a_checksum_in_the_name_of_the_folder(args: reproduce.A
     assert list(args.out.glob("examples.my_agent_AGENT_gt_none_tiny_options-????????/results.jsonl"))
 
 
-def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
+def test_the_notes_agree_with_the_runs(args: reproduce.Args) -> None:
     reproduce.main(args)
     setup, other = reproduce.AgentSetup("oracle", "gt"), replace(args, seed=7, noise="harsh")
     note = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
@@ -242,7 +242,9 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
         ({"episodes": 5}, "has 4 episodes"),
     ],
 )
-def test_what_cannot_be_played_is_told_before_anything_is(args: reproduce.Args, change: dict, message: str) -> None:
+def test_options_that_cannot_run_are_refused_before_the_first_episode(
+    args: reproduce.Args, change: dict, message: str
+) -> None:
     with pytest.raises(ConfigError, match=message):
         reproduce.main(replace(args, **change))
     assert not list(args.out.iterdir())

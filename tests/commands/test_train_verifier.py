@@ -75,7 +75,7 @@ def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, 
     assert line["steps"] == 5
 
 
-def test_the_recorded_command_names_all_that_changes_the_fit_and_the_episodes_that_were_played():
+def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_episodes():
     args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
     assert train_verifier.command(replace(args, least_of_either=7, seed=2), 71) == (
         "stubborn train verifier --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
@@ -172,7 +172,7 @@ def test_segmentation_that_needs_no_verification_is_refused():
         train_verifier.main(train_verifier.Args(semantics="gt"))
 
 
-def test_a_judgement_says_what_is_true_and_what_the_verifier_thinks():
+def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
     file = FOLDER / "rednet.json"
     near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
     lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]

@@ -30,7 +30,7 @@ def test_a_failed_replacement_leaves_no_part_file(tmp_path: Path) -> None:
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_a_part_file_is_created_beside_its_file_and_older_parts_of_that_file_are_removed(tmp_path: Path) -> None:
+def test_a_part_file_is_created_next_to_its_file_and_older_parts_of_that_file_are_removed(tmp_path: Path) -> None:
     folder = tmp_path / "videos"
     folder.mkdir()
     gone, of_another, whole = (folder / name for name in (".a.part-99999.mp4", ".b.part-99999.mp4", "a.mp4"))

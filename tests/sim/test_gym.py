@@ -89,7 +89,7 @@ def test_a_configuration_may_be_a_dict_of_its_fields(house: Path) -> None:
         ({"robot": "robot.xml"}, "robot must be a RobotConfig or a dict of its fields, got 'robot.xml'"),
     ],
 )
-def test_a_configuration_that_is_none_is_refused_with_what_is_allowed(options: dict[str, Any], message: str) -> None:
+def test_an_invalid_configuration_is_refused_with_the_allowed_values(options: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         gymnasium.make(ENV_ID, **options)
 

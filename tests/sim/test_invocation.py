@@ -61,7 +61,9 @@ def test_a_script_is_named_as_it_was_typed(project: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("name", ["sim.run", "sim.web.__main__"])
-def test_a_module_names_modules_where_there_are_some(name: str, project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_started_as_a_module_names_existing_modules(
+    name: str, project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     start_as_module(name, monkeypatch)
     assert invocation.command("report", Path("runs/my run")) == ".venv/bin/python -m sim.report 'runs/my run'"
     assert invocation.command("houses", "generate") == ".venv/bin/stubborn houses generate"

@@ -72,7 +72,7 @@ def test_a_broken_line_is_named_by_its_number(content: bytes, message: str, tmp_
 
 
 @pytest.mark.parametrize("torn", [b'{"name": "b"', b"\0\0\0\0", b"\xff"])
-def test_a_torn_last_line_is_left_out_and_said(torn: bytes, tmp_path: Path) -> None:
+def test_an_incomplete_last_line_is_left_out_and_reported(torn: bytes, tmp_path: Path) -> None:
     file = tmp_path / "rows.jsonl"
     whole = b'{"name": "a", "at": [], "more": 1}\n'
     file.write_bytes(whole + torn)
@@ -84,7 +84,7 @@ def test_a_torn_last_line_is_left_out_and_said(torn: bytes, tmp_path: Path) -> N
     assert reading.read_lines(file, Row, what="Rows").torn == ""
 
 
-def test_what_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reading, "MAX_BYTES", 1 << 20)
     (tmp_path / "bomb.gz").write_bytes(gzip.compress(b"[" + b" " * (4 << 20), compresslevel=1))
     with pytest.raises(ConfigError, match="expands to more than 1 MB"):

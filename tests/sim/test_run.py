@@ -71,7 +71,7 @@ def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
     ]
 
 
-def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_path: Path) -> None:
+def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp_path: Path) -> None:
     run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
     wanted = (
@@ -89,7 +89,7 @@ def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_pa
     assert {"mujoco", "numpy", "gl_renderer"} <= set(config["versions"])
 
 
-def test_a_killed_run_goes_on_and_no_line_is_lost_or_doubled(house: Path, tmp_path: Path) -> None:
+def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "oracle", "--house", house, "--episodes", 12)
     results = tmp_path / "killed" / "results.jsonl"
     process = subprocess.Popen(command(*options, "--out", tmp_path / "killed"), stdout=subprocess.DEVNULL)
@@ -131,7 +131,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
         assert {"split", "noise", "profile", "versions", "start"} <= set(trajectory.about)
 
 
-def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_path: Path) -> None:
+def test_an_episode_whose_goal_is_upstairs_runs_and_fails_by_stairs(tmp_path: Path) -> None:
     folder = tmp_path / "tiny"
     folder.mkdir()
     (folder / "duplex.xml").write_text(two_storeys().spec.to_xml())
@@ -148,7 +148,7 @@ def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_pat
     assert [line["gt_explored"] for line in lines] == [True, False, False, True]
 
 
-def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
+def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from sim.run import entry
@@ -160,7 +160,7 @@ def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]
 
 
-def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:
+def test_an_agent_of_a_user_runs_episodes(house: Path, tmp_path: Path) -> None:
     done = run("--agent", "examples.my_agent:make", "--house", house, "--episodes", 1, "--out", tmp_path)
     assert done.returncode == 0, done.stderr
     assert lines_of(tmp_path)[0]["agent"] == "examples.my_agent:make"
@@ -224,7 +224,7 @@ def test_a_wrong_option_is_one_line_and_status_2(
     assert message in printed
 
 
-def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
+def test_a_run_resumed_by_other_code_says_so_and_names_both(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from sim.run import entry
@@ -249,7 +249,7 @@ def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
     assert codes == ["0lder", code]
 
 
-def test_a_run_that_goes_on_after_an_edit_of_the_agent_says_so(
+def test_a_run_resumed_after_an_edit_of_the_agent_says_so(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.syspath_prepend(tmp_path)

@@ -105,7 +105,7 @@ def test_an_episode_that_does_not_exist_leaves_no_folder(split: Path, tmp_path: 
     assert not (tmp_path / "out").exists()
 
 
-def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request_only(env: ObjectNavEnv) -> None:
+def test_keys_that_move_nothing_take_no_step_and_the_distance_is_shown_on_request_only(env: ObjectNavEnv) -> None:
     cockpit = Script(["g", "c", "m", "p", "p", "?", "x"])
     line = play_episode(env, teleop.Human(env, cockpit), env.split.episodes[0], seed=0)
     assert line["num_steps"] == 1
@@ -114,7 +114,7 @@ def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request
     assert "the agent would" in heads[4]
 
 
-def test_the_map_learns_collisions_from_what_was_driven_not_from_what_it_would_have_done(env: ObjectNavEnv) -> None:
+def test_the_map_learns_collisions_from_executed_actions_and_not_from_its_own_choice(env: ObjectNavEnv) -> None:
     cockpit = Script(["w"] * 9)
     human = teleop.Human(env, cockpit)
     with pytest.raises(teleop.Quit):

@@ -159,7 +159,7 @@ def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: 
     assert (np.abs(y_m).max() > 1.1) == exact  # beside the bed
 
 
-def test_a_clearance_beyond_what_distances_are_computed_for_is_refused():
+def test_a_clearance_beyond_the_computed_distances_is_refused():
     AgentConfig(planning=PlanningConfig(clearance_m=8.9))
     with pytest.raises(ConfigError, match=r"clearance_m and preferred_clearance_m must be at most 8\.9 m"):
         AgentConfig(planning=PlanningConfig(clearance_m=9.0))

@@ -282,7 +282,7 @@ def test_the_part_of_a_cell_is_the_one_that_opencv_numbers_like_it(connectivity:
         assert np.array_equal(mask, given)
 
 
-def test_a_point_amid_cells_has_their_mean_and_one_off_the_grid_has_none() -> None:
+def test_a_point_between_cells_has_their_mean_and_one_off_the_grid_has_no_value() -> None:
     values = np.array([[1.0, 2.0], [3.0, np.inf]], np.float32)
     x_m, y_m = np.array([0.05, 0.03, 0.099, 0.2]), np.array([0.049, 0.03, 0.099, 0.03])
     found = bilinear(values, 0.0, 0.0, 0.05, x_m, y_m)

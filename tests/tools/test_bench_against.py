@@ -21,7 +21,7 @@ def test_a_wrong_ref_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize("ref", ["", "--all", "HEAD:README.md"])
-def test_what_is_no_commit_is_no_ref(ref: str) -> None:
+def test_a_reference_without_a_commit_is_refused(ref: str) -> None:
     with pytest.raises(ConfigError, match="names no commit"):
         commit_of(ref)
 

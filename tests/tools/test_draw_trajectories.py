@@ -105,7 +105,7 @@ def test_two_runs_are_drawn_side_by_side(recorded: Path, tmp_path: Path) -> None
     assert (left[chart] == right[chart]).all()
 
 
-def test_two_runs_that_agree_leave_nothing_to_draw(
+def test_two_runs_that_agree_give_no_pictures(
     recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shutil.copytree(recorded / "run", tmp_path / "other")

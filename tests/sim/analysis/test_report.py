@@ -119,7 +119,7 @@ def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(recor
     assert truth.space().free[tuple(truth.space().frame.to_cells(samples).T)].all()
 
 
-def test_no_path_is_drawn_where_there_is_none() -> None:
+def test_without_a_path_no_path_is_drawn() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     truth = GroundTruth(World(house))
@@ -213,9 +213,7 @@ def test_a_page_names_no_other_address(recorded_run: Path) -> None:
     assert not re.search(r'(src|href)="(?!#|data:)|url\(|@import|https?://(?!www\.w3\.org/)', page)
 
 
-def test_videos_are_linked_from_where_the_page_lies_and_only_those_that_are_there(
-    recorded_run: Path, tmp_path: Path
-) -> None:
+def test_only_existing_videos_are_linked_and_relative_to_the_page(recorded_run: Path, tmp_path: Path) -> None:
     shutil.copytree(recorded_run / "found", tmp_path / "a run")
     episode_id = _lines(tmp_path / "a run")[1]["episode_id"]
     (tmp_path / "a run" / "videos").mkdir()
@@ -268,7 +266,7 @@ def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(recorded_run: P
     assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
 
-def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path]) -> None:
+def test_an_unfinished_run_and_broken_episodes_are_reported(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, _lines(folder)[:3])
     page = _page(folder)
@@ -285,7 +283,9 @@ def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path])
         (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), "is no run"),
     ],
 )
-def test_what_is_no_run_is_one_sentence(recorded_run: Path, tmp_path: Path, broken: Any, sentence: str) -> None:
+def test_a_folder_that_is_not_a_run_gives_one_sentence(
+    recorded_run: Path, tmp_path: Path, broken: Any, sentence: str
+) -> None:
     shutil.copytree(recorded_run / "found", tmp_path / "run")
     broken(tmp_path / "run")
     with pytest.raises(ConfigError, match=sentence):
@@ -293,7 +293,7 @@ def test_what_is_no_run_is_one_sentence(recorded_run: Path, tmp_path: Path, brok
     assert not (tmp_path / "run" / "report.html").exists()
 
 
-def test_a_trajectory_that_cannot_be_read_is_told_and_the_rest_is_drawn(recorded_run: Path, tmp_path: Path) -> None:
+def test_an_unreadable_trajectory_is_reported_and_the_others_are_drawn(recorded_run: Path, tmp_path: Path) -> None:
     shutil.copytree(recorded_run / "found", tmp_path / "run")
     first = _lines(tmp_path / "run")[0]["episode_id"]
     trajectory_file(tmp_path / "run", first).write_bytes(b"PK rubbish")
@@ -336,7 +336,7 @@ def test_several_runs_are_columns_with_differences_from_the_first_and_a_trend(pa
         main(Args(runs=(pair[0],) * 13))
 
 
-def test_the_page_says_over_what_its_intervals_are(pair: tuple[Path, Path]) -> None:
+def test_the_page_states_what_its_intervals_resample(pair: tuple[Path, Path]) -> None:
     assert "There is one house: its episodes are resampled" in _page(pair[0])
     _write_lines(pair[0], [line | {"house": f"h{i}"} for i, line in enumerate(_lines(pair[0]))])
     assert "houses are resampled, then the episodes of each house." in _page(pair[0])
@@ -361,7 +361,7 @@ def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> No
     assert "By the rules of the code that wrote this report the cause is explore." in other
 
 
-def test_a_wrong_stop_is_told_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
+def test_a_wrong_stop_is_reported_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     line = _lines(folder)[0] | {"failure": "false_detection", "end_reason": "stop"}
     whole = read_trajectory(trajectory_file(folder, line["episode_id"]))
@@ -377,7 +377,7 @@ def test_a_wrong_stop_is_told_with_the_place_for_which_the_agent_stopped(pair: t
     assert words.startswith(f"{begin} short of the goal: the robot is 1.7 m from the nearest sofa.")
 
 
-def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Path]) -> None:
+def test_a_missed_goal_was_in_view_before(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     line = _lines(folder)[0] | {"failure": "missed_detection"}
     trajectory = read_trajectory(trajectory_file(folder, line["episode_id"]))
@@ -420,7 +420,7 @@ def test_the_command_of_a_run_makes_the_same_run(recorded_run: Path) -> None:
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
-def test_text_stands_out_from_what_is_behind_it_by_the_ratio_of_wcag(scheme: int) -> None:
+def test_text_has_the_contrast_ratio_of_wcag(scheme: int) -> None:
     css = (files("sim.analysis.report") / "page" / "report.css").read_text()
     blocks = re.findall(r":root \{(.*?)\}", css, re.DOTALL)
     colours = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", blocks[scheme]))
@@ -460,9 +460,7 @@ def _open(browser: Browser, *folders: Path, fragment: str = "") -> None:
     browser.open(folders[-1] / "page.html", fragment)
 
 
-def test_the_page_opens_from_disk_fetches_nothing_and_complains_of_nothing(
-    browser: Browser, pair: tuple[Path, Path]
-) -> None:
+def test_the_page_opens_from_disk_without_requests_or_console_errors(browser: Browser, pair: tuple[Path, Path]) -> None:
     for folders in ((pair[0],), pair):
         _open(browser, *folders)
         assert len(browser.run(SHOWN)) == 4

@@ -44,7 +44,7 @@ def test_a_setup_is_pickled_as_its_options() -> None:
     assert again.spec is setup.spec
 
 
-def test_an_agent_takes_a_seeker_of_the_users() -> None:
+def test_an_agent_accepts_a_seeker_of_a_user() -> None:
     made: list[SeekerParts] = []
 
     @dataclass(frozen=True)

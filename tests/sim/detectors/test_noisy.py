@@ -232,7 +232,7 @@ def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a
     assert all(seating < 0.5 < sofa for sofa, seating in right.values())
 
 
-def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_with(house: Path, tmp_path: Path):
+def test_a_run_with_noisy_semantics_is_reproducible_and_records_its_settings(house: Path, tmp_path: Path):
     lines = []
     for name in ("once", "twice"):
         args = RunOptions(house=house, goal="sofa", semantics="noisy", episodes=1, out=tmp_path / name)
@@ -245,7 +245,7 @@ def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_
     assert lines[0]["semantics"] == "noisy"
 
 
-def test_unknown_semantics_are_refused_with_what_there_is(house: Path, tmp_path: Path):
+def test_unknown_semantics_are_refused_with_the_names_that_exist(house: Path, tmp_path: Path):
     with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. There is: gt, noisy"):
         run.main(RunOptions(house=house, semantics="dreams", out=tmp_path))
 

@@ -148,7 +148,7 @@ def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) 
     assert env.scene.world.pose == there
 
 
-def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_none(env: ObjectNavEnv) -> None:
+def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_not(env: ObjectNavEnv) -> None:
     env.reset(seed=0)
     infos = [env.step(action)[4] for action in [Action.TURN_RIGHT] * 3 + [Action.MOVE_FORWARD] * 16]
     collided = [info["collided"] for info in infos]

@@ -35,7 +35,7 @@ def rewards(options: dict[str, Any], actions: list[Action], **weights: float) ->
     return given
 
 
-def test_driving_to_the_goal_and_back_earns_what_is_lost(options: dict[str, Any]) -> None:
+def test_driving_to_the_goal_and_back_has_no_net_reward(options: dict[str, Any]) -> None:
     earned = rewards(options, [FORWARD] * 4 + [LEFT] * 6 + [FORWARD] * 4, per_step=0.0)
     assert earned[:4] == pytest.approx([0.25] * 4, abs=0.03)
     assert sum(earned[4:10]) == pytest.approx(0.0, abs=0.05)

@@ -24,7 +24,7 @@ TASK = task_in()
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_drawn_start_is_free_far_enough_and_accepted_by_the_world(seed):
+def test_a_sampled_start_is_free_far_enough_and_accepted_by_the_world(seed):
     start = draw_start(TASK, "bed", np.random.default_rng(seed))
     TASK.world.reset(start)
     TASK.begin("bed", start)

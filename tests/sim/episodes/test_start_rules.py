@@ -110,7 +110,7 @@ def test_a_house_without_hazards_still_has_episodes_but_they_do_not_meet_the_rul
     assert start.distance_m is not None
 
 
-def test_a_cell_on_no_path_is_past_nothing():
+def test_an_unreachable_cell_has_no_path_past_a_mark():
     distance_m = np.array([[0.0, 1.0, 2.0, 3.0, np.inf]], np.float32)
     marked = np.array([[False, True, False, False, True]])
     assert leads_past(distance_m, marked).tolist() == [[False, True, True, True, False]]

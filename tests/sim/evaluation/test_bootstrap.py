@@ -78,7 +78,7 @@ def test_the_interval_does_not_depend_on_the_order_of_episodes() -> None:
     assert bootstrap_interval(values, list(names)) == bootstrap_interval(values[order], list(names[order]))
 
 
-def test_missing_values_do_not_count_and_a_house_without_values_is_no_house() -> None:
+def test_missing_values_and_houses_without_values_do_not_count() -> None:
     assert estimate([1.0, None, 3.0], ["a", "b", "a"]).houses == 1
     assert estimate([None, None], ["a", "b"]) == Estimate(None, None, None, 0, 0)
     assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None], ["a", "b", "c"]) == Estimate(1.0, 1.0, 1.0, 1, 1)
@@ -99,7 +99,7 @@ def test_a_split_of_a_thousand_episodes_takes_well_under_a_second() -> None:
     assert time.process_time() - began_s < 1.0
 
 
-def test_a_ratio_of_medians_is_resolved_against_one() -> None:
+def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> None:
     rng, names = np.random.default_rng(0), houses_of(20, 10)
     first = rng.uniform(50.0, 150.0, 200)
     half, same = (

@@ -129,7 +129,7 @@ def test_options_that_contradict_each_other_are_refused(options: dict[str, Any],
     assert str(raised.value) == sentence
 
 
-def test_without_ray_one_sentence_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ray_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "sim.evaluation.executors_ray", raising=False)
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(ConfigError, match=r"pip install 'stubborn-objectnav\[ray\]'"):

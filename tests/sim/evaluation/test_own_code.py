@@ -102,14 +102,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("name", ["agent", "helper", "deeper", "late", "__init__"])
-def test_an_edit_of_what_an_agent_imports_changes_its_hash(package: Path, name: str) -> None:
+def test_an_edit_of_a_module_that_an_agent_imports_changes_its_hash(package: Path, name: str) -> None:
     before = hash_of_own(["hashed.agent"])
     with (package / f"{name}.py").open("a") as file:
         file.write("# edited\n")
     assert hash_of_own(["hashed.agent"]) != before
 
 
-def test_what_an_agent_does_not_import_has_no_part_in_its_hash(package: Path) -> None:
+def test_modules_that_an_agent_does_not_import_do_not_change_its_hash(package: Path) -> None:
     before = hash_of_own(["hashed.agent"])
     (package / "unrelated.py").write_text("GAIN = 3\n")
     importlib.import_module("hashed.unrelated")

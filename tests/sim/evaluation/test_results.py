@@ -73,7 +73,7 @@ def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> 
     RunDirectory(tmp_path, CONFIG | {"workers": 2}).close()
 
 
-def test_a_run_goes_on_to_more_episodes_and_says_so(tmp_path: Path) -> None:
+def test_a_run_continues_to_more_episodes_and_says_so(tmp_path: Path) -> None:
     for episodes in (5, 8, 6):
         RunDirectory(tmp_path, CONFIG | {"episodes": episodes}).close()
     assert json.loads((tmp_path / "config.json").read_text())["episodes"] == 8
@@ -96,7 +96,7 @@ def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
     assert written["versions"] == {"code": "a1"}
 
 
-def test_code_from_before_codes_were_listed_is_known_and_code_that_ran_nothing_is_not(tmp_path: Path) -> None:
+def test_runs_without_a_list_of_codes_name_their_code_and_code_that_ran_nothing_is_not_named(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
     assert run.record_code("b2") == []
@@ -146,7 +146,7 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
 
-def test_a_summary_says_over_what_its_intervals_resample() -> None:
+def test_a_summary_states_what_its_intervals_resample() -> None:
     two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
     assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then the episodes of each")
     assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "the episodes of the one house")
@@ -247,7 +247,7 @@ def test_lines_of_another_split_are_refused(episodes: dict, message: str | None,
     run.close()
 
 
-def test_the_place_of_a_stop_is_read_back_and_is_none_in_lines_of_older_versions(tmp_path: Path) -> None:
+def test_the_place_of_a_stop_is_read_back_and_missing_in_lines_of_older_versions(tmp_path: Path) -> None:
     stated = {"stop_target_xy_m": [1.5, -2.0], "stop_target_to_goal_m": 0.25}
     write_lines(tmp_path, line(1, **stated), line(2))
     first, second = read_result_lines(tmp_path / "results.jsonl").values
@@ -255,7 +255,7 @@ def test_the_place_of_a_stop_is_read_back_and_is_none_in_lines_of_older_versions
     assert {key: second[key] for key in stated} == dict.fromkeys(stated)
 
 
-def test_a_dropped_line_is_said(tmp_path: Path) -> None:
+def test_a_dropped_line_is_reported(tmp_path: Path) -> None:
     write_lines(tmp_path, line(1))
     with (tmp_path / "results.jsonl").open("a") as stream:
         stream.write('{"episode_id": "e2", "su')
@@ -305,7 +305,7 @@ def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> N
     assert not (tmp_path / "run").exists()
 
 
-def test_a_run_that_goes_on_with_another_library_tells_which(tmp_path: Path) -> None:
+def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.0.0", "numpy": "2.4.6", "code": "a"}}).close()
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}

@@ -174,7 +174,7 @@ def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_hous
     assert "Step 3" in line["error"]
 
 
-def test_the_episode_after_a_broken_one_is_as_if_nothing_had_been(env: ObjectNavEnv) -> None:
+def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> None:
     def break_it(step: int, agent: object, info: dict) -> None:
         env.scene.world.data.qvel[:] = np.nan
 

@@ -25,7 +25,7 @@ def twice(value):
     return 2 * value
 
 
-def test_a_kernel_that_calls_a_later_one_does_what_its_function_does() -> None:
+def test_a_kernel_that_calls_a_later_one_equals_its_function() -> None:
     values = np.arange(3.0)
     add_twice(values, 1.5)
     assert values.tolist() == [3.0, 4.0, 5.0]

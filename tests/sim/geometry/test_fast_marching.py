@@ -147,7 +147,7 @@ def test_distances_along_a_single_row_are_exact():
     np.testing.assert_allclose(distances(one_cell((9, 1), 3, 0), row.T, CELL_M)[:, 0], expected_m, rtol=1e-6)
 
 
-def test_a_blocked_source_does_not_count_beside_a_free_one():
+def test_a_blocked_source_does_not_count_next_to_a_free_one():
     passable = np.ones((5, 9), bool)
     passable[2, 2] = False
     both = one_cell((5, 9), 2, 2) | one_cell((5, 9), 2, 7)

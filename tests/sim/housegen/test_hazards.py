@@ -51,7 +51,7 @@ def sampled(family: str, seed: int) -> tuple[PlacedHazard, ...]:
     return draw_hazards(np.random.default_rng(seed), (family,), "train", spec, (DOORWAY,), 2)
 
 
-def test_a_house_with_hazards_passes_the_check_and_its_sites_tell_where_they_are() -> None:
+def test_a_house_with_hazards_passes_the_check_and_has_a_site_for_each() -> None:
     model = small_house().compile()
     hazards = read_hazards(model)
     assert 2 <= len(hazards) <= 4

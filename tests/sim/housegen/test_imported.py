@@ -111,7 +111,7 @@ def test_the_colour_of_a_picture_is_that_of_the_places_shown(tmp_path: Path) -> 
     assert shape.parts[0].rgba[:3] == pytest.approx((0.98, 0.04, 0.04), abs=0.03)
 
 
-def test_a_table_collides_as_its_top_and_its_legs_and_carries_things(tmp_path: Path) -> None:
+def test_a_table_collides_as_its_top_and_its_legs_and_carries_objects(tmp_path: Path) -> None:
     _, shape = imported(write_folder(tmp_path), "table")
     assert 3 <= len(shape.boxes_m) <= 12
     middle = [box for box in shape.boxes_m if (box[:2] < 0.1).all() and (box[3:5] > -0.1).all()]

@@ -109,7 +109,7 @@ def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: py
 @pytest.mark.parametrize(
     ("rule", "message"), [("(" * 900, "not a regular"), ("a{1,99999}" * 150, "1500 letters"), ("[", "not a regular")]
 )
-def test_a_label_rule_that_is_none_or_too_long_is_refused(rule: str, message: str, tmp_path: Path) -> None:
+def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(box()))
     (tmp_path / "rules.json").write_text(f'{{"{rule}": "wall"}}')
     with pytest.raises(HouseError, match=message):

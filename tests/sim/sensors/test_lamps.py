@@ -54,7 +54,7 @@ class Eye:
         return image
 
 
-def test_the_lamp_behind_a_wall_is_off_and_through_the_doorway_it_is_on() -> None:
+def test_a_lamp_behind_a_wall_is_off_and_one_behind_a_doorway_is_on() -> None:
     eye = Eye(two_rooms())
     assert eye.choose(-3.0, 1.0) == [0]
     assert eye.choose(3.0, 1.0) == [1]

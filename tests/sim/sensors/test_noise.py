@@ -124,7 +124,7 @@ def test_a_slanted_floor_has_no_edges() -> None:
     np.testing.assert_array_equal(sensed(DepthNoise(edge_dropout=0.5, edge_flying=0.5), depth_m), depth_m)
 
 
-def test_a_surface_beside_pixels_without_return_has_no_flying_pixels() -> None:
+def test_a_surface_next_to_pixels_without_return_has_no_flying_pixels() -> None:
     depth_m = sensed(DepthNoise(edge_flying=1.0), step_of(0.0, 3.0))
     assert set(np.unique(depth_m)) == {0.0, 3.0}
 
@@ -249,7 +249,7 @@ def test_gps_and_compass_have_the_configured_white_noise() -> None:
     assert abs(np.corrcoef(gps[0, 1:, 0], gps[0, :-1, 0])[0, 1]) < 0.1
 
 
-def test_drift_grows_with_the_square_root_of_actions_and_starts_at_none() -> None:
+def test_drift_starts_at_zero_and_grows_with_the_square_root_of_actions() -> None:
     gps, compass = readings(PoseNoise(gps_walk_m=0.01, compass_walk_rad=0.004), episodes=1500, actions=64)
     np.testing.assert_allclose(gps[:, 0], 0.0, atol=1e-6)
     for actions in (4, 16, 64):
@@ -257,7 +257,7 @@ def test_drift_grows_with_the_square_root_of_actions_and_starts_at_none() -> Non
         assert compass[:, actions].std() == pytest.approx(0.004 * math.sqrt(actions), rel=0.05)
 
 
-def test_conditions_are_drawn_from_their_ranges() -> None:
+def test_conditions_are_sampled_from_their_ranges() -> None:
     noise, rng = ActuationNoise(floor_friction_scale=(0.1, 1.0), motor_gain_scale=(0.8, 1.2)), np.random.default_rng(0)
     drawn = [noise.draw(rng) for _ in range(4000)]
     friction = np.log10([each.floor_friction_scale for each in drawn])
@@ -373,7 +373,7 @@ def test_noise_none_changes_nothing_and_needs_no_image(house: Path) -> None:
     named.close()
 
 
-def test_noise_draws_the_same_episodes_as_none(house: Path) -> None:
+def test_noise_does_not_change_the_sampled_episodes(house: Path) -> None:
     starts = []
     for noise in ("none", "realsense"):
         env = ObjectNavEnv(house=house, camera=SMALL, noise=noise)
@@ -474,6 +474,6 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
         (7, "7"),
     ],
 )
-def test_an_invalid_noise_file_is_refused_with_what_is_allowed(given: Any, message: str) -> None:
+def test_an_invalid_noise_file_is_refused_with_the_allowed_values(given: Any, message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         noise_from_dict(given)

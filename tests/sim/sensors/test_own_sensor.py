@@ -203,7 +203,7 @@ def test_a_sensor_gets_the_images_that_it_declares_and_no_others(house: Path) ->
         observations(house, [], sensors=(Peeking(),))
 
 
-def test_a_text_is_no_tuple_of_names() -> None:
+def test_a_string_is_not_a_tuple_of_names() -> None:
     with pytest.raises(ConfigError, match=r"sensors must be a tuple .*got 'depth'"):
         resolve_sensors("depth")
     with pytest.raises(ConfigError, match="images must be a tuple of names, got 'depth'"):

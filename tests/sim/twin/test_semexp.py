@@ -71,7 +71,7 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
 
 
-def test_the_policy_is_given_the_same_in_training_and_in_play(plans: Path):
+def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path):
     """The agent plays the first goal of a policy that the environment is then given; both then see the same map."""
     given: list[PolicyInput] = []
 

@@ -145,7 +145,7 @@ def test_each_house_has_its_window_but_one_that_was_closed_stays_closed_and_the_
     assert len(windows) == 2
 
 
-def test_without_a_display_view_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_view_without_a_display_gives_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
     import glfw
 
     monkeypatch.setattr(glfw, "init", lambda: False)
@@ -167,18 +167,18 @@ def options(**given: Any) -> Any:
         ({"rerun": True, "rerun_save": True}, "only one of them"),
     ],
 )
-def test_what_does_not_go_together_is_told(given: dict[str, Any], message: str) -> None:
+def test_options_that_exclude_each_other_are_reported(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         selection.check(options(**given))
 
 
-def test_rerun_that_is_not_installed_is_told_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_rerun_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ConfigError, match=r"pip install .*\[rerun\]"):
         selection.check(options(rerun_save=True))
 
 
-def test_rerun_without_a_screen_or_a_viewer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rerun_without_a_screen_or_a_viewer_gives_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log.importlib.util, "find_spec", lambda name: object())
     monkeypatch.setattr(rerun_log, "_viewer_listens", lambda: False)
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):

@@ -97,6 +97,6 @@ def test_a_new_wish_an_end_or_a_closing_server_interrupts_the_episode(end) -> No
         {"do": ["pause"]},
     ],
 )
-def test_anything_else_is_refused(message: dict) -> None:
+def test_other_messages_are_refused(message: dict) -> None:
     with pytest.raises(ConfigError):
         Controls().obey(message)

@@ -173,7 +173,7 @@ def test_only_the_page_and_files_of_runs_are_served(server: Server) -> None:
         json.dumps({"do": "start", **WISH, "agent": "oracle", "semantics": ["gt"]}),
     ],
 )
-def test_what_does_not_ship_with_the_package_cannot_be_started(server: Server, message: str) -> None:
+def test_commands_that_are_not_in_the_package_cannot_be_started(server: Server, message: str) -> None:
     with server.connect() as socket:
         socket.send(message)
         answers = (json.loads(socket.recv(timeout=10)) for _ in range(5))
@@ -394,7 +394,7 @@ def test_the_page_comes_back_when_the_server_is_killed_and_started_again(
     assert browser.run("return document.body.dataset.phase") == "idle"
 
 
-def test_a_port_in_use_is_told_in_a_sentence(server: Server) -> None:
+def test_a_port_in_use_gives_one_sentence(server: Server) -> None:
     command = [sys.executable, "-m", "sim.web", "--port", str(server.port)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")

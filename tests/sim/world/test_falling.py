@@ -37,7 +37,7 @@ def test_a_robot_that_drives_over_an_edge_has_fallen_when_its_axle_is_past_it(ba
 
 
 @pytest.mark.parametrize("drop_m", [0.025, 0.04])
-def test_a_threshold_is_no_edge(drop_m):
+def test_a_threshold_is_not_an_edge(drop_m):
     assert not any(falls(World(ledge(drop_m)), Pose(-0.7, 0.0, 0.0), 5))
 
 

@@ -43,7 +43,7 @@ def test_a_missing_piece_is_reported(piece: str, fault: str) -> None:
     assert faults(kitchen(rest)) == [f"room_kitchen_00 {fault}"]
 
 
-def test_a_toaster_is_no_large_appliance() -> None:
+def test_a_toaster_is_not_a_large_appliance() -> None:
     (fault,) = faults(kitchen(WHOLE | {"appliances_01": (1.0, 0.25)}))
     assert "has 1 of 2 large appliances" in fault
 

@@ -172,7 +172,7 @@ def test_the_agent_repeats_itself_with_the_same_seed_and_forgets_between_episode
     assert set(first) == set(Action)  # the untrained policy does everything
 
 
-def test_the_stop_can_be_bound_to_its_probability(net: ClonedNet, tmp_path: Path):
+def test_a_stop_can_require_a_probability(net: ClonedNet, tmp_path: Path):
     assert Action.STOP not in actions_of(agent_with(net, tmp_path, stop_above=0.99), 0)
     assert set(actions_of(agent_with(net, tmp_path, stop_above=0.01), 0)) == {Action.STOP}
     with pytest.raises(ConfigError, match="stop_above"):

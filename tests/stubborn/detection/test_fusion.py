@@ -73,7 +73,7 @@ def test_a_track_without_views_has_no_nan():
     assert p.sum() == pytest.approx(1.0, abs=1e-5)
 
 
-def test_many_views_that_tell_nothing_give_no_nan():
+def test_many_uninformative_views_give_no_nan():
     uniform = np.full((1, 48, CLASSES), 1.0 / CLASSES, np.float32)
     p = Fusion(growth=1.0, sharpness=1.5).probabilities(uniform, np.ones((1, 48), np.float32))
     assert np.isfinite(p).all()
@@ -87,7 +87,7 @@ def test_wrong_parameters_are_refused(wrong: dict):
         Fusion(**wrong)
 
 
-def test_every_kind_of_segmentation_that_errs_has_its_file_and_exact_ones_need_none():
+def test_every_imperfect_segmentation_has_a_file_and_exact_ones_need_no_file():
     assert fusion_for(SegmenterSpec(needs_verification=False)) == Fusion()
     for kind in ("rednet", "noisy"):
         assert fusion_for(SegmenterSpec(kind=kind)) == read_fusion(FOLDER / f"{kind}.json")
@@ -115,7 +115,7 @@ def test_a_wrong_file_is_refused_by_its_field(tmp_path: Path, change: dict, mess
         fusion_for(SegmenterSpec(), tmp_path / "nowhere.json")
 
 
-def test_a_track_is_what_a_quarter_of_its_pixels_are():
+def test_a_track_has_the_category_of_a_quarter_of_its_pixels():
     counts = np.zeros(len(MPCAT40), np.int64)
     counts[MPCAT40.index("wall")], counts[MPCAT40.index("chair")], counts[0] = 60, 30, 10
     assert true_category(counts) == CHAIR
@@ -155,7 +155,7 @@ def test_the_fit_finds_that_far_views_are_worth_less():
     assert fit(sampled(400, far_lies=True)).ring_weights[3] < 0.3 < fit(sampled(400)).ring_weights[3]
 
 
-def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
+def test_the_fit_maximises_the_likelihood_that_the_agent_computes():
     samples = sampled(200, far_lies=True)
     fusion = fit(samples)
     free = {

@@ -103,7 +103,7 @@ def test_a_near_object_that_was_never_seen_whole_gets_a_look_before_it_is_accept
     assert Judged(distance_m=near, exact=True).at(0.95) == "accepted"
 
 
-def test_what_cannot_be_reached_any_more_is_not_accepted():
+def test_a_candidate_that_became_unreachable_is_not_accepted():
     assert Judged(distance_m=15.0).at(0.95, MAX_STEPS - 100) == "accepted"
     assert Judged(distance_m=18.0).at(0.95, MAX_STEPS - 100) == "doubtful"
 

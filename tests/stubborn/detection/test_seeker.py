@@ -117,7 +117,7 @@ def test_with_inexact_outlines_the_agent_goes_nearer():
         assert (careful.in_reach(navmap, sighting) is not None) == near_enough
 
 
-def test_where_there_is_no_nearer_viewpoint_the_usual_one_will_do():
+def test_without_a_nearer_viewpoint_the_usual_one_is_used():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in range(48, 60):
@@ -207,7 +207,7 @@ class Wavering(Doubtful):
         return self.asked % 4 in (0, 1)
 
 
-def test_what_is_pursued_as_acceptable_is_pursued_to_the_end():
+def test_an_acceptable_candidate_is_pursued_to_the_end():
     navmap, pose = doubtful_one_first()
     wavering = seeker(Wavering())
     approaches = [wavering.approach(navmap, whole(navmap), pose, step) for step in range(6)]
@@ -253,7 +253,7 @@ def test_no_viewpoint_lies_behind_a_wall_however_near():
     assert cols.min() > 39
 
 
-def test_no_viewpoint_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
+def test_no_viewpoint_lies_on_unseen_ground_behind_an_object_that_hangs_on_a_wall():
     """The wall behind a picture is hidden by it, and the ground behind that wall was never in view."""
     rows = room(R=(30, 10), T=(30, 40))
     for row in range(20, 40):
@@ -320,7 +320,7 @@ def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
     assert tried == [0, 10, 30, 70]
 
 
-def test_late_in_the_episode_the_nearest_reachable_place_will_do():
+def test_late_in_the_episode_the_nearest_reachable_place_is_used():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in range(35, 79):
@@ -367,7 +367,7 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     assert seek.approach(navmap, whole(navmap), there, 2) is None
 
 
-def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
+def test_a_candidate_accepted_from_too_far_away_waits_and_is_near_enough_late_in_the_episode():
     navmap, pose = far_target()
     seek = seeker(RefuseAll(), last_resort_step=100, retry_after_steps=10)
     approach = seek.approach(navmap, whole(navmap), pose, 5)
@@ -381,7 +381,7 @@ def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
     assert late.near_enough
 
 
-def test_where_pessimistic_marks_close_the_path_to_a_target_the_optimistic_ones_count():
+def test_optimistic_marks_count_when_pessimistic_ones_close_the_path_to_a_target():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in (30, 31, 32):
@@ -458,7 +458,7 @@ def test_a_candidate_first_found_after_step_200_is_not_verified():
     assert seeker(refuse).judge(navmap, (22, 44)) is False
 
 
-def test_reset_forgets_what_was_set_aside_and_how_long_it_would_have_waited():
+def test_reset_forgets_deferred_candidates_and_their_waiting_times():
     navmap, pose = enclosed_target()
     seek = seeker(retry_after_steps=10)
     for step in (0, 10, 30):

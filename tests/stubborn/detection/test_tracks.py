@@ -74,7 +74,7 @@ def test_objects_side_by_side_are_two_tracks():
     assert [len(of(tracks, name)) for name in ("table", "chair")] == [1, 1]
 
 
-def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
+def test_a_wrong_category_in_one_view_is_outvoted_by_the_others():
     tracks = tracked()
     look(tracks, VIEWS[0], TABLE, goal="cabinet", taken_for="cabinet")
     assert tracks.probabilities("cabinet").max() > 0.5
@@ -84,7 +84,7 @@ def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
     assert len(of(tracks, "table")) == 1
 
 
-def test_a_part_that_may_be_the_goal_stays_one_track_though_another_heading_shows_it_as_the_whole():
+def test_a_possible_part_of_the_goal_stays_one_track_when_another_heading_shows_the_whole():
     """Otherwise each heading would end it or begin it again, and no look at it would ever count."""
     tracks = tracked()
     table, cushion = (MPCAT40_ID[name] - 1 for name in ("table", "cushion"))
@@ -102,7 +102,7 @@ def test_a_part_that_may_be_the_goal_stays_one_track_though_another_heading_show
     assert tracks.count <= 4  # the wall and the table's sides may add one or two
 
 
-def test_what_is_hidden_is_not_judged():
+def test_hidden_tracks_are_not_judged():
     tracks = tracked()
     look(tracks, VIEWS[0], TABLE)
     before = tracks.probabilities("table").max()

@@ -75,7 +75,7 @@ def test_the_other_methods_are_logistic_regressions_and_threshold_uses_the_mean_
     np.testing.assert_allclose(ours, expected, atol=1e-3)
 
 
-def test_a_category_shifts_the_logistic_regression_by_what_its_candidates_warrant(tmp_path: Path):
+def test_a_category_shifts_the_logistic_regression_as_its_candidates_warrant(tmp_path: Path):
     chairs, (features, truth) = examples(400, 0.5, seed=11), examples(200, 0.5, seed=12)
     false = features[~truth]
     few, many = false[:4], false[:80]

@@ -136,7 +136,7 @@ def test_a_short_frontier_is_left_for_last():
     assert last == pytest.approx((3.1, 0.0), abs=0.3)
 
 
-def test_where_nothing_is_unknown_it_goes_where_it_was_least():
+def test_without_unknown_ground_it_goes_to_the_least_visited_ground():
     navmap = square(3.0)
     closed_but(navmap, 3.0, [])
     route = route_of(explorer(), ground(navmap, HERE, window(navmap)))

@@ -81,7 +81,7 @@ def test_the_input_is_the_patch_around_the_robot(at: tuple[float, float, float])
     np.testing.assert_allclose(given.heading, (math.cos(at[2]), math.sin(at[2])), atol=1e-6)
 
 
-def test_a_map_of_which_nothing_is_known_or_whose_edge_is_no_multiple_of_the_blocks_can_be_observed():
+def test_an_unknown_map_and_a_map_that_is_not_a_multiple_of_the_blocks_can_be_observed():
     empty = observe(NavMap.empty(GridFrame.around_start(401, 0.05)), Pose(0.0, 0.0, 0.0), "bed", VIEW)
     assert not empty.near.geometry.any()
     navmap = NavMap.empty(GridFrame.around_start(401, 0.05))

@@ -154,14 +154,14 @@ def enclosed() -> NavMap:
     return navmap
 
 
-def test_where_nothing_is_left_to_see_the_robot_stays_on_its_side_of_the_marks():
+def test_with_nothing_left_to_see_the_robot_stays_on_its_side_of_the_marks():
     navmap, explore = enclosed(), explorer(near_m=0.0)
     navmap.trail[navmap.frame.cell(-1.0, 0.0)] = True  # the ground behind the marks is farthest from the trail
     for _ in range(3):
         assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) < 3.0
 
 
-def test_a_robot_between_large_marks_leaves_over_the_next_layer_when_nothing_is_left_to_see():
+def test_a_robot_between_large_marks_uses_the_next_layer_when_nothing_is_left_to_see():
     navmap, explore = enclosed(), explorer(near_m=0.0)
     (row_0, col_0), (row_1, col_1) = navmap.frame.cell(-0.3, -0.3), navmap.frame.cell(0.3, 0.3)
     navmap.pessimistic_marks[row_0 : row_1 + 1, [col_0, col_1]] = True
@@ -234,7 +234,7 @@ def test_options_that_make_no_sense_are_refused():
 
 
 @pytest.mark.parametrize("layers", [1, 2])
-def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_steps(layers: int):
+def test_marks_that_close_the_path_to_all_remaining_ground_do_not_count_for_some_steps(layers: int):
     navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1, unmarked_steps=5)
     rectangle(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
     row_0, col = navmap.frame.cell(3.0, -1.1)

@@ -54,7 +54,7 @@ def test_a_wall_lands_within_a_cell_of_where_it_is(distance_m: float, yaw_rad: f
 
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
-def test_the_obstacle_layer_is_what_brute_force_projection_of_pixels_gives(distance_m: float):
+def test_the_obstacle_layer_equals_a_brute_force_projection_of_pixels(distance_m: float):
     depth, pose = wall_ahead(distance_m, SKEW), Pose(0.21, -0.4, SKEW)
     fast, slow = mapped(depth, pose).seen_obstacle, brute_force(depth, pose, 0.10, 0.88)
     grown = np.zeros_like(fast)
@@ -156,7 +156,7 @@ def test_a_cell_takes_the_highest_score_of_its_pixels():
 
 
 @pytest.mark.parametrize("fraction", [2, 4, 8])
-def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction: int):
+def test_scores_at_a_whole_fraction_of_the_image_are_projected_to_the_same_place(fraction: int):
     picture = Box((1.97, 2.0), (-0.4, 0.2), (0.7, 1.1), "picture")
     depth, semantic = GridWorld([picture], (0.0, 0.0, 0.0), camera=CAMERA).render()
     target = (semantic == PICTURE_ID).astype(np.float32)

@@ -66,7 +66,7 @@ def layers_by_brute_force(frames: list) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
-def test_the_four_layers_are_what_projecting_every_pixel_gives(distance_m: float):
+def test_the_four_layers_equal_a_projection_of_every_pixel(distance_m: float):
     frames = [(frame_at(pose, distance_m), random_scores(i), pose) for i, pose in enumerate(POSES)]
     navmap = NavMap.empty(FRAME)
     config = MappingConfig(score_stride_px=1, occupancy=OccupancyConfig(neighbours=0))  # lone pixels count
@@ -123,7 +123,7 @@ def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
     assert navmap.found_step[left] == 3
 
 
-def test_a_frame_without_a_trace_of_the_target_clears_what_it_looks_at():
+def test_a_frame_without_the_target_clears_the_cells_in_view():
     pose = POSES[0]
     depth = frame_at(pose, 2.0)
     ones, zeros = np.ones_like(depth), np.zeros_like(depth)

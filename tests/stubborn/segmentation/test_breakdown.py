@@ -39,7 +39,7 @@ def test_pixels_are_counted_at_their_distance_and_those_without_depth_nowhere(tw
     assert int(two_sofas.by_distance.sum()) == 64 + 9
 
 
-def test_void_and_specks_are_no_objects() -> None:
+def test_void_and_specks_are_not_objects() -> None:
     semantic = np.zeros((24, 32), np.uint8)
     semantic[3, 4:7] = SOFA
     breakdown = Breakdown()
