@@ -1,4 +1,4 @@
-"""Bad options of every command are one line on stderr and exit status 2; new commands need no line here."""
+"""Bad options of every command give one line on stderr and exit status 2; new commands need no entry here."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NUMBERS = {int: (-7, 10**30), float: (-7.0, math.nan, math.inf, 1e308)}
 
 
 def commands() -> dict[str, ModuleType]:
-    """All modules with options and a main function."""
+    """Returns all modules that have options and a main function."""
     tools = [".".join(file.relative_to(ROOT).with_suffix("").parts) for file in (ROOT / "tools").glob("*/*.py")]
     names = [
         *(each.module for each in COMMANDS_OF_USERS.values()),
@@ -42,7 +42,7 @@ COMMANDS = commands()
 
 
 def required(args_type: type) -> list[str]:
-    """The words for the options without a default."""
+    """Returns words for the options that have no default."""
     words: list[str] = []
     hints = typing.get_type_hints(args_type, include_extras=True)
     for field in dataclasses.fields(args_type):

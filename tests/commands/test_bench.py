@@ -1,4 +1,4 @@
-"""The benchmark measures what it says, in turns, and its table is that of its figures."""
+"""The benchmark measures each part, alternates between versions, and its table agrees with its figures."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_works_take_turns_and_the_least_counts(monkeypatch: pytest.MonkeyPatch) 
     }
     ms = interleaved(works, [0, 1], repeats=2)
     assert [name for name, _ in done] == ["ours", "theirs"] * 5
-    assert ms["ours"].tolist() == [3.0, 2.0]  # the first of all does not count
+    assert ms["ours"].tolist() == [3.0, 2.0]  # the first round does not count
     assert ms["theirs"].tolist() == [7.0, 4.0]
 
 

@@ -1,4 +1,4 @@
-"""Sheets of what the network saw in failed episodes."""
+"""Sheets with the images and the network's output in failed episodes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tests.helpers.worlds import room, with_box
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two recorded episodes in which the agent stops at once, far from the sofa."""
+    """Returns a folder with two recorded episodes in which the agent stops at once, far from the sofa."""
     folder = tmp_path_factory.mktemp("recorded")
     house = with_box(room(9, 4), "sofa_00", centre_m=(4.0, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
@@ -43,7 +43,7 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: 
     height_px = show_mistakes.PANEL_PX * 480 // 640 + show_mistakes.CAPTION_PX
     assert sheet.shape == (2 * height_px + show_mistakes.CAPTION_PX, 4 * show_mistakes.PANEL_PX, 3)
     headings = sheet[: show_mistakes.CAPTION_PX].reshape(show_mistakes.CAPTION_PX, 4, show_mistakes.PANEL_PX, 3)
-    assert (headings.min(axis=(0, 2, 3)) < 100).all()  # each panel has one
+    assert (headings.min(axis=(0, 2, 3)) < 100).all()  # each panel has a title
     trajectory = read_trajectory(trajectory_file(recorded / "run", "lounge_0000"))
     house = read_run(recorded / "run").config["house"]
     images = show_mistakes.render_at(

@@ -1,4 +1,4 @@
-"""`stubborn`: the table of its commands, its list, and what it answers to names that do not exist."""
+"""`stubborn`: the table of its commands, its list, and its messages about names that do not exist."""
 
 from __future__ import annotations
 

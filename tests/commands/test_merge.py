@@ -1,4 +1,4 @@
-"""Shards of a run, and the run that is made of them."""
+"""Shards of a run are merged into one run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tables of the paper from lines with known means."""
+"""The tables of the paper, computed from result lines with known means."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def line(number: int, *, success: bool, failure: str | None = None, **known: obj
 
 
 def lines_of(setups: tuple[AgentSetup, ...], *, failed: tuple[int, ...]) -> dict:
-    """40 episodes each; setup i fails the first `failed[i]`, of which the very first by a trap."""
+    """Returns 40 episodes per setup; setup i fails the first `failed[i]` of them, the very first one by a trap."""
     return {
         setup: [
             line(n, success=n >= count, failure=None if n >= count else "explore" if n else "trapped")

@@ -28,7 +28,7 @@ ORACLE = "oracle_gt_none_tiny"
 
 @pytest.fixture(scope="module")
 def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Four episodes in a room with a sofa and a bed."""
+    """Returns arguments for four episodes in a room with a sofa and a bed."""
     folder = tmp_path_factory.mktemp("splits") / "tiny"
     folder.mkdir()
     house = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
@@ -47,7 +47,7 @@ def args(split: Path, tmp_path: Path) -> reproduce.Args:
 
 
 def stem(args: reproduce.Args) -> str:
-    """Of the files of the table that it asks for."""
+    """Returns the stem of the file names of the requested table."""
     return reproduce.stem_of(args, args.table)
 
 
@@ -99,7 +99,7 @@ def test_after_the_time_limit_the_table_has_the_episodes_that_all_agents_ran(
 ) -> None:
     assert reproduce.main(replace(args, minutes=0.0)) == 1
     assert "no episode that oracle, examples.my_agent:make (gt) have all run" in capsys.readouterr().out
-    assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always played
+    assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always run
     assert list(read_run(args.out / MINE).lines) == ["e0"]
     run.main(reproduce._run_args(args, reproduce.AgentSetup("oracle", "gt")))  # the oracle is one ahead
     capsys.readouterr()

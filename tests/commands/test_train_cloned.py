@@ -23,7 +23,7 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 def rule(house: str, *, seed: int) -> Demonstration:
-    """An episode with a rule: turn to the side where the bed is, go on where there is none, stop at the end."""
+    """Returns an episode with a rule: turn to the side of the bed, drive on if there is no bed, stop at the end."""
     rng = np.random.default_rng(seed)
     n = 12
     actions = rng.integers(1, 4, n).astype(np.uint8)

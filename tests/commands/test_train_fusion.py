@@ -1,4 +1,4 @@
-"""The tool that logs tracks and fits the fusion of views: its log, how it continues one, what it refuses."""
+"""The tool that logs tracks and fits the fusion of views: its log, a continued log, refused arguments."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
-    """The log after this number of episodes; it holds too few tracks for a fit."""
+    """Returns the log after this number of episodes; it holds too few tracks for a fit."""
     args = train_tracks.Args(split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log)
     with pytest.raises(ConfigError, match="100 are needed"):
         train_tracks.main(args)
@@ -88,7 +88,7 @@ def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
 
 def test_merged_tracks_are_counted_together():
     class Merged:
-        """Track 2 became a part of track 1."""
+        """Track 2 was merged into track 1."""
 
         @property
         def evidence(self) -> Merged:

@@ -24,7 +24,7 @@ from stubborn.segmentation.rednet import COMPACT
 
 
 def write_views(folder: Path, count: int, size_px: int = 64, rows_px: int | None = None) -> None:
-    """Views of a bright sofa in front of a dark wall."""
+    """Writes views of a bright sofa in front of a dark wall."""
     folder.mkdir()
     rng = np.random.default_rng(0)
     with tarfile.open(folder / "views-000000.tar", "w") as archive:

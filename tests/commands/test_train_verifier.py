@@ -1,4 +1,4 @@
-"""The tool that logs candidates and fits verifiers: its log, how it continues one, what it refuses."""
+"""The tool that logs candidates and fits verifiers: its log, a continued log, refused arguments."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
-    """The log after this number of episodes; it holds too few candidates for a fit."""
+    """Returns the log after this number of episodes; it holds too few candidates for a fit."""
     args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
     with pytest.raises(ConfigError, match="500 of either are needed"):
         train_verifier.main(args)

@@ -1,4 +1,4 @@
-"""Shards from elsewhere: nothing is written outside of --out, and what is no view is one line."""
+"""Shards from other sources: nothing is written outside of --out, and an invalid view gives one line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runners and agents for tests: they need no physics."""
+"""Runners and agents for tests, without physics."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Job:
 
 
 class JobRunner:
-    """A runner whose line says its process and how often it had to change houses."""
+    """A runner whose result line holds its process id and how often it changed houses."""
 
     def __init__(self) -> None:
         self.house: str | None = None
@@ -51,13 +51,13 @@ def make_runner(config: None) -> JobRunner:
 
 
 def slow_double(milliseconds: int) -> int:
-    """Returns twice the number, after this time."""
+    """Returns twice the number after that number of milliseconds."""
     time.sleep(milliseconds / 1000)
     return 2 * milliseconds
 
 
 def die_the_first_time(marker: Path) -> str:
-    """Kills the process and leaves the file `marker`; where the file exists, returns its name."""
+    """Creates the file `marker` and kills the process; returns the file's name if it already exists."""
     if not marker.exists():
         die(marker.touch())
     return marker.name
@@ -75,11 +75,11 @@ def die(item: object) -> None:
 
 
 class Faulty(Exception):
-    """The error of an agent of a user."""
+    """An error in an agent of a user."""
 
 
 class FaultyAgent:
-    """An `Agent` that breaks at its second action while the file `STUBBORN_TEST_FAULT` names exists, and then stops."""
+    """An `Agent` that raises at its second action if the file `$STUBBORN_TEST_FAULT` exists, and stops at its third."""
 
     def reset(self, goal: str, seed: int) -> None:
         self.step = 0

@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True)
 class Args:
-    """Arguments of a test."""
+    """Arguments for the tests."""
 
     episodes: int = 5
     """How many."""

@@ -1,4 +1,4 @@
-"""Settings are set by their path, checked by their dataclass, and wrong names list the right ones."""
+"""Settings are set by their path and checked by their dataclass, and an unknown name lists the valid ones."""
 
 from __future__ import annotations
 

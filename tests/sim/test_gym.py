@@ -28,7 +28,7 @@ SMALL = CameraModel(width_px=64, height_px=48)
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A room of 6 x 6 m with a sofa."""
+    """Returns a room of 6 x 6 m with a sofa."""
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
     furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     file.write_text(furnished.spec.to_xml())

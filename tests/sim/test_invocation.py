@@ -1,4 +1,4 @@
-"""Messages name commands as the user typed them, and files name them in one way."""
+"""Messages name commands as the user typed them, and files always use the same name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with an environment in it, which is not on the path; it is the current folder."""
+    """Creates a folder with an environment in it, which is not on the path, and makes it the current folder."""
     binaries = tmp_path / "project" / ".venv" / "bin"
     binaries.mkdir(parents=True)
     (binaries / "python").symlink_to(sys.executable)

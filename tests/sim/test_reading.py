@@ -1,4 +1,4 @@
-"""Typed reading: a message names file, line, field, what was found and what is wanted."""
+"""Typed reading: a message names the file, the line, the field, the value found and the type expected."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def member(header: str) -> bytes:
         b"",
         b"no archive",
         damaged_zip(put(b"PK\x01\x02", 16, 0xAA)),  # the checksum
-        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a method of compression that there is not
+        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a compression method that does not exist
         damaged_zip(put(b"PK\x01\x02", 10, 14)),  # LZMA
         damaged_zip(put(b"PK\x01\x02", 8, 1)),  # encrypted
         damaged_zip(lambda content: content.__setitem__(slice(40, 60), b"\xff" * 20)),

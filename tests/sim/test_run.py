@@ -1,4 +1,4 @@
-"""`python -m sim.run` as a user meets it: results, resuming, workers, one clear line where an option will not do."""
+"""`python -m sim.run` as a user runs it: results, resuming, workers, one clear line for an invalid option."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def command(*options: object) -> list[str]:
-    """With ground truth unless another segmentation is asked for: a network would take most of the time."""
+    """Uses ground truth unless another segmentation is requested: a network would take most of the time."""
     semantics = () if "--semantics" in options else ("--semantics", "gt")
     return [sys.executable, "-m", "sim.run", *map(str, (*options, *semantics))]
 

@@ -1,4 +1,4 @@
-"""The agents state for which place they stop: on the object that they took for the goal."""
+"""The agents state the place for which they stop, on the object that they took for the goal."""
 
 from __future__ import annotations
 

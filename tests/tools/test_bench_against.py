@@ -1,4 +1,4 @@
-"""The comparison with another commit refuses what it cannot compare, and takes turns."""
+"""The comparison with another commit refuses versions that it cannot compare, and alternates between the two."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:
 
 
 class Told(Worker):
-    """A version whose rounds take the given seconds; none is left: its process has ended."""
+    """A version whose rounds take the given seconds; after the last one its process has ended."""
 
     def __init__(self, name: str, seconds: list[float], order: list[str]) -> None:
         self.name, self.seconds, self.order = name, seconds, order

@@ -30,7 +30,7 @@ FAILED = {name: LINE[name] for name in ("house", "goal")} | {"episode_id": "e1",
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
-    """A recorded run of an episode in a plan of two rooms, and of one that failed."""
+    """Returns a recorded run of an episode in a plan of two rooms, and of one that failed."""
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
     (plan,) = export_plans(house, {})

@@ -23,7 +23,7 @@ HEIGHT_PX = round(160 * FRAME.cell_m * draw_trajectories.PX_M)
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of two recorded episodes in which the agent stops at once."""
+    """Returns a run of two recorded episodes in which the agent stops at once."""
     folder = tmp_path_factory.mktemp("recorded")
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (folder / "lounge.xml").write_text(house.spec.to_xml())

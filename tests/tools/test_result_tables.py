@@ -1,4 +1,4 @@
-"""The tables of results are those of the archive, and odd archives are reported."""
+"""The tables of results agree with the archive, and unusual archives are reported."""
 
 from __future__ import annotations
 

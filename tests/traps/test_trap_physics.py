@@ -1,4 +1,4 @@
-"""Tests of agents in traps: which ones escape, and that collision marks agree with contacts."""
+"""Tests of agents in traps: some escape, and collision marks agree with contacts."""
 
 from __future__ import annotations
 

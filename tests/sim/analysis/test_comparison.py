@@ -26,7 +26,7 @@ from sim.interface import ConfigError
 
 
 def houses(count: int) -> list[str]:
-    """One house for each episode: then intervals over houses are those over episodes."""
+    """Returns one house for each episode, so that intervals over houses equal intervals over episodes."""
     return [f"house_{i:03d}" for i in range(count)]
 
 
@@ -109,7 +109,7 @@ def test_runs_with_another_success_rule_are_compared_although_their_shortest_pat
     with pytest.raises(ConfigError, match="shortest_path"):
         require_same_episodes(*map(read_run, folders))
     for folder, distance_m in zip(folders, (1.0, 0.5), strict=True):
-        with pytest.raises(ConfigError, match="shortest_path"):  # one of them, at least, has no configuration tree
+        with pytest.raises(ConfigError, match="shortest_path"):  # at least one of them has no configuration tree
             require_same_episodes(*map(read_run, folders))
         config = json.loads((folder / "config.json").read_text())
         config["config"] = {"task": {"success": {"distance_m": distance_m}}}

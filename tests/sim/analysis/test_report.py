@@ -40,7 +40,7 @@ HOSTILE = "</script><img src=x onerror=alert(1)> & \"' {{ 7*7 }}"
 
 @pytest.fixture(scope="module")
 def recorded_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the recorded run `found`: four episodes in which the oracle finds a sofa behind a wall."""
+    """Returns a folder with the recorded run `found`: four episodes in which the oracle finds a sofa behind a wall."""
     folder = tmp_path_factory.mktemp("recorded_run")
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0.6, 1.25), half_m=(0.05, 1.4, 1.25))
@@ -52,7 +52,7 @@ def recorded_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def pair(recorded_run: Path, tmp_path: Path) -> tuple[Path, Path]:
-    """Two runs of the same episodes: one as it was, one in which the first episode failed and the second broke."""
+    """Returns two runs of the same episodes; in the second run the first episode failed and the second one broke."""
     shutil.copytree(recorded_run / "found", tmp_path / "found")
     shutil.copytree(recorded_run / "found", tmp_path / "worse")
     failed = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "explore", "end_reason": "max_steps"}
@@ -104,7 +104,7 @@ def test_a_path_on_the_page_is_the_recorded_one(recorded_run: Path) -> None:
         places_m = np.cumsum([drawn["x"], drawn["y"]], axis=1).T / PX_M * (1, -1)
         places_m += (sheet.frame.origin_xy_m[0], sheet.frame.origin_xy_m[1] + sheet.size_px[1] / PX_M)
         np.testing.assert_allclose(places_m, recorded.positions_m, atol=0.006)
-        assert np.cumsum(drawn["a"])[0] == -90  # up on the page is against its y
+        assert np.cumsum(drawn["a"])[0] == -90  # the page's y points down
         assert len(drawn["actions"]) == len(drawn["d"]) - 1 == recorded.num_steps
 
 
@@ -155,7 +155,7 @@ def test_a_plan_shows_one_storey() -> None:
 
 
 def _covers(path: str, place: np.ndarray) -> bool:
-    """Even-odd rule over the closed parts of a path of relative lines."""
+    """Applies the even-odd rule to the closed parts of a path of relative lines."""
     inside = False
     for part in path.split("z")[:-1]:
         numbers = [int(n) for n in re.findall(r"-?\d+", part)]
@@ -432,7 +432,7 @@ def test_text_has_the_contrast_ratio_of_wcag(scheme: int) -> None:
 
 
 def _luminance(colour: str) -> float:
-    """Relative luminance as WCAG 2 has it."""
+    """Returns the relative luminance as defined by WCAG 2."""
     shares = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
     return float(np.dot([0.2126, 0.7152, 0.0722], linear))
@@ -484,7 +484,7 @@ def test_the_table_sorts_both_ways_and_says_so(browser: Browser, pair: tuple[Pat
     assert browser.run(f'return document.querySelector("{column}").parentNode.ariaSort') == "ascending"
     browser.keys(column, ENTER)
     assert browser.run(SHOWN) == [ids[i] for i in (2, 3, 0, 1)]
-    for _ in range(2):  # what has no value is last either way
+    for _ in range(2):  # rows without a value are last in both directions
         browser.click("thead button[data-column='7']")
         assert browser.run(SHOWN)[-1] == ids[3]
     assert browser.console_errors() == []
@@ -581,7 +581,7 @@ def test_pictures_and_videos_show_where_the_page_was_moved_with_its_run(
       ));
       video.load(); video.play();
     })"""
-    assert browser.run(loaded) == [640, 128, ""]  # the picture of the end stands above it
+    assert browser.run(loaded) == [640, 128, ""]  # the picture of the end is above it
     assert browser.console_errors() == []
     shutil.copy(tmp_path / "moved" / "page.html", tmp_path / "page.html")
     browser.open(tmp_path / "page.html")

@@ -32,7 +32,7 @@ def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str) -> tuple[dict, set[str]]:
-    """The result line of one episode and the keys of the observations."""
+    """Runs one episode; returns its result line and the keys of the observations."""
     agents.SEEN.clear()
     options = ["--agent", agent, "--semantics", semantics, "--house", str(house), "--episodes", "1", "--out", str(out)]
     assert entry([*options, "--config", *SMALL, *config]) == 0

@@ -1,4 +1,4 @@
-"""Options are resolved once: no name is looked up and no verifier is built a second time."""
+"""Options are read once: no name is looked up and no verifier is built a second time."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ SMALL = CameraModel(width_px=160, height_px=120)
 
 @pytest.fixture(scope="module")
 def scene() -> Iterator[Scene]:
-    """A room of 6 x 5 m with a sofa and, in front of it, a table."""
+    """Returns a room of 6 x 5 m with a sofa and, in front of it, a table."""
     house = with_box(room(6, 5), "sofa_00", centre_m=(1.5, 0.5, 0.4), half_m=(0.4, 0.9, 0.4))
     house = with_box(house, "table_03", centre_m=(0.5, 0.5, 0.2), half_m=(0.3, 0.3, 0.2))
     scene = Scene(house, robot=RobotConfig(), camera=SMALL, profile="fast")

@@ -1,4 +1,4 @@
-"""The noisy detector: rates and duration of its errors are those of its configuration."""
+"""The noisy detector: the rates and durations of its errors agree with its configuration."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_an_error_lasts_over_the_frames_and_small_moves_of_a_view_and_not_beyond
     here = seen(config, of).first
     np.testing.assert_array_equal(here, seen(config, of, frame=99).first)
     moved = seen(config, of, eye=(2.05, 0.52)).first
-    assert (moved == here).mean() > 0.95  # but for the few on whose edge of a sector it lies
+    assert (moved == here).mean() > 0.95  # except for the few that lie on the edge of a sector
     was_mistaken = here != MPCAT40_ID["table"]
     for elsewhere in ((-2.0, -0.5), (0.6, 0.15), (4.0, 1.0)):  # another side, nearer, farther
         again = seen(config, of, eye=elsewhere).first[was_mistaken] != MPCAT40_ID["table"]

@@ -109,7 +109,7 @@ print(resident_mb() - before_mb)
 
 
 def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() -> None:
-    """In a process of its own, because the switch is for a whole process."""
+    """Runs in a process of its own, because the switch is for a whole process."""
     ended = subprocess.run([sys.executable, "-c", LAYERS], capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(ended.stdout) < 10, ended.stdout  # the layers have 100
 
@@ -138,7 +138,7 @@ print(before_mb - resident_mb())
 
 
 def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
-    """In a process of its own; the pieces between the freed ones live on."""
+    """Runs in a process of its own; the blocks between the freed ones stay allocated."""
     ended = subprocess.run([sys.executable, "-c", SHREDS], capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(ended.stdout) > 50, ended.stdout  # 150 are freed, some are used again
 

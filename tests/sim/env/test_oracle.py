@@ -39,7 +39,7 @@ def run_oracle(house, goal: str, start: Pose) -> dict:
 
 
 def maze():
-    """8 x 6 m: two walls make an S, the bed at its end."""
+    """Returns a room of 8 x 6 m in which two walls form an S, with the bed at its end."""
     house = with_box(room(8, 6), "wall_10", centre_m=(-1.3, -0.6, 1.25), half_m=(0.05, 2.4, 1.25))
     house = with_box(house, "wall_11", centre_m=(1.3, 0.6, 1.25), half_m=(0.05, 2.4, 1.25))
     return with_box(house, "bed_00", centre_m=(3.3, 1.5, 0.25), half_m=(0.5, 0.8, 0.25))

@@ -1,4 +1,4 @@
-"""The dense reward: progress to the goal, whatever the route, and what steps and collisions cost."""
+"""The dense reward: progress to the goal on any route, minus the costs of steps and collisions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FORWARD, LEFT, RIGHT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_
 
 @pytest.fixture(scope="module")
 def options(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """A room of 6 x 6 m, in which the robot stands 2.1 m from where a STOP for the sofa succeeds."""
+    """Returns options for a room of 6 x 6 m; the robot starts 2.1 m from the nearest place of a successful STOP."""
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
     furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     file.write_text(furnished.spec.to_xml())

@@ -34,7 +34,7 @@ def test_a_sampled_start_is_free_far_enough_and_accepted_by_the_world(seed):
 
 
 def test_no_start_is_in_a_closet_without_a_door():
-    # A bed on either side of the wall; what is right of it is smaller.
+    # A bed on each side of the wall; the area to its right is smaller.
     house = with_box(room(14, 4), "wall_10", centre_m=(1.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     for number, x in enumerate((-6.5, 6.5)):
         house = with_box(house, f"bed_{number:02d}", centre_m=(x, 0, 0.25), half_m=(0.3, 1.0, 0.25))

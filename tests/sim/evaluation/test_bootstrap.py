@@ -15,7 +15,7 @@ def houses_of(count: int, episodes: int) -> list[str]:
 
 
 def each_in_its_house(count: int) -> list[str]:
-    """With one episode in each house the bootstrap over houses is the ordinary one over episodes."""
+    """With one episode in each house, the bootstrap over houses equals the ordinary bootstrap over episodes."""
     return houses_of(count, 1)
 
 
@@ -61,7 +61,7 @@ def test_intervals_over_twenty_houses_hold_the_true_mean_in_about_95_of_100_samp
 def test_houses_with_more_episodes_weigh_more_as_in_the_mean() -> None:
     values, names = np.array([0.0] * 9 + [1.0]), ["large"] * 9 + ["small"]
     low, high = bootstrap_interval(values, names)
-    assert (low, high) == (0.0, 1.0)  # each house is drawn alone with chance 1/4
+    assert (low, high) == (0.0, 1.0)  # a resample holds only one of the houses with probability 1/4
     assert estimate(list(values), names).mean == pytest.approx(0.1)
 
 

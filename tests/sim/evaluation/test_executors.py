@@ -1,4 +1,4 @@
-"""The executor changes no line: this process, several processes, a Ray cluster of which a machine dies."""
+"""No executor changes a result line: this process, several processes, a Ray cluster in which a machine dies."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
 
 
 class OneProcessor(executors.ProcessPool):
-    """A pool like a cluster with one free processor: its other workers never get ready."""
+    """A pool like a cluster with one free processor: its other workers never become ready."""
 
     first: Any = None
 
@@ -144,7 +144,7 @@ def test_without_a_cluster_one_sentence_says_how_to_start_one() -> None:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    """Two machines of one processor each, and a death that is noticed within two seconds."""
+    """Starts two machines of one processor each; a dead machine is detected within two seconds."""
     ray = pytest.importorskip("ray")
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     noticed = {f"health_check_{name}": value for name, value in HEALTH.items()}

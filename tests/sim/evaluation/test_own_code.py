@@ -1,4 +1,4 @@
-"""A message about an error in a user's code names the innermost line of that code; a hash tells two versions apart."""
+"""A message about an error in a user's code names its innermost line; a hash distinguishes two versions."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def in_this_project():
 
 @pytest.fixture
 def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A module `mine/bad.py` below the current folder."""
+    """Writes a module `mine/bad.py` below the current folder and returns it."""
     file = tmp_path / "mine" / "bad.py"
     file.parent.mkdir()
     file.write_text(AGENT)
@@ -82,7 +82,7 @@ def test_an_agent_of_this_project_is_named_by_its_own_line(tmp_path: Path, monke
 
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A package with an agent, what it imports at once, what it imports late, and what it does not import."""
+    """Writes a package with an agent and modules that it imports at the start, imports later, and does not import."""
     folder = tmp_path / "hashed"
     folder.mkdir()
     for name, text in {

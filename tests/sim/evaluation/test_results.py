@@ -106,7 +106,7 @@ def test_runs_without_a_list_of_codes_name_their_code_and_code_that_ran_nothing_
     assert config.pop("codes") == ["b2"]
     (tmp_path / "config.json").write_text(json.dumps(config))
     again = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
-    assert again.record_code("b2") == ["a1"]  # the code that began the folder, where no list is known
+    assert again.record_code("b2") == ["a1"]  # the code that created the folder, if there is no list
     again.close()
 
 
@@ -196,7 +196,7 @@ def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) 
 
 
 def write_lines(folder: Path, *lines: dict | str) -> None:
-    """Begins a run whose file of results has these lines."""
+    """Starts a run whose file of results has these lines."""
     RunDirectory(folder, CONFIG | {"seed": 0}).close()
     text = "".join((each if isinstance(each, str) else json.dumps(each)) + "\n" for each in lines)
     (folder / "results.jsonl").write_text(text)

@@ -1,4 +1,4 @@
-"""Each episode gives one line, even where the physics fail."""
+"""Each episode gives one line, even if the physics fail."""
 
 from __future__ import annotations
 
@@ -205,7 +205,7 @@ def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
 
 
 class Answers:
-    """An agent whose `act` answers with what a function returns."""
+    """An agent whose `act` returns the result of a function."""
 
     def __init__(self, answer: Callable[[], object]) -> None:
         self.answer = answer
@@ -283,7 +283,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
         return
     fault.unlink()
     assert entry(command) == 1
-    assert reasons() == before  # nothing is run again unasked
+    assert reasons() == before  # nothing is run again without a request
     assert entry([*command, "--retry-errors"]) == 1
     assert reasons() == before | {"e0": ""}
     assert "4 episodes that ended with an error are run again" in capsys.readouterr().out

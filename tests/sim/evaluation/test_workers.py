@@ -1,4 +1,4 @@
-"""Many items on several processes: each gives one line, even where workers die."""
+"""Many items on several processes: each gives one line, even if workers die."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kernels are compiled when they are called, and not before."""
+"""Kernels are compiled at their first call and not before."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim.geometry.compiling import Kernel, must_compile, njit
 
 @njit()
 def add_twice(values, more):
-    """Adds a number to all values, and again."""
+    """Adds a number to all values, twice."""
     for i in range(values.size):
         values[i] += twice(more)
 

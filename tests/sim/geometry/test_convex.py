@@ -1,4 +1,4 @@
-"""Plan projections of MuJoCo's shapes against sums done by hand, and lines that cross them."""
+"""Plan projections of MuJoCo's shapes against values computed by hand, and lines that cross them."""
 
 from __future__ import annotations
 

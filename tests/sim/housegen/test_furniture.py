@@ -46,7 +46,7 @@ every_style = pytest.mark.parametrize("style", STYLES, ids=lambda s: f"{s.catego
 
 @cache
 def items(style: Style) -> tuple[Item, ...]:
-    """Some items of a style, which need not be in the shipped catalogue."""
+    """Returns some items of a style, which need not be in the shipped catalogue."""
     return tuple(item_of(style, seed) for seed in SEEDS)
 
 

@@ -26,7 +26,7 @@ BARE_M = 2.0
 
 @cache
 def home(pool: Pool, seed: int, clutter: float = 0.6) -> tuple[RoomLayout, ...]:
-    """The furnished rooms of a home of about 150 m2."""
+    """Returns the furnished rooms of a home of about 150 m2."""
     for attempt in range(20):
         rng = np.random.default_rng([seed, attempt])
         try:
@@ -47,7 +47,7 @@ def items(rooms: tuple[RoomLayout, ...]) -> list[Item]:
 
 
 def small(rooms: tuple[RoomLayout, ...]) -> list[Item]:
-    """Objects with the colours of a palette."""
+    """Returns objects with the colours of a palette."""
     names = (*palettes("train"), *palettes("heldout"))
     found = [item for item in items(rooms) if item.category == "objects"]
     return [item for item in found if any(geom.look.texture in names for geom in item.geoms)]

@@ -1,4 +1,4 @@
-"""Hazards of generated houses: where they stand, what they leave open, and that a camera does not show them."""
+"""Hazards of generated houses: their positions, the space that they leave open, and that no camera shows them."""
 
 from __future__ import annotations
 

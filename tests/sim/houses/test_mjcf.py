@@ -32,7 +32,7 @@ def replicate(count: int, inner: str) -> str:
 
 
 def png(width: int, height: int) -> bytes:
-    """A PNG file of 1 bit per pixel, all 0: 50 KB for 20,000 x 20,000 pixels."""
+    """Returns a PNG file of 1 bit per pixel, all 0: 50 KB for 20,000 x 20,000 pixels."""
 
     def chunk(kind: bytes, content: bytes) -> bytes:
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))

@@ -1,4 +1,4 @@
-"""A house file reads only files of its own folder, the textures that a split shares, and what `--root` allows."""
+"""A house file reads only files of its own folder, textures that a split shares, and files that `--root` allows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SOFA = '<mujoco><worldbody><geom name="sofa_00" size="0.2" pos="1 1 0.2"/></worl
 
 
 def write(folder: Path, more: str = "", *, world: str = "") -> Path:
-    """A package's scene: `package/scenes/house.xml`, with the folders `package/common` and `package/textures`."""
+    """Writes the scene of a package, `package/scenes/house.xml`, and its folders `common` and `textures`."""
     for name in ("scenes", "common", "textures", "scenes/parts"):
         (folder / "package" / name).mkdir(parents=True, exist_ok=True)
     (folder / "package" / "common" / "sofa.xml").write_text(SOFA)

@@ -1,4 +1,4 @@
-"""Noise has the statistics of its configuration, and is the same again with the same seed."""
+"""Noise has the statistics of its configuration and is reproducible with the same seed."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ def test_dark_and_bright_saturate() -> None:
 
 
 def readings(config: PoseNoise, *, episodes: int, actions: int) -> tuple[np.ndarray, np.ndarray]:
-    """Errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
+    """Returns errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
     noisy, rng = NoisyPose(config), np.random.default_rng(0)
     true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
     seen = []

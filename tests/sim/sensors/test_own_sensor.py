@@ -1,4 +1,4 @@
-"""A sensor and a noise model of a user: each defined as in a file of one's own, and used through the environment."""
+"""A sensor and a noise model of a user, defined outside of the project and used through the environment."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class MissingContacts:
         self._miss_rate = miss_rate
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Nothing is kept between episodes."""
+        """Does nothing: no state is kept between episodes."""
 
     def apply(
         self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
@@ -101,7 +101,7 @@ class Fog:
         return self
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Nothing is kept between episodes."""
+        """Does nothing: no state is kept between episodes."""
 
     def apply(
         self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
@@ -118,7 +118,7 @@ class NoiseWithBumper(NoiseConfig):
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A room of 6 x 6 m with a sofa at x = 2.5 m."""
+    """Returns a room of 6 x 6 m with a sofa at x = 2.5 m."""
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
     furnished = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     file.write_text(furnished.spec.to_xml())

@@ -50,7 +50,7 @@ def line(steps: int, speed_m: float = 0.2) -> np.ndarray:
 
 
 def shuttle(steps: int, length_m: float = 3.0, speed_m: float = 0.2) -> np.ndarray:
-    """Returns positions to and fro on one line."""
+    """Returns positions that go back and forth on one line."""
     along = np.abs((speed_m * np.arange(steps + 1) + length_m) % (2 * length_m) - length_m)
     return np.c_[along, np.zeros(steps + 1)]
 
@@ -178,7 +178,7 @@ def test_a_robot_that_drives_back_and_forth_is_in_a_loop() -> None:
 
 
 def test_the_second_round_of_a_circle_is_a_loop_and_the_first_is_not() -> None:
-    angle = 0.04 * np.arange(501)  # 5 m from the middle, 157 steps a round
+    angle = 0.04 * np.arange(501)  # 5 m from the centre, 157 steps per round
     circle = 5.0 * np.c_[np.cos(angle), np.sin(angle)]
     begin = first_looping_step(walk(circle))
     assert begin is not None
@@ -208,7 +208,7 @@ def test_new_ground_does_not_depend_on_the_direction_and_ground_next_to_the_old_
     there = line(100) @ turn.T
     beside = (line(100) + np.array([0.0, 0.4])) @ turn.T
     new = on_new_ground(np.concatenate([there, beside[::-1]]))
-    assert new[:101].sum() == 1 + 25  # 20 m, one each fourth step of 0.2 m
+    assert new[:101].sum() == 1 + 25  # 20 m, one in every fourth step of 0.2 m
     assert new[101:].sum() <= 1
 
 

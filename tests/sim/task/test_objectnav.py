@@ -22,7 +22,7 @@ FORWARD, LEFT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP
 
 
 def bed_room() -> World:
-    """8 x 4 m; a bed whose near edge is at x = 2."""
+    """Returns a room of 8 x 4 m with a bed whose near edge is at x = 2."""
     return World(with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25)))
 
 

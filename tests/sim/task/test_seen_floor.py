@@ -1,4 +1,4 @@
-"""The floor area seen and the time to first sight, in houses whose answer is known."""
+"""The floor area seen and the time to first sight, in houses with known values."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def info_after(tmp_path, house: House, goal: str, start: Pose, *actions: Action,
 
 
 def far_room() -> House:
-    """20 x 8 m; a bed at the east end."""
+    """Returns a room of 20 x 8 m with a bed at the east end."""
     return with_box(room(20, 8), "bed_00", centre_m=(9.0, 0, 0.25), half_m=(0.9, 0.9, 0.25))
 
 

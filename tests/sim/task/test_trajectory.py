@@ -21,7 +21,7 @@ STOPPED = Contact("chair_00", "leg", (1.0, 2.0, 0.3), (-1.0, 0.0, 0.0), 0.2, sto
 
 
 def walked(steps: int) -> Trajectory:
-    """A random walk with a collision each third action."""
+    """Returns a random walk with a collision in every third action."""
     rng = np.random.default_rng(steps)
     recorder = Recorder(Pose(0.0, 0.0, 0.0), distance_m=8.0, goal_on_storey=True)
     recorder.look(0.0)

@@ -29,7 +29,7 @@ from tests.helpers.worlds import room, with_box
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory) -> Path:
-    """A folder with the plan of two rooms behind each other, with a bed in the second one."""
+    """Returns a folder with the plan of two rooms in a row, with a bed in the second one."""
     folder = tmp_path_factory.mktemp("plans")
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))

@@ -54,7 +54,7 @@ def line_of(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
 
 
 class Handle:
-    """What `launch_passive` gives, without a window."""
+    """A replacement of the result of `launch_passive`, without a window."""
 
     def __init__(self, model: Any, data: Any) -> None:
         self.model, self.data, self.cam, self.open = model, data, SimpleNamespace(), True

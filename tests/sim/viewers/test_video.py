@@ -1,4 +1,4 @@
-"""Videos of episodes: whole, readable, and without a trace in the results."""
+"""Videos of episodes: complete, readable, and without influence on the results."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def env(house: Path) -> Iterator[ObjectNavEnv]:
 
 @pytest.fixture(autouse=True)
 def short_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A short end in this process: encoding takes most of the time."""
+    """Uses a short end of the video in this process, because encoding takes most of the time."""
     monkeypatch.setattr(video, "END_FRAMES", 2)
 
 
@@ -136,7 +136,7 @@ def test_a_video_is_h264_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode
     frames = frames_of(file)
     assert {frame.shape for frame in frames} == {(720, 1280, 3)}
     stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-video.END_FRAMES - 1, -1))
-    assert np.abs(stop - outcome).mean() > 3.0  # the outcome stands where the step stood
+    assert np.abs(stop - outcome).mean() > 3.0  # the outcome is shown in place of the step
 
 
 def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
@@ -212,7 +212,7 @@ Box = tuple[int, int, int, int]
 
 @pytest.fixture
 def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
-    """Every text that is written into a frame, and where."""
+    """Records every text that is written into a frame, and its position."""
     boxes: list[tuple[str, Box]] = []
     real = cv2.putText
 
@@ -227,7 +227,7 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
 
 
 def crowded_moment() -> Moment:
-    """All categories in sight at once."""
+    """Returns a moment with all categories in view."""
     semantic = np.repeat(np.arange(len(MPCAT40), dtype=np.uint8), 20)[None].repeat(615, axis=0)
     images = {
         "semantic": semantic,
@@ -343,7 +343,7 @@ def test_the_floor_plan_shows_goal_robot_path_and_the_free_space_of_the_task(env
         env.step(Action.MOVE_FORWARD)
     assert (32, 84, 190) in {tuple(colour) for colour in view.paint(300).reshape(-1, 3).tolist()}
     sofa = np.argwhere((before == (56, 158, 80)).all(axis=2)).mean(axis=0)
-    assert sofa[1] > 200  # in the east, which is right
+    assert sofa[1] > 200  # in the east, which is on the right
     assert sofa[0] == pytest.approx(150, abs=8)
 
 

@@ -1,4 +1,4 @@
-"""The controls of the page: who drives, when an action is due, and what is refused."""
+"""The controls of the page: the driver, the time of an action, and refused messages."""
 
 from __future__ import annotations
 

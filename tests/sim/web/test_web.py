@@ -1,4 +1,4 @@
-"""`python -m sim.web` as its users meet it: in headless Chromium, with a second client, and with hostile requests."""
+"""`python -m sim.web` as users run it: in headless Chromium, with a second client, and with hostile requests."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def frame_of(socket: Any) -> tuple[dict[str, Any], bytes]:
     return json.loads(message[4 : 4 + length]), message[4 + length :]
 
 
-# ---- what is refused
+# ---- refused requests
 
 
 def test_other_hosts_other_origins_and_sockets_of_other_pages_are_refused(server: Server) -> None:

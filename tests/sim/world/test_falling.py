@@ -1,4 +1,4 @@
-"""A robot that drives over an edge falls, one that drives over a threshold does not, and the episode says so."""
+"""A robot falls over an edge but not over a threshold, and the episode records it."""
 
 from __future__ import annotations
 

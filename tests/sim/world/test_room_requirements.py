@@ -1,4 +1,4 @@
-"""Rooms must have the furniture of their kind, and the docs say which."""
+"""Rooms must have the furniture of their kind, which the docs list."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DOCS = Path(__file__).parents[3] / "docs" / "houses.md"
 
 
 def kitchen(pieces: Mapping[str, tuple[float, float]], *, storey_m: float = 0.0) -> House:
-    """A room of 6 x 4 m with a site of kind kitchen `storey_m` up, and boxes: name to x and longest side."""
+    """Returns a kitchen of 6 x 4 m at height `storey_m` with these boxes (name: x and longest side)."""
     house = room(6, 4)
     site = house.spec.site("room_living_00")
     site.name, site.pos = "room_kitchen_00", (0.0, 0.0, storey_m + 1.25)

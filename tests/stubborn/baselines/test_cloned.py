@@ -1,4 +1,4 @@
-"""The cloned policy: its input, its memory, the streams it learns from, and the agent."""
+"""The cloned policy: its input, its memory, the streams of its training, and the agent."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ BED = GOAL_CATEGORIES.index("bed")
 
 
 def shown(n: int, *, seed: int = 0) -> LabelledSteps:
-    """A demonstration of n random steps."""
+    """Returns a demonstration of n random steps."""
     rng = np.random.default_rng(seed)
     actions = rng.integers(1, 4, n).astype(np.uint8)
     actions[-1] = Action.STOP
@@ -43,7 +43,7 @@ def shown(n: int, *, seed: int = 0) -> LabelledSteps:
 
 
 def logits_of(net: ClonedNet, steps: Steps, parts: int = 1) -> np.ndarray:
-    """The logits of one demonstration that is given in some parts, one after the other."""
+    """Returns the logits of one demonstration that is given in several consecutive parts."""
     state, found = None, []
     arrays = (steps.depth, steps.categories, steps.motion, steps.before)
     for pieces in zip(*(np.array_split(array, parts) for array in arrays), strict=True):
@@ -169,7 +169,7 @@ def test_the_agent_repeats_itself_with_the_same_seed_and_forgets_between_episode
     first, second = actions_of(agent, 1), actions_of(agent, 2)
     assert first != second
     assert actions_of(agent, 1) == first
-    assert set(first) == set(Action)  # the untrained policy does everything
+    assert set(first) == set(Action)  # the untrained policy samples all actions
 
 
 def test_a_stop_can_require_a_probability(net: ClonedNet, tmp_path: Path):

@@ -1,4 +1,4 @@
-"""What becomes of a rejected object when its outline changes, and what is too small to be an object."""
+"""Rejected objects whose outline changes, and groups of cells that are too small to be an object."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.stubborn.detection.test_seeker import EXACT, RefuseAll
 
 
 class ByMean:
-    """A verifier that accepts what was seen with a mean score above 0.7."""
+    """A verifier that accepts objects with a mean score above 0.7."""
 
     may_refuse = True
 

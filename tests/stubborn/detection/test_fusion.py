@@ -1,4 +1,4 @@
-"""The fusion of views: what competes, what the distance is worth, its files, and the fit of its parameters."""
+"""The fusion of views: competing categories, the weight of the distance, its files, and the fit of its parameters."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def test_too_few_tracks_are_refused():
 
 def test_each_track_enters_whole_and_in_parts():
     counts = np.zeros((3, len(MPCAT40)), np.int32)
-    counts[:2, MPCAT40.index("chair")] = 50  # the third one was seen by no pixel
+    counts[:2, MPCAT40.index("chair")] = 50  # no pixel shows the third one
     views = np.stack([posterior(chair=0.9)] * 4)
     episode = {
         "house": "a",

@@ -21,7 +21,7 @@ EXACT, INEXACT = SegmenterSpec(exact_outlines=True), SegmenterSpec(exact_outline
 
 
 class RefuseAll:
-    """A verifier that keeps what it was asked."""
+    """A verifier that records its calls."""
 
     may_refuse = True
 
@@ -37,7 +37,7 @@ class RefuseAll:
 
 
 class Doubtful:
-    """A verifier that accepts what was seen with a mean score above 0.7."""
+    """A verifier that accepts objects with a mean score above 0.7."""
 
     may_refuse = True
 
@@ -59,7 +59,7 @@ def seeker(verifier: Verifier | None = None, **options: float) -> TargetSeeker:
 
 
 def known(text: str) -> tuple[NavMap, Pose]:
-    """A drawn map on which everything has been in view once."""
+    """Returns a map drawn with letters on which every cell has been in view once."""
     navmap, pose = map_of(text)
     navmap.frames_in_view[:] = 1
     navmap.grow_known(*(slice(0, n) for n in navmap.frame.shape))
@@ -67,7 +67,7 @@ def known(text: str) -> tuple[NavMap, Pose]:
 
 
 def room(width: int = 80, height: int = 60, **places: tuple[int, int]) -> list[list[str]]:
-    """A walled room with letters at (row from below, column)."""
+    """Returns a walled room with letters at (row from below, column)."""
     rows = [["#" if c in (0, width - 1) else "." for c in range(width)] for _ in range(height)]
     rows[0] = rows[-1] = ["#"] * width
     for letter, (row, col) in places.items():
@@ -158,7 +158,7 @@ def test_a_margin_as_large_as_the_distance_is_refused():
 
 
 def doubtful_one_first() -> tuple[NavMap, Pose]:
-    """A candidate nearby that was mostly scored low, and a plain one farther away."""
+    """Returns a map with a nearby candidate of mostly low scores and a clear candidate farther away."""
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     navmap.score_max[30, 35] = 0.6
     navmap.score_sum[30, 35], navmap.score_sum[30, 60] = 3.0, 9.0
@@ -197,7 +197,7 @@ def test_an_acceptable_candidate_without_a_viewpoint_does_not_hold_up_the_others
 
 
 class Wavering(Doubtful):
-    """It would accept now the one and then the other."""
+    """Otherwise it would alternate between the two."""
 
     def __init__(self) -> None:
         self.asked = 0
@@ -313,7 +313,7 @@ def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
     navmap, pose = enclosed_target()
     seek, tried = seeker(retry_after_steps=10), []
     for step in range(80):
-        navmap.set_aside[0, 0] = True  # gone when all that was set aside is tried again
+        navmap.set_aside[0, 0] = True  # removed when all deferred candidates are tried again
         assert seek.approach(navmap, whole(navmap), pose, step) is None
         if not navmap.set_aside[0, 0]:
             tried.append(step)
@@ -335,7 +335,7 @@ def test_late_in_the_episode_the_nearest_reachable_place_is_used():
 
 
 def far_target() -> tuple[NavMap, Pose]:
-    """A candidate in the middle of a large piece of furniture, 1.35 m from where a robot fits."""
+    """Returns a map with a candidate in a large piece of furniture, 1.35 m from the nearest free place."""
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(6, 54):
         for col in range(36, 79):

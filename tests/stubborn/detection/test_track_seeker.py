@@ -158,7 +158,7 @@ def test_an_object_that_is_pursued_on_one_spot_is_set_aside_and_driving_begins_t
         return seeker.approach(agent.navmap, window, Pose(x_m, 0.0, 0.0), step) is not None
 
     assert all(pursues(0.0, step) for step in range(100, 109))
-    assert all(pursues(1.1, step) for step in range(109, 119))  # it got somewhere
+    assert all(pursues(1.1, step) for step in range(109, 119))  # it made progress
     assert not pursues(1.1, 119)
     assert aside == [119]
 

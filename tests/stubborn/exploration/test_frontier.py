@@ -22,7 +22,7 @@ def explorer(**options: float) -> FrontierExplorer:
 
 
 def square(half_m: float) -> NavMap:
-    """Ground seen in a square around the start, the robot in its middle."""
+    """Returns ground seen in a square around the start, the robot in its middle."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     see(navmap, (-half_m, half_m), (-half_m, half_m))
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
@@ -73,7 +73,7 @@ def test_frontier_cells_are_known_free_ones_next_to_open_unknown():
 
 
 def closed_but(navmap: NavMap, half_m: float, doors: list[tuple[str, float]]) -> None:
-    """Walls around the square, with doors of 1 m at the side `n`, `s`, `e` or `w` and a place along it."""
+    """Returns walls around the square, with doors of 1 m at a side `n`, `s`, `e` or `w` and a place along it."""
     for side in "nsew":
         at = half_m if side in "ne" else -half_m
         along = [-half_m, *sorted(v for s, place in doors if s == side for v in (place - 0.5, place + 0.5)), half_m]

@@ -40,7 +40,7 @@ def rectangle(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]
 
 
 def corridor(x_m: tuple[float, float] = (-4.0, 4.0)) -> NavMap:
-    """Ground between walls, open at both ends, with the robot's trail in its middle and a bed."""
+    """Returns ground between walls, open at both ends, with the robot's trail in its middle and a bed."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     rectangle(navmap, x_m, (-1.0, 1.0))
     for y_m in ((-1.1, -1.0), (1.0, 1.1)):

@@ -34,7 +34,7 @@ VIEW = ViewConfig()
 
 
 def open_map() -> NavMap:
-    """Ground in view from x = -6 to 6 m, a bed ahead of the start and a wall left of it."""
+    """Returns ground in view from x = -6 to 6 m, a bed ahead of the start and a wall left of it."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     for name, x_m, y_m, value in (
         ("frames_in_view", (-6.0, 6.0), (-6.0, 6.0), 256),  # its lowest byte is 0

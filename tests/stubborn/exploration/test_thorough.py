@@ -15,13 +15,13 @@ from tests.helpers.ground import ground, route_of
 
 
 def explorer(**options: object) -> ThoroughExplorer:
-    """An explorer that never looks aside, and looks around only where it is asked for."""
+    """Returns an explorer that never looks aside and looks around only on request."""
     given = {"look_around_turns": 0, "glance": GlanceConfig(gain_per_turn_m2=math.inf)} | options
     return ThoroughConfig(**given).make(CameraModel())  # type: ignore[arg-type]
 
 
 def closed_with_a_patch() -> tuple[NavMap, tuple[slice, slice]]:
-    """A closed square of seen ground, and a patch in it that was not seen."""
+    """Returns a closed square of seen ground, and a patch in it that was not seen."""
     navmap = empty()
     box_in(navmap.seen_obstacle, 1.5)
     all_seen(navmap)

@@ -47,7 +47,7 @@ def rectangle(navmap: NavMap, x_m: tuple[float, float], y_m: tuple[float, float]
 
 
 def corridor() -> NavMap:
-    """Ground from x = -4 to 4 m between walls, open at both ends, the robot's trail in its middle."""
+    """Returns ground from x = -4 to 4 m between walls, open at both ends, the robot's trail in its middle."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     rectangle(navmap, (-4.0, 4.0), (-1.0, 1.0))
     for y_m in ((-1.1, -1.0), (1.0, 1.1)):
@@ -104,7 +104,7 @@ def test_potentials_put_the_frontier_first_behind_which_the_goal_is(goal: str, w
 
 def test_paths_on_blocks_are_about_as_long_as_on_cells():
     navmap = corridor()
-    rectangle(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a way around a wall
+    rectangle(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a path around a wall
     window = navmap.frame.window_at(0.0, 0.0, 300)
     known = Frontiers.of(ground(navmap, Pose(0.0, 0.0, 0.0), window), own_known_m=1.0, margin_cells=20)
     start = known.free.frame.cell(0.0, -0.5)
@@ -145,7 +145,7 @@ def test_ground_seen_from_afar_is_not_inspected_by_coming_near_without_looking()
 
 
 def enclosed() -> NavMap:
-    """The corridor with walls at its ends, and large marks across it at x = 3 m: nothing is left to see."""
+    """Returns the corridor with walls at its ends and large marks across it at x = 3 m: nothing is left to see."""
     navmap = corridor()
     for x_m in ((-4.1, -4.0), (4.0, 4.1)):
         rectangle(navmap, x_m, (-1.1, 1.1), wall=True)
@@ -179,7 +179,7 @@ def test_steps_that_cross_no_mark_do_not_count_as_crossing():
     rectangle(navmap, (4.0, 4.1), (-1.1, 1.1), wall=True)
     for _ in range(10):
         goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0))
-    assert explore._unmarked_steps <= crossed + 2  # until it is done with the stop
+    assert explore._unmarked_steps <= crossed + 2  # until the stop is finished
 
 
 def test_a_stop_is_kept_for_some_steps_and_reset_forgets_it():

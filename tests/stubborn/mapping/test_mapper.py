@@ -17,7 +17,7 @@ SKEW = math.radians(37.0)
 
 
 def wall_ahead(distance_m: float, yaw_rad: float = 0.0) -> np.ndarray:
-    """The exact depth image of a wall across the view."""
+    """Returns the exact depth image of a wall across the view."""
     world = GridWorld([Box((distance_m, distance_m + 0.1), (-9.0, 9.0))], (0.0, 0.0, yaw_rad), camera=CAMERA)
     return world.render()[0]
 
@@ -29,7 +29,7 @@ def mapped(depth: np.ndarray, pose: Pose, config: MappingConfig = EVERY_PIXEL) -
 
 
 def brute_force(depth: np.ndarray, pose: Pose, low_m: float, high_m: float) -> np.ndarray:
-    """Cells hit by pixels of a height band, one pixel after the other."""
+    """Returns the cells hit by pixels of a height band, computed pixel by pixel."""
     layer = np.zeros(FRAME.shape, bool)
     for v in range(0, CAMERA.height_px, 3):
         for u in range(0, CAMERA.width_px, 3):
@@ -171,7 +171,7 @@ def test_scores_at_a_whole_fraction_of_the_image_are_projected_to_the_same_place
 
 @pytest.mark.parametrize(("fraction", "stride_px"), [(1, 4), (2, 4), (4, 8)])
 def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: int):
-    """Else the rim of a near target would lie on the wall behind it."""
+    """Otherwise the rim of a near target would lie on the wall behind it."""
     picture, wall = Box((1.5, 1.6), (-0.41, 0.33), (0.2, 1.5), "picture"), Box((4.5, 4.6), (-9.0, 9.0))
     depth, semantic = GridWorld([picture, wall], (0.0, 0.0, 0.0), camera=CAMERA).render()
     middle = slice(fraction // 2, None, fraction)

@@ -22,7 +22,7 @@ POSES = (Pose(0.0, 0.0, 0.0), Pose(0.13, -0.27, math.radians(37.0)))
 
 
 def frame_at(pose: Pose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
-    """Depth of a wall across the view at x = `distance_m` that is higher than the range of the layers."""
+    """Returns the depth of a wall across the view at x = `distance_m` that exceeds the height range of the layers."""
     world = GridWorld(
         [Box((distance_m, distance_m + 0.1), (-9.0, 9.0), (0.0, 3.0))],
         (pose.x_m, pose.y_m, pose.yaw_rad),
@@ -38,7 +38,7 @@ def random_scores(seed: int) -> Scores:
 
 
 def brute_force(depth: np.ndarray, scores: Scores, pose: Pose) -> dict[tuple[int, int], tuple[float, float]]:
-    """Highest target score of each cell in view, and the highest other score where it is that."""
+    """Returns the highest target score of each cell in view, and the other score of the same pixel."""
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for v in range(CAMERA.height_px):
         for u in range(CAMERA.width_px):

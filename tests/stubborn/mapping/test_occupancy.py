@@ -34,7 +34,7 @@ def noisy(depth: np.ndarray, preset: str, rng: np.random.Generator) -> np.ndarra
 def look_around(
     boxes: list[Box], preset: str, frames: int = 20, poses: list[tuple[float, float]] | None = None
 ) -> tuple[NavMap, np.ndarray]:
-    """The map after frames from some places, turning by 30 degrees each; and each cell's distance to the surfaces."""
+    """Returns the map after turns by 30 degrees at some places, and each cell's distance to the surfaces."""
     mapper, navmap, rng = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), np.random.default_rng(0)
     for i in range(frames):
         x_m, y_m = (poses or [(0.0, 0.0)])[i % len(poses or [0])]

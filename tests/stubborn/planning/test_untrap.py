@@ -12,7 +12,7 @@ def fail(untrap: Untrap, times: int) -> None:
 
 
 def actions_of(untrap: Untrap, steps: int) -> list[Action | None]:
-    """Actions of a robot that never gets free."""
+    """Returns the actions of a robot that never gets free."""
     actions = []
     for _ in range(steps):
         action = untrap.next_action()

@@ -1,4 +1,4 @@
-"""Files of weights: which load, and how others are refused."""
+"""Files of weights: valid files load, and others are refused with a message."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture(scope="module")
 def published_state() -> dict[str, torch.Tensor]:
-    """An invented checkpoint of the published network: every tensor is filled with a number by its index."""
+    """Returns an invented checkpoint of the published network: every tensor is filled with a number by its index."""
     with torch.device("meta"):
         shapes = {name: (tensor.shape, tensor.dtype) for name, tensor in RedNet().state_dict().items()}
     values = ((name, shape, dtype, i) for i, (name, (shape, dtype)) in enumerate(shapes.items()))
