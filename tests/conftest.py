@@ -1,4 +1,4 @@
-"""Two tiers: `make test` takes samples that change with each commit, `make test-all` takes everything."""
+"""There are two tiers: `make test` runs samples that change with each commit, `make test-all` runs all cases."""
 
 from __future__ import annotations
 

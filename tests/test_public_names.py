@@ -1,4 +1,4 @@
-"""`sim` and `stubborn` name what users need, and import it when it is first used."""
+"""`sim` and `stubborn` export the names that users need and import them at the first use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Imports run one way: the rooms of `sim` and `stubborn` in their order, and no cycle among modules."""
+"""Imports have one direction: packages of `sim` and `stubborn` in a fixed order, and no cycle among modules."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ FILES = module_files()
 
 
 def imports(module: str, *, at_import_time: bool = False) -> Iterator[str]:
-    """The modules that a module imports, those inside functions included unless only import time counts."""
+    """Returns the modules that a module imports, with those inside functions unless only import time counts."""
     tree = ast.parse(FILES[module].read_text())
     nodes = top_level(tree) if at_import_time else ast.walk(tree)
     for node in nodes:
@@ -123,10 +123,10 @@ def test_only_the_composition_roots_know_the_agent_and_only_gl_imports_mujoco(mo
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
     graph = {name: {m for m in imports(name, at_import_time=True) if m in FILES and m != name} for name in FILES}
-    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError and names the circle
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError, which names the cycle
 
 
-def test_every_room_says_what_it_holds() -> None:
+def test_every_package_has_a_docstring_about_its_content() -> None:
     for name, file in FILES.items():
         if file.name == "__init__.py":
             assert len(ast.get_docstring(ast.parse(file.read_text())) or "") > 40, f"{name} has no docstring."

@@ -1,4 +1,4 @@
-"""Array types are checked under pytest, and only there."""
+"""Array types are checked under pytest and nowhere else."""
 
 import subprocess
 import sys

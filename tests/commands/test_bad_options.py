@@ -1,4 +1,4 @@
-"""Bad options of every command are one line on stderr and exit status 2; new commands need no line here."""
+"""Bad options of every command give one line on stderr and exit status 2; new commands need no entry here."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NUMBERS = {int: (-7, 10**30), float: (-7.0, math.nan, math.inf, 1e308)}
 
 
 def commands() -> dict[str, ModuleType]:
-    """All modules with options and a main function."""
+    """Returns all modules that have options and a main function."""
     tools = [".".join(file.relative_to(ROOT).with_suffix("").parts) for file in (ROOT / "tools").glob("*/*.py")]
     names = [
         *(each.module for each in COMMANDS_OF_USERS.values()),
@@ -42,7 +42,7 @@ COMMANDS = commands()
 
 
 def required(args_type: type) -> list[str]:
-    """The words for the options without a default."""
+    """Returns words for the options that have no default."""
     words: list[str] = []
     hints = typing.get_type_hints(args_type, include_extras=True)
     for field in dataclasses.fields(args_type):
@@ -89,8 +89,8 @@ def test_every_number_and_path_of_a_command_is_checked_before_it_begins(
         with pytest.raises(ConfigError, match=f"--{field.replace('_', '-')} "):
             cli.check(dataclasses.replace(args, **{field: value}))
     for more in (["--no-such-option", "x"], ["a\x1b[31m"], ["--debug", "a\udcff"]):
-        told = refusal(name, [*words, *more], capsys, main=lambda args: pytest.fail("it began"), lines=None)
-        assert "\x1b" not in told
+        message = refusal(name, [*words, *more], capsys, main=lambda args: pytest.fail("it began"), lines=None)
+        assert "\x1b" not in message
     assert list(tmp_path.iterdir()) == []
 
 
@@ -187,12 +187,12 @@ BAD: dict[str, list[tuple[str, str]]] = {
 
 
 @pytest.mark.parametrize(
-    ("name", "words", "told"), [(name, words, told) for name, rows in BAD.items() for words, told in rows]
+    ("name", "words", "message"), [(name, words, message) for name, rows in BAD.items() for words, message in rows]
 )
 def test_options_that_name_nothing_are_one_line_and_leave_no_file(
     name: str,
     words: str,
-    told: str,
+    message: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -200,5 +200,5 @@ def test_options_that_name_nothing_are_one_line_and_leave_no_file(
     monkeypatch.chdir(tmp_path)
     (tmp_path / "file").write_bytes(b"\x00\xffno file of ours\n")
     given = [{"OUT": "out/page.png", "FILE": "file"}.get(word, word) for word in words.split()]
-    assert re.search(told, refusal(name, given, capsys))
+    assert re.search(message, refusal(name, given, capsys))
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

@@ -1,4 +1,4 @@
-"""The benchmark measures what it says, in turns, and its table is that of its figures."""
+"""The benchmark measures each part, alternates between versions, and its table agrees with its figures."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_works_take_turns_and_the_least_counts(monkeypatch: pytest.MonkeyPatch) 
     }
     ms = interleaved(works, [0, 1], repeats=2)
     assert [name for name, _ in done] == ["ours", "theirs"] * 5
-    assert ms["ours"].tolist() == [3.0, 2.0]  # the first of all does not count
+    assert ms["ours"].tolist() == [3.0, 2.0]  # the first round does not count
     assert ms["theirs"].tolist() == [7.0, 4.0]
 
 
@@ -75,7 +75,7 @@ def test_a_stopwatch_counts_methods_and_leaves_them_as_they_were() -> None:
         (None, None),
     ],
 )
-def test_a_goal_is_met_by_what_it_is_set_for(goal: Goal | None, met: bool | None) -> None:
+def test_a_figure_is_met_according_to_its_goal(goal: Goal | None, met: bool | None) -> None:
     assert Figure(**{**vars(FIGURE), "goal": goal}).met is met
 
 
@@ -105,7 +105,7 @@ def test_a_hall_has_as_many_geoms_as_asked_and_is_a_house() -> None:
         assert sum(not name.startswith("robot/") for name in geoms) == count
 
 
-def test_memory_is_told_in_megabytes() -> None:
+def test_memory_is_reported_in_megabytes() -> None:
     memory = memory_mb()
     assert 30 < memory["VmRSS"] <= memory["VmHWM"] < 20_000
 

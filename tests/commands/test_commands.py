@@ -1,4 +1,4 @@
-"""Every documented command runs, and the shipped houses are made again to the byte."""
+"""Every documented command runs, and the shipped houses are generated again with the same bytes."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_the_tool_lists_train_houses_that_pass_and_leaves_their_files_in_the_cac
 
 
 def test_every_documented_command_has_a_trial_and_every_trial_a_command() -> None:
-    """Whoever documents a command says in `tests/helpers/documented.py` how it is tried."""
+    """`tests/helpers/documented.py` states for every documented command how it is tried."""
     found = {command: where for command, where in documented.commands().items() if "--help" not in command}
     untried = [f"{where}: {command}" for command, where in found.items() if command not in TRIALS]
     assert not untried, "no trial in tests/helpers/documented.py for\n" + "\n".join(untried)
@@ -101,7 +101,7 @@ def test_a_documented_command_that_does_not_exist_is_found(wrong: str) -> None:
 
 
 def test_every_block_of_commands_says_that_it_is_one() -> None:
-    """So that none escapes: a block of shell is marked sh, and no block goes without a mark."""
+    """Every block of shell commands is marked sh and no block lacks a mark, so that no command is missed."""
     known = {"sh", "python", "xml", "json", "toml", "text"}
     odd = [
         f"{block.page}:{block.line}: {block.language or 'no language'}"
@@ -134,7 +134,7 @@ def test_documented_commands_and_their_trials_are_such_as_their_tools_take() -> 
     assert not refused, "\n".join(refused)
 
 
-def test_what_documented_commands_read_is_there_or_made_by_another() -> None:
+def test_files_that_documented_commands_read_exist_or_are_written_by_another_command() -> None:
     parsed = {command: _parse(command) for command in documented.commands()}
     made = {str(value) for args in parsed.values() for name, value in _paths(args) if name in OUTPUTS}
     made |= {shlex.split(command)[-1] for command in parsed if "my_furniture.py" in command}
@@ -173,10 +173,10 @@ def _steps(command: str, scratch: Path) -> tuple[str, ...]:
 
 
 def _parse(command: str) -> Any:
-    """The command read by its tool's own command line: its `Args`, or None where there is none to show.
+    """Returns the `Args` that the tool reads from the command, or None if the command has no `Args`.
 
     Raises:
-        ConfigError: an option that there is not, or a target, tool or program that nobody thought of.
+        ConfigError: the option does not exist, or a target, tool or program is unknown to this test.
     """
     words = shlex.split(command)
     if words[0] == "make" and len(words) == 2:
@@ -189,7 +189,7 @@ def _parse(command: str) -> Any:
         return _parse_options(COMMANDS[program].module, argv) if program in COMMANDS else _list_of(program, argv)
     if words[0] != PYTHON:
         raise ConfigError(f"no test knows what to make of '{words[0]}'")
-    if program == "-c":  # of a trial: makes what the next step reads
+    if program == "-c":  # part of a trial: writes the files that the next step reads
         return None
     if program.endswith(".py") and not (ROOT / program).is_file():
         raise ConfigError(f"no file {program}")
@@ -207,7 +207,7 @@ def _list_of(program: str, argv: list[str]) -> None:
 
 
 def _parse_options(name: str, argv: list[str]) -> Any:
-    """The options read by the `Args` of a module."""
+    """Returns the options that the `Args` of a module reads."""
     module = importlib.import_module(name)
     if not hasattr(module, "Args"):
         if any(word.startswith("-") for word in argv):
@@ -221,7 +221,7 @@ def _parse_options(name: str, argv: list[str]) -> Any:
 
 
 def _paths(args: Any) -> list[tuple[str, Path]]:
-    """The fields of an `Args` that hold paths, and houses and splits that are given as one."""
+    """Returns the fields of an `Args` that hold paths, including houses and splits that are given as a path."""
     found = []
     for field in dataclasses.fields(args) if args is not None else ():
         value = getattr(args, field.name)

@@ -21,7 +21,7 @@ TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture
 def weights(tmp_path: Path) -> Path:
-    """An overconfident network."""
+    """Returns an overconfident network."""
     torch.manual_seed(0)
     model = RedNet(TINY)
     with torch.no_grad():

@@ -1,4 +1,4 @@
-"""Sheets of what the network saw in failed episodes."""
+"""Sheets with the images and the network's output in failed episodes."""
 
 from __future__ import annotations
 
@@ -22,32 +22,32 @@ from tests.helpers.worlds import room, with_box
 
 
 @pytest.fixture(scope="module")
-def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two recorded episodes in which the agent stops at once, far from the sofa."""
-    folder = tmp_path_factory.mktemp("played")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Returns a folder with two recorded episodes in which the agent stops at once, far from the sofa."""
+    folder = tmp_path_factory.mktemp("recorded")
     house = with_box(room(9, 4), "sofa_00", centre_m=(4.0, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
-    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
+    options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
     assert run.entry([*options, "--episodes", "2", "--start-deg", "-3 0 0", "--out", str(folder / "run")]) == 0
     return folder
 
 
-def test_a_row_an_episode_shows_the_picture_of_the_stop(played: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = played / "sheets" / "false.png"
-    assert show_mistakes.main(Args(run=played / "run", out=out)) == 0
-    told = capsys.readouterr().out.splitlines()
-    assert sorted(line.split(" ")[0] for line in told[:2]) == sorted(read_run(played / "run").lines)
-    assert told[0].startswith("lounge_0000 sofa, step 1: ")
-    assert told[2] == f"2 episodes that failed by false_detection, in {out}."
+def test_a_row_an_episode_shows_the_picture_of_the_stop(recorded: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = recorded / "sheets" / "false.png"
+    assert show_mistakes.main(Args(run=recorded / "run", out=out)) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sorted(line.split(" ")[0] for line in lines[:2]) == sorted(read_run(recorded / "run").lines)
+    assert lines[0].startswith("lounge_0000 sofa, step 1: ")
+    assert lines[2] == f"2 episodes that failed by false_detection, in {out}."
     sheet = np.asarray(cv2.imread(str(out)))[..., ::-1]
     height_px = show_mistakes.PANEL_PX * 480 // 640 + show_mistakes.CAPTION_PX
     assert sheet.shape == (2 * height_px + show_mistakes.CAPTION_PX, 4 * show_mistakes.PANEL_PX, 3)
     headings = sheet[: show_mistakes.CAPTION_PX].reshape(show_mistakes.CAPTION_PX, 4, show_mistakes.PANEL_PX, 3)
-    assert (headings.min(axis=(0, 2, 3)) < 100).all()  # each panel has one
-    trajectory = read_trajectory(trajectory_file(played / "run", "lounge_0000"))
-    house = read_run(played / "run").config["house"]
+    assert (headings.min(axis=(0, 2, 3)) < 100).all()  # each panel has a title
+    trajectory = read_trajectory(trajectory_file(recorded / "run", "lounge_0000"))
+    house = read_run(recorded / "run").config["house"]
     images = show_mistakes.render_at(
-        show_mistakes.World(show_mistakes.split_of(read_run(played / "run")).load_house(Path(house).stem)),
+        show_mistakes.World(show_mistakes.split_of(read_run(recorded / "run")).load_house(Path(house).stem)),
         trajectory.poses[-1],
     )
     ahead = images["semantic"][270, 320]
@@ -57,10 +57,10 @@ def test_a_row_an_episode_shows_the_picture_of_the_stop(played: Path, capsys: py
     assert sheet[row, column].tolist() == PALETTE[ahead].tolist()
 
 
-def test_what_is_not_drawn_is_told_with_the_option_that_draws_it(
-    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_omitted_failures_are_reported_with_the_option_that_draws_them(
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shutil.copytree(played / "run", tmp_path / "run")
+    shutil.copytree(recorded / "run", tmp_path / "run")
     first, second = (json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines())
     others = [first, second | {"failure": "stopped_short"}]
     (tmp_path / "run" / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in others))
@@ -69,12 +69,12 @@ def test_what_is_not_drawn_is_told_with_the_option_that_draws_it(
     assert capsys.readouterr().out.endswith(" Failures by other causes are drawn with --cause stopped_short (1).\n")
     assert show_mistakes.main(replace(args, cause="explore")) == 1
     assert "--cause false_detection (1), --cause stopped_short (1)." in capsys.readouterr().out
-    assert show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", count=1)) == 0
+    assert show_mistakes.main(Args(run=recorded / "run", out=tmp_path / "a.png", count=1)) == 0
     assert "1 episode of 2 (--count 2 draws all) that failed by false_detection" in capsys.readouterr().out
 
 
-def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(played: Path) -> None:
-    trajectory = read_trajectory(trajectory_file(played / "run", "lounge_0000"))
+def test_the_decisive_frame_is_the_last_or_the_one_that_shows_most(recorded: Path) -> None:
+    trajectory = read_trajectory(trajectory_file(recorded / "run", "lounge_0000"))
     shares = np.array([0.01, np.nan, 0.2, 0.05], np.float32)
     longer = Trajectory(
         **{name: getattr(trajectory, name) for name in trajectory.__dataclass_fields__}
@@ -94,23 +94,23 @@ def test_words_name_the_true_categories_where_the_goal_is_seen() -> None:
 
 
 def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
-    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="missed_detection")) == 1
+    assert show_mistakes.main(Args(run=recorded / "run", out=tmp_path / "a.png", cause="missed_detection")) == 1
     assert "failed by missed_detection" in capsys.readouterr().out
     with pytest.raises(ConfigError, match="got 'boredom'"):
-        show_mistakes.main(Args(run=played / "run", out=tmp_path / "a.png", cause="boredom"))
+        show_mistakes.main(Args(run=recorded / "run", out=tmp_path / "a.png", cause="boredom"))
     other = tmp_path / "gt"
     other.mkdir()
-    config = json.loads((played / "run" / "config.json").read_text())
+    config = json.loads((recorded / "run" / "config.json").read_text())
     (other / "config.json").write_text(json.dumps(config | {"semantics": "gt"}))
-    (other / "results.jsonl").write_text((played / "run" / "results.jsonl").read_text())
+    (other / "results.jsonl").write_text((recorded / "run" / "results.jsonl").read_text())
     with pytest.raises(ConfigError, match="--semantics gt, not with rednet"):
         show_mistakes.main(Args(run=other, out=tmp_path / "a.png"))
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"robot": "robots/mine.xml"}, "another robot"),
         ({"config": {"camera": {"height_m": 0.5}}}, "another camera than ours"),
@@ -119,9 +119,9 @@ def test_runs_of_other_segmentation_and_without_such_failures_are_reported(
         ({"files_sha256": {"weights": "0" * 64}}, "other weights"),
     ],
 )
-def test_what_another_camera_or_network_saw_is_not_drawn_with_ours(
-    played: Path, changes: dict[str, object], told: str
+def test_a_run_of_another_camera_or_network_is_not_drawn_with_this_one(
+    recorded: Path, changes: dict[str, object], message: str
 ) -> None:
-    run_of = read_run(played / "run")
-    with pytest.raises(ConfigError, match=told):
+    run_of = read_run(recorded / "run")
+    with pytest.raises(ConfigError, match=message):
         show_mistakes.network_of(replace(run_of, config={**run_of.config, **changes}))

@@ -21,7 +21,7 @@ TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture
 def always_wall() -> RedNet:
-    """A network that calls every pixel a wall."""
+    """Returns a network that calls every pixel a wall."""
     torch.manual_seed(0)
     model = RedNet(TINY)
     with torch.no_grad():

@@ -53,18 +53,18 @@ def test_proposed_labels_can_be_written_edited_and_checked(
     file, picture = tmp_path / "labels.json", tmp_path / "labels.png"
     propose = ["--house", str(scene[0]), "--out", str(file)]
     assert cli.run(label_house.Args, label_house.main, [*propose, "--picture", str(picture)]) == 0
-    told = capsys.readouterr().out
-    assert "Goals: cabinet, cushion, sofa, stool." in told
-    assert "Gadget" in told
-    assert "no label" in told
+    output = capsys.readouterr().out
+    assert "Goals: cabinet, cushion, sofa, stool." in output
+    assert "Gadget" in output
+    assert "no label" in output
     rules = json.loads(file.read_text())
     assert rules["^Gadget$"] == "void"
     file.write_text(json.dumps({**rules, "^Gadget$": "plant"}))
     check = ["--house", str(scene[0]), "--labels", str(file)]
     assert cli.run(label_house.Args, label_house.main, check) == 0
-    told = capsys.readouterr().out
-    assert "Goals: cabinet, cushion, sofa, plant, stool." in told
-    assert "'flat' can be used with these labels." in told
+    output = capsys.readouterr().out
+    assert "Goals: cabinet, cushion, sofa, plant, stool." in output
+    assert "'flat' can be used with these labels." in output
     assert read(picture).shape == (220, 2 * 280, 3)
 
 
@@ -90,10 +90,10 @@ def test_proposed_labels_without_a_floor_are_warned_of_with_the_word_for_rules(
 ) -> None:
     options = ["--house", str(write_arm(tmp_path)), "--out", str(tmp_path / "arm.json")]
     assert cli.run(label_house.Args, label_house.main, options) == 0
-    told = capsys.readouterr().out
-    assert "1 visible geom has no category (void)." in told
-    assert "WARNING: a run would refuse 'arm' with these labels: it has no floor" in told
-    assert "must get the category 'floor' from a label rule" in told
+    output = capsys.readouterr().out
+    assert "1 visible geom has no category (void)." in output
+    assert "WARNING: a run would refuse 'arm' with these labels: it has no floor" in output
+    assert "must get the category 'floor' from a label rule" in output
 
 
 def test_proposed_labels_that_suffice_are_not_warned_of(
@@ -159,7 +159,9 @@ def test_labels_without_a_floor_are_refused_after_the_table(
     assert "must get the category 'floor' from a label rule" in captured.err
 
 
-def test_a_refused_scene_is_told_of_labels(scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_refusal_of_a_scene_names_the_labels_option(
+    scene: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run.entry(["--house", str(scene[0]), "--episodes", "1"]) == 2
     assert "A scene from elsewhere needs --labels: `stubborn label` proposes" in capsys.readouterr().err
 
@@ -197,8 +199,8 @@ def test_episodes_of_a_scene_make_a_split_that_needs_nothing_else(scene: tuple[P
     assert {file.name.split("_", 1)[1] for file in (moved / "flat_files").iterdir()} == {
         "cube.obj", "arch.obj", "wood.png",
     }  # fmt: skip
-    played = ["--split", str(moved), "--agent", "oracle", "--episodes", "1", "--out", str(tmp_path / "run")]
-    assert run.entry(played) == 0
+    options = ["--split", str(moved), "--agent", "oracle", "--episodes", "1", "--out", str(tmp_path / "run")]
+    assert run.entry(options) == 0
 
 
 def test_other_labels_are_another_split(scene: tuple[Path, Path], tmp_path: Path) -> None:
@@ -218,7 +220,7 @@ def test_views_of_a_scene_have_its_labels(scene: tuple[Path, Path], tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("module", "options", "told"),
+    ("module", "options", "message"),
     [
         (make_episodes, ["--labels", "x.json"], "--labels, --root and --out need --house"),
         (make_episodes, ["--house", "x.xml"], "--house needs --out"),
@@ -228,10 +230,10 @@ def test_views_of_a_scene_have_its_labels(scene: tuple[Path, Path], tmp_path: Pa
         (gallery, ["--root", "x", "--sheet", "--out", "{tmp}"], "--labels and --root need --house"),
     ],
 )
-def test_options_of_a_house_belong_to_one(module, options, told, tmp_path, capsys) -> None:
+def test_options_of_a_house_belong_to_one(module, options, message, tmp_path, capsys) -> None:
     words = [word.replace("{tmp}", str(tmp_path)) for word in options]
     assert cli.run(module.Args, module.main, words) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_visual_walls_become_solid_boxes_and_meshes_stay(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Plans of generated houses: what exists is kept, and what other options made is not taken for it."""
+"""Plans of generated houses: existing plans are kept, and plans of other options are not reused."""
 
 from __future__ import annotations
 
@@ -26,6 +26,6 @@ def test_a_plan_that_exists_is_kept_and_one_of_other_options_is_refused(
     assert file.stat().st_mtime_ns == written
     plan = read_plan(file)
     write_plan(file, replace(plan, source={key: plan.source[key] for key in ("pool", "kind", "area_m2", "seed")}))
-    assert export_plans.main(args) == 0  # of an older version, which did not name the generator
+    assert export_plans.main(args) == 0  # an older version did not name the generator
     with pytest.raises(ConfigError, match=r"was made with other options .*take another --out"):
         export_plans.main(replace(args, area_m2=55.0))

@@ -1,4 +1,4 @@
-"""`stubborn`: the table of its commands, its list, and what it answers to names that do not exist."""
+"""`stubborn`: the table of its commands, its list, and its messages about names that do not exist."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_every_module_with_options_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_command_says_in_its_first_line_what_it_does_and_how_it_is_called(name: str) -> None:
+def test_the_docstring_of_a_command_has_its_purpose_and_its_call(name: str) -> None:
     module = ast.parse(file_of(COMMANDS[name].module).read_text(encoding="utf-8"))
     about = ast.get_docstring(module) or ""
     assert about.splitlines()[0].endswith((".", ",")) or name in ("run", "web", "teleop")
@@ -84,7 +84,7 @@ def test_a_group_alone_lists_its_commands(group: str, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
-    ("typed", "told"),
+    ("typed", "message"),
     [
         ("rnu --episodes 3", "There is no command 'rnu'. Did you mean 'run'?"),
         ("houses generat", "There is no command 'houses generat'. Did you mean 'houses generate'?"),
@@ -94,10 +94,10 @@ def test_a_group_alone_lists_its_commands(group: str, capsys: pytest.CaptureFixt
     ],
 )
 def test_an_unknown_command_is_one_line_with_the_nearest_name(
-    typed: str, told: str, capsys: pytest.CaptureFixture[str]
+    typed: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert entry(typed.split(" ")) == 2
-    assert capsys.readouterr().err == f"error: {told} `stubborn` lists all commands.\n"
+    assert capsys.readouterr().err == f"error: {message} `stubborn` lists all commands.\n"
 
 
 def test_a_group_with_a_default_takes_options_directly(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -110,7 +110,7 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().out.strip() == importlib.metadata.version("stubborn-objectnav")
 
 
-def test_run_is_the_same_command_in_both_ways(capsys: pytest.CaptureFixture[str]) -> None:
+def test_both_forms_of_run_are_the_same_command(capsys: pytest.CaptureFixture[str]) -> None:
     from sim import run
 
     assert entry(["run", "--list-agents"]) == 0
@@ -133,7 +133,7 @@ def test_nothing_else_lies_directly_in_the_folder_of_makers_tools() -> None:
 
 
 @pytest.mark.parametrize("file", [*(ROOT / "sim/commands").rglob("*.py"), *(ROOT / "sim").glob("*.py")], ids=str)
-def test_commands_import_nothing_that_only_a_checkout_has(file: Path) -> None:
+def test_commands_import_nothing_from_tools_tests_or_examples(file: Path) -> None:
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []

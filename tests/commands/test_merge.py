@@ -1,4 +1,4 @@
-"""Shards of a run, and the run that is made of them."""
+"""Shards of a run are merged into one run."""
 
 from __future__ import annotations
 
@@ -94,22 +94,22 @@ def test_runs_of_named_episodes_become_one_of_all_these(tmp_path: Path, capsys: 
     first = write(tmp_path / "a", [line_of(0), line_of(1)], only=["e0", "e1"], episodes=2)
     second = write(tmp_path / "b", [line_of(3)], only=["e3", "e4"], episodes=2)
     assert main(Args(runs=(first, second), out=tmp_path / "both")) == 1
-    assert "3 episodes of 2 runs, 1 missing" in (told := capsys.readouterr().out)
-    assert "Missing: e4" in told
+    assert "3 episodes of 2 runs, 1 missing" in (output := capsys.readouterr().out)
+    assert "Missing: e4" in output
     assert json.loads((tmp_path / "both" / "config.json").read_text())["only"] == ["e0", "e1", "e3", "e4"]
     assert main(Args(runs=(first,), out=tmp_path / "both")) == 1  # again
-    assert "3 episodes of 1 runs, 1 missing" in (told := capsys.readouterr().out)
-    assert "Missing: e4" in told
+    assert "3 episodes of 1 runs, 1 missing" in (output := capsys.readouterr().out)
+    assert "Missing: e4" in output
     late = write(tmp_path / "late", [line_of(4)], only=["e4", "e5"], episodes=2)
     assert main(Args(runs=(late,), out=tmp_path / "both")) == 1
-    assert "4 episodes of 1 runs, 1 missing" in (told := capsys.readouterr().out)
-    assert "Missing: e5" in told
+    assert "4 episodes of 1 runs, 1 missing" in (output := capsys.readouterr().out)
+    assert "Missing: e5" in output
     whole = write(tmp_path / "c", [line_of(2)], only=[], episodes=4)
     assert main(Args(runs=(first, whole), out=tmp_path / "more")) == 1
     assert json.loads((tmp_path / "more" / "config.json").read_text())["only"] == []
 
 
-def test_all_the_code_that_played_is_named(tmp_path: Path) -> None:
+def test_all_code_that_ran_episodes_is_named(tmp_path: Path) -> None:
     runs = (write(tmp_path / "a", [line_of(0)]), write(tmp_path / "b", [line_of(1)], versions={"code": "0lder"}))
     main(Args(runs=runs, out=tmp_path / "both"))
     assert json.loads((tmp_path / "both" / "config.json").read_text())["codes"] == ["c0de", "0lder"]

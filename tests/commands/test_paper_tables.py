@@ -1,4 +1,4 @@
-"""The tables of the paper from lines with known means."""
+"""The tables of the paper, computed from result lines with known means."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def line(number: int, *, success: bool, failure: str | None = None, **known: obj
 
 
 def lines_of(setups: tuple[AgentSetup, ...], *, failed: tuple[int, ...]) -> dict:
-    """40 episodes each; setup i fails the first `failed[i]`, of which the very first by a trap."""
+    """Returns 40 episodes per setup; setup i fails the first `failed[i]` of them, the very first one by a trap."""
     return {
         setup: [
             line(n, success=n >= count, failure=None if n >= count else "explore" if n else "trapped")
@@ -112,7 +112,7 @@ def test_explorers_are_compared_by_the_median_time_to_first_sight() -> None:
     assert ratio.verdict == "lower"
 
 
-def test_tables_share_their_runs_and_the_oracle_plays_once() -> None:
+def test_tables_share_their_runs_and_the_oracle_runs_once() -> None:
     assert set(TABLES["categories"].setups()) <= set(TABLES["failures"].setups()) <= set(TABLES["overall"].setups())
     assert TABLES["ablation"].setups()[-1] == TABLES["exploration"].setups()[0] == AgentSetup("stubborn", "gt")
     assert AgentSetup("oracle", "gt") in TABLES["overall"].setups(semantics="rednet")
@@ -165,7 +165,7 @@ def test_the_table_of_verification_has_all_methods() -> None:
     assert methods == ["naive-bayes", "none", "logistic", "threshold"]
 
 
-def test_a_table_that_there_is_not_is_told_what_there_is() -> None:
+def test_an_unknown_table_is_refused_with_the_tables_that_exist() -> None:
     with pytest.raises(ConfigError, match="failures, ablation, exploration, categories, overall"):
         table_named("failure")
 

@@ -28,7 +28,7 @@ ORACLE = "oracle_gt_none_tiny"
 
 @pytest.fixture(scope="module")
 def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Four episodes in a room with a sofa and a bed."""
+    """Returns arguments for four episodes in a room with a sofa and a bed."""
     folder = tmp_path_factory.mktemp("splits") / "tiny"
     folder.mkdir()
     house = with_box(room(6, 6), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
@@ -47,17 +47,17 @@ def args(split: Path, tmp_path: Path) -> reproduce.Args:
 
 
 def stem(args: reproduce.Args) -> str:
-    """Of the files of the table that it asks for."""
+    """Returns the stem of the file names of the requested table."""
     return reproduce.stem_of(args, args.table)
 
 
-def test_a_table_of_two_agents_is_played_written_and_not_played_again(
+def test_the_agents_of_a_table_run_once_and_the_table_is_written(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert reproduce.main(args) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     # The agents take turns.
-    assert [part.split(" ")[0] for part in told.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
+    assert [part.split(" ")[0] for part in output.split("] e")[1:]] == ["0:", "0:", "1:", "1:"]
     page = (args.out / "tables" / f"{stem(args)}.md").read_text()
     assert "| goal (episodes) | oracle | examples.my_agent:make | oracle - examples.my_agent:make |" in page
     assert "| all (2) | 100.0" in page
@@ -70,7 +70,7 @@ def test_a_table_of_two_agents_is_played_written_and_not_played_again(
     assert "] e" not in capsys.readouterr().out
 
 
-def test_another_table_takes_the_episodes_that_are_there_and_plays_the_rest(
+def test_another_table_reuses_existing_episodes_and_runs_the_rest(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     reproduce.main(args)
@@ -94,12 +94,12 @@ def test_a_run_of_sim_run_and_a_run_for_a_table_have_the_same_lines(args: reprod
     assert first == second
 
 
-def test_minutes_that_are_used_up_leave_a_table_of_what_all_have_played(
+def test_after_the_time_limit_the_table_has_the_episodes_that_all_agents_ran(
     args: reproduce.Args, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert reproduce.main(replace(args, minutes=0.0)) == 1
     assert "no episode that oracle, examples.my_agent:make (gt) have all run" in capsys.readouterr().out
-    assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always played
+    assert reproduce.main(replace(args, minutes=1e-3)) == 0  # the first chunk is always run
     assert list(read_run(args.out / MINE).lines) == ["e0"]
     run.main(reproduce._run_args(args, reproduce.AgentSetup("oracle", "gt")))  # the oracle is one ahead
     capsys.readouterr()
@@ -108,7 +108,7 @@ def test_minutes_that_are_used_up_leave_a_table_of_what_all_have_played(
 
 
 def test_causes_come_from_the_trajectories_and_not_from_old_lines(args: reproduce.Args) -> None:
-    failing = replace(args, table="failures", agents=("tests.helpers.players:make_quitter", "oracle"), episodes=1)
+    failing = replace(args, table="failures", agents=("tests.helpers.runners:make_quitter", "oracle"), episodes=1)
     reproduce.main(failing)
     results = next(args.out.glob("tests.helpers*")) / "results.jsonl"
     line = json.loads(results.read_text())
@@ -202,11 +202,11 @@ def test_many_options_get_a_checksum_in_the_name_of_the_folder(args: reproduce.A
     assert list(args.out.glob("examples.my_agent_AGENT_gt_none_tiny_options-????????/results.jsonl"))
 
 
-def test_the_notes_say_what_the_runs_say(args: reproduce.Args) -> None:
+def test_the_notes_agree_with_the_runs(args: reproduce.Args) -> None:
     reproduce.main(args)
     setup, other = reproduce.AgentSetup("oracle", "gt"), replace(args, seed=7, noise="harsh")
-    told = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
-    assert "sensor noise none, seed 0," in told
+    note = reproduce.notes_of(other, "overall", {setup: read_run(args.out / ORACLE)}, ["e0"])[0]
+    assert "sensor noise none, seed 0," in note
 
 
 def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: Path, tmp_path: Path) -> None:
@@ -234,7 +234,7 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "message"),
     [
         ({"table": "everything"}, "There is no table 'everything'"),
         ({"agents": ("stuborn",)}, "stuborn"),
@@ -242,8 +242,10 @@ def test_each_option_that_makes_another_table_has_its_place_in_the_name(split: P
         ({"episodes": 5}, "has 4 episodes"),
     ],
 )
-def test_what_cannot_be_played_is_told_before_anything_is(args: reproduce.Args, change: dict, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_options_that_cannot_run_are_refused_before_the_first_episode(
+    args: reproduce.Args, change: dict, message: str
+) -> None:
+    with pytest.raises(ConfigError, match=message):
         reproduce.main(replace(args, **change))
     assert not list(args.out.iterdir())
 
@@ -255,9 +257,9 @@ def test_two_folders_of_runs_are_compared_pair_by_pair(
     capsys.readouterr()
     folders = compare_runs.Args(first=args.out / MINE, second=args.out / ORACLE, out=args.out / "compared")
     assert compare_runs.main(folders) == 0
-    told = capsys.readouterr().out
-    assert "B - A, paired over 2 episodes" in told
-    assert "Fields in which the runs differ" in told
+    output = capsys.readouterr().out
+    assert "B - A, paired over 2 episodes" in output
+    assert "Fields in which the runs differ" in output
     page = (args.out / "compared" / "comparison.md").read_text()
     assert "| success % |" in page
     assert f'| agent | "{AGENTS[1]}" | "oracle" |' in page
@@ -271,8 +273,8 @@ def test_several_splits_take_turns_and_share_a_page(
     (other / "tiny.json.gz").rename(other / "small.json.gz")
     both = replace(args, table="splits", splits=(str(split), str(other)))
     assert reproduce.main(both) == 0
-    told = capsys.readouterr().out
-    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes? of (tiny|small)", told)
+    output = capsys.readouterr().out
+    order = re.findall(r"(oracle|make_agent|my_agent:make)[^\n]* episodes? of (tiny|small)", output)
     assert order == [(agent, of) for _ in range(2) for of in ("tiny", "small") for agent in ("oracle", "my_agent:make")]
     names = {file.name for file in (args.out / "tables").glob("splits_*.md")}
     agents = "gt_oracle+examples.my_agent_make"

@@ -23,7 +23,7 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 def rule(house: str, *, seed: int) -> Demonstration:
-    """An episode with a rule: turn to the side where the bed is, go on where there is none, stop at the end."""
+    """Returns an episode with a rule: turn to the side of the bed, drive on if there is no bed, stop at the end."""
     rng = np.random.default_rng(seed)
     n = 12
     actions = rng.integers(1, 4, n).astype(np.uint8)
@@ -71,7 +71,7 @@ def test_a_training_learns_a_rule_and_is_continued(tmp_path: Path, capsys: pytes
     assert 999999 not in steps
 
 
-def test_a_step_of_the_training_learns_what_was_done(tmp_path: Path):
+def test_training_lowers_the_loss_on_the_demonstrated_actions(tmp_path: Path):
     shown = [train_cloned.labelled_steps_of(rule("house_1", seed=seed), Path("a")) for seed in range(20)]
     args = train_cloned.Args(demonstrations=(), out=tmp_path, streams=6, length=12, rate=5e-3)
     trainer = train_cloned.Trainer(args, shown, shown[:4], [])

@@ -1,4 +1,4 @@
-"""The tool that logs tracks and fits the fusion of views: its log, how it continues one, what it refuses."""
+"""The tool that logs tracks and fits the fusion of views: its log, a continued log, refused arguments."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def played(split: Path, log: Path, episodes: int) -> list[dict]:
-    """The log after this number of episodes; it holds too few tracks for a fit."""
+def log_after(split: Path, log: Path, episodes: int) -> list[dict]:
+    """Returns the log after this number of episodes; it holds too few tracks for a fit."""
     args = train_tracks.Args(split=str(split), semantics="noisy", episodes=episodes, max_steps=30, log=log)
     with pytest.raises(ConfigError, match="100 are needed"):
         train_tracks.main(args)
@@ -36,7 +36,7 @@ def played(split: Path, log: Path, episodes: int) -> list[dict]:
 
 
 def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
-    first = played(split, tmp_path, 2)
+    first = log_after(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     for line in first:
         content = train_tracks.read_tracks(tmp_path / "tracks" / f"{line['episode_id']}.npz")
@@ -48,7 +48,7 @@ def test_it_never_stops_logs_tracks_with_the_truth_and_continues_a_log(split: Pa
         sofa = int(content["counts"][:, MPCAT40.index("sofa")].argmax())
         seen_as = content["mean"][content["track"] == sofa].mean(axis=0)
         assert seen_as[MPCAT40.index("sofa") - 1] > 0.2
-    more = played(split, tmp_path, 3)
+    more = log_after(split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
@@ -60,7 +60,7 @@ def test_a_file_holds_the_tracks_only(split: Path, tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(
         np, "savez_compressed", lambda file, **arrays: given.append(set(arrays)) or write(file, **arrays)
     )
-    played(split, tmp_path, 1)
+    log_after(split, tmp_path, 1)
     assert given == [{"counts", "track", "view", "mean", "weight"}]
 
 
@@ -88,7 +88,7 @@ def test_it_refuses_val_and_exact_segmentation(options: dict, message: str):
 
 def test_merged_tracks_are_counted_together():
     class Merged:
-        """Track 2 became a part of track 1."""
+        """Track 2 was merged into track 1."""
 
         @property
         def evidence(self) -> Merged:

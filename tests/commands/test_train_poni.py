@@ -23,7 +23,7 @@ from tools.research import draw_potentials
 
 @pytest.fixture
 def plans(tmp_path: Path) -> Path:
-    """Two plans of the same three rooms, of which one is held back."""
+    """Returns two plans of the same three rooms, of which one is held back."""
     house = with_box(room(14, 5), "toilet_00", centre_m=(6.3, 1.8, 0.3), half_m=(0.3, 0.3, 0.3))
     house = with_box(house, "wall_10", centre_m=(-1.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
     house = with_box(house, "wall_11", centre_m=(3.0, -1.2, 1.25), half_m=(0.05, 1.3, 1.25))

@@ -24,7 +24,7 @@ from stubborn.segmentation.rednet import COMPACT
 
 
 def write_views(folder: Path, count: int, size_px: int = 64, rows_px: int | None = None) -> None:
-    """Views of a bright sofa in front of a dark wall."""
+    """Writes views of a bright sofa in front of a dark wall."""
     folder.mkdir()
     rng = np.random.default_rng(0)
     with tarfile.open(folder / "views-000000.tar", "w") as archive:
@@ -183,12 +183,12 @@ def test_a_run_is_continued_with_its_own_options_and_for_longer_only(tmp_path: P
     write_views(tmp_path / "val", 2)
     assert main(options(tmp_path, hours=0.0003, steps=2, evaluate_every=1000)) == 0
     done = int(rows(tmp_path / "out/train.csv")[-1]["step"])
-    for changes, told in (
+    for changes, message in (
         ({"rate": 1e-4}, "--rate = 0.002, this command has 0.0001"),
         ({"seed": 3}, "--seed = 0, this command has 3"),
         ({"views": (tmp_path / "train", tmp_path / "val")}, "--views = 1 files"),
     ):
-        with pytest.raises(ConfigError, match=told):
+        with pytest.raises(ConfigError, match=message):
             main(options(tmp_path, hours=0.0003, steps=2, **changes))
     assert Trainer(options(tmp_path, hours=0.0003, steps=2)).total == done
     assert Trainer(options(tmp_path, hours=1.0, steps=2)).total > done

@@ -24,7 +24,7 @@ from tools.research import compare_explorers
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a plan of two rooms with a bed in one, under twelve names, some of which are held back."""
+    """Writes plans of two rooms with a bed in one, under twelve names, some of which are held back."""
     folder = tmp_path_factory.mktemp("plans")
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     (plan,) = export_plans(with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25)), {})
@@ -179,6 +179,6 @@ def test_a_state_counts_goals_only_after_the_update_with_them(
 
     monkeypatch.setattr(train_semexp.Run, "save", watched)
     train_semexp.main(options(plans, tmp_path / "run", save_s=0.0))
-    trained = dict(reversed(saved))  # of the first state with so many goals
+    trained = dict(reversed(saved))  # the first state with this number of goals
     assert trained[0] == 0
     assert trained[8] > 0

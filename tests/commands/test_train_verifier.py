@@ -1,4 +1,4 @@
-"""The tool that logs candidates and fits verifiers: its log, how it continues one, what it refuses."""
+"""The tool that logs candidates and fits verifiers: its log, a continued log, refused arguments."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def split(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
-    """The log after this number of episodes; it holds too few candidates for a fit."""
+def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> list[dict]:
+    """Returns the log after this number of episodes; it holds too few candidates for a fit."""
     args = train_verifier.Args(split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log)
     with pytest.raises(ConfigError, match="500 of either are needed"):
         train_verifier.main(args)
@@ -45,7 +45,7 @@ def played(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> lis
 
 
 def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split: Path, tmp_path: Path):
-    first = played(split, tmp_path, 2)
+    first = log_after(split, tmp_path, 2)
     assert [line["steps"] for line in first] == [30, 30]
     candidates = [each for line in first for each in line["candidates"]]
     assert any(each[4] == 1.0 for each in candidates)  # it reached the sofa, where a STOP would have succeeded
@@ -58,7 +58,7 @@ def test_it_never_stops_logs_candidates_with_the_truth_and_continues_a_log(split
         assert 0.5 < highest <= 1.0
         assert highest <= total + 1e-3 <= views + 2e-3
         assert 0.0 <= other <= 1.0
-    more = played(split, tmp_path, 3)
+    more = log_after(split, tmp_path, 3)
     assert more[:2] == first
     assert [line["episode_id"] for line in more] == ["tiny_0", "tiny_1", "tiny_2"]
 
@@ -71,11 +71,11 @@ def test_an_episode_ends_when_the_robot_has_fallen(split: Path, tmp_path: Path, 
         return observation, reward, env.scene.task.num_steps >= 5, truncated, info
 
     monkeypatch.setattr(ObjectNavEnv, "step", fallen_after_5)
-    (line,) = played(split, tmp_path, 1)
+    (line,) = log_after(split, tmp_path, 1)
     assert line["steps"] == 5
 
 
-def test_the_recorded_command_names_all_that_changes_the_fit_and_the_episodes_that_were_played():
+def test_the_recorded_command_names_all_options_that_change_the_fit_and_the_episodes():
     args = train_verifier.Args(split="runs/my houses", semantics="rednet", weights=Path("a b.safetensors"), minutes=3.0)
     assert train_verifier.command(replace(args, least_of_either=7, seed=2), 71) == (
         "stubborn train verifier --semantics rednet --weights 'a b.safetensors' --split 'runs/my houses' "
@@ -135,13 +135,13 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
     monkeypatch.setattr(train_verifier, "KINDS", {"noisy": exact})
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
-    played(folder, tmp_path / "log", 3, max_steps=120)
+    log_after(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
     assert len(asked) == len(judged)  # candidates that are only seen from afar are not logged
 
 
 def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
-    one = played(split, tmp_path / "one", 3)
+    one = log_after(split, tmp_path / "one", 3)
     args = train_verifier.Args(
         split=str(split), episodes=3, max_steps=30, least_of_either=500, log=tmp_path / "two", workers=2
     )
@@ -172,7 +172,7 @@ def test_segmentation_that_needs_no_verification_is_refused():
         train_verifier.main(train_verifier.Args(semantics="gt"))
 
 
-def test_a_judgement_says_what_is_true_and_what_the_verifier_thinks():
+def test_a_judgement_has_the_truth_and_the_probability_of_the_verifier():
     file = FOLDER / "rednet.json"
     near, far = ([12.0, 9.0, 0.95, 0.2, 1.0, 1.0, 1.0], [3.0, 0.8, 0.55, 0.9, 0.0, 4.0, 1.0])
     lines = [{"episode_id": "a", "goal": "bed", "house": "h", "steps": 9, "candidates": [near, far]}]

@@ -1,4 +1,4 @@
-"""The curves of a training: what a killed process leaves of them, and the options that a continued run must keep."""
+"""The curves of a training: their state after a killed process, and the options that a continued run must keep."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shards from elsewhere: nothing is written outside of --out, and what is no view is one line."""
+"""Shards from other sources: nothing is written outside of --out, and an invalid view gives one line."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ BOMB = png(np.uint8)[:16] + (60_000).to_bytes(4, "big") * 2 + png(np.uint8)[24:]
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "expected"),
     [
         ({"json": b"[" * 100_000}, "record of view 'v'"),
         ({"json": b'{"a": NaN}'}, "not JSON"),
@@ -64,12 +64,12 @@ BOMB = png(np.uint8)[:16] + (60_000).to_bytes(4, "big") * 2 + png(np.uint8)[24:]
     ],
 )
 def test_a_member_that_is_no_part_of_a_view_is_named(
-    changed: dict[str, bytes], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    changed: dict[str, bytes], expected: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_shard(tmp_path / "views" / "a.tar", "v", **changed)
     assert unpacked(tmp_path / "views", tmp_path / "out") == 2
     message = capsys.readouterr().err
-    assert told in message
+    assert expected in message
     assert message.count("\n") == 1
 
 

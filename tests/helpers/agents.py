@@ -17,13 +17,13 @@ SEEN: list[set[str]] = []
 
 @dataclass(frozen=True, kw_only=True)
 class SpyConfig:
-    """An option of the agent's own."""
+    """An option that only this agent has."""
 
     forwards: int = 2
 
 
 class Spy:
-    """Notes the keys of its observations, drives forward a few times and stops."""
+    """Records the keys of its observations, drives forward a few times and stops."""
 
     def __init__(self, config: SpyConfig | None = None, **given: object) -> None:
         self.config = config or SpyConfig()
@@ -40,12 +40,12 @@ class Spy:
 
 
 def make_spy(**given: object) -> Spy:
-    """A plain factory, which declares nothing."""
+    """Builds an agent without a declaration of its needs."""
     return Spy(**given)  # type: ignore[arg-type]
 
 
 def make_narrow(*, camera: object, robot: object) -> Spy:
-    """A factory that takes too few arguments."""
+    """Builds an agent, but accepts too few arguments."""
     return Spy()
 
 

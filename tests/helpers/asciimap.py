@@ -38,7 +38,7 @@ def map_of(text: str, *, cell_m: float = 0.05) -> tuple[NavMap, Pose]:
 
 
 def mask_of(text: str, letter: str) -> NDArray[np.bool_]:
-    """Returns True where the letter is."""
+    """Returns the mask of the cells with the letter."""
     return grid_of(text) == letter
 
 

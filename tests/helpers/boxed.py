@@ -34,7 +34,7 @@ def box_in(layer: np.ndarray, half_m: float) -> None:
 
 
 def close_quarter(layer: np.ndarray, corner: int) -> None:
-    """Enters a wall that cuts a corner of the window off."""
+    """Enters a wall that separates a corner of the window from the rest."""
     middle = FRAME.shape[0] // 2
     rows = slice(middle + 20, None) if corner in (0, 3) else slice(None, middle - 20)
     cols = slice(middle + 20, None) if corner in (0, 1) else slice(None, middle - 20)

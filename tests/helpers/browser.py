@@ -19,23 +19,23 @@ _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 
 
 def missing() -> str | None:
-    """What is not installed, as a reason to skip; None: all is there."""
+    """Returns the missing programs as a reason to skip, or None if all are installed."""
     if not any(map(shutil.which, BINARIES)) or not shutil.which("chromedriver"):
         return "no headless browser: apt-get install chromium chromium-driver"
     return None
 
 
 class Browser:
-    """One window of a fixed size without a network; close it."""
+    """One window of a fixed size without a network. The caller closes it."""
 
     def __init__(self, profile: Path, *, width: int = 1280, height: int = 900, dark: bool = False) -> None:
-        """Start driver and browser.
+        """Starts driver and browser.
 
         Args:
             profile: an empty folder that the browser may fill.
             width: of the page, pixels.
             height: of the page, pixels.
-            dark: whether pages are told to be dark.
+            dark: whether pages prefer the dark colour scheme.
         """
         binary = next(path for path in map(shutil.which, BINARIES) if path)
         self._driver = subprocess.Popen(
@@ -63,50 +63,50 @@ class Browser:
         self.resize(width, height)
 
     def resize(self, width: int, height: int) -> None:
-        """The size of the page, narrower than a window can be, too."""
+        """Sets the size of the page, which may be narrower than a window can be."""
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self._devtools("Emulation.setDeviceMetricsOverride", size)
 
     def open(self, file: Path, fragment: str = "") -> None:
-        """Open a page from disk and wait until it is there; what was complained of or fetched before is forgotten."""
+        """Opens a page from disk and waits until it is loaded; earlier console errors and requests are dropped."""
         self.visit(file.resolve().as_uri() + fragment)
 
     def visit(self, address: str) -> None:
-        """Open a page by its address, as `open` does."""
-        self.complaints()
+        """Opens a page by its address, as `open` does."""
+        self.console_errors()
         self.requests()
         self._call("POST", "/url", {"url": address})
 
     def run(self, script: str, *values: object) -> Any:
-        """What a function body in JavaScript returns."""
+        """Returns the value of a function body in JavaScript."""
         return self._call("POST", "/execute/sync", {"script": script, "args": list(values)})
 
     def click(self, css: str) -> None:
-        """Click the first element that fits, as a mouse does: it must be in reach."""
+        """Clicks the first element that matches; the element must not be covered."""
         self._call("POST", f"/element/{self._find(css)}/click", {})
 
     def keys(self, css: str, text: str) -> None:
-        """Type into the first element that fits."""
+        """Types into the first element that matches."""
         self._call("POST", f"/element/{self._find(css)}/value", {"text": text})
 
-    def complaints(self) -> list[str]:
-        """Errors and warnings of the console since the last time."""
+    def console_errors(self) -> list[str]:
+        """Returns the errors and warnings of the console since the last call."""
         log = self._call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in log if entry["level"] in {"SEVERE", "WARNING"}]
 
     def requests(self) -> list[str]:
-        """What was fetched since the last time."""
+        """Returns the addresses that were requested since the last call."""
         log = [
             json.loads(entry["message"])["message"] for entry in self._call("POST", "/se/log", {"type": "performance"})
         ]
         return [entry["params"]["request"]["url"] for entry in log if entry["method"] == "Network.requestWillBeSent"]
 
     def screenshot(self, file: Path) -> None:
-        """Write what the window shows as a PNG."""
+        """Writes the content of the window as a PNG file."""
         file.write_bytes(base64.b64decode(self._call("GET", "/screenshot")))
 
     def close(self) -> None:
-        """End browser and driver."""
+        """Ends browser and driver."""
         try:
             self._call("DELETE", "")
         finally:

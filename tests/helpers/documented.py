@@ -378,7 +378,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         "stubborn evaluate objects --views {tmp}/views --out {tmp}/worst.png",
     ),
     "stubborn evaluate mistakes runs/looked --out runs/false.png": (
-        f"{_RUN} {_SMALL} --agent tests.helpers.players:make_quitter --episodes 1 --record --out {{tmp}}/looked",
+        f"{_RUN} {_SMALL} --agent tests.helpers.runners:make_quitter --episodes 1 --record --out {{tmp}}/looked",
         "stubborn evaluate mistakes {tmp}/looked --out {tmp}/false.png",
     ),
     # docs/traps.md

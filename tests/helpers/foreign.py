@@ -1,4 +1,4 @@
-"""A scene and a robot in another style than ours: meshes, textures, class defaults, nested bodies, degrees."""
+"""A scene and a robot in a style that differs from ours: meshes, textures, class defaults, nested bodies, degrees."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ LABELS = {
 
 
 def write_scene(folder: Path, *, scene: str = SCENE, labels: dict[str, str] | None = None) -> tuple[Path, Path]:
-    """The scene's file and its label rules, with all that they need beside them."""
+    """Writes the scene and its label rules with all files that they need; returns both paths."""
     (folder / "meshes").mkdir(parents=True)
     (folder / "textures").mkdir()
     (folder / "meshes" / "cube.obj").write_text(CUBE)
@@ -179,7 +179,7 @@ SIDECAR = {
 
 
 def write_robot(folder: Path, *, robot: str = ROBOT, **sidecar: object) -> Path:
-    """The robot's file with its parts and its sidecar beside it; a value of None leaves the sidecar's out."""
+    """Writes the robot's file, its parts and its sidecar; a value of None removes the sidecar's entry."""
     (folder / "parts").mkdir(parents=True)
     (folder / "parts" / "cube.obj").write_text(CUBE)
     (folder / "carrier.xml").write_text(robot)

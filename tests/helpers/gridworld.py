@@ -1,7 +1,7 @@
 """A kinematic world of boxes with an exact depth camera, for fast tests of agents without physics.
 
-Boxes stand on the floor or hang over it; the robot is a disc that moves in centimetres until it would touch one. Depth
-and semantic images are ray casts, exact to float precision: depth is the distance along the optical axis.
+Boxes stand on the floor or hang over it; the robot is a disc that moves by centimetres until it would touch a box.
+Depth and semantic images are ray casts, exact to float precision: depth is the distance along the optical axis.
 """
 
 from __future__ import annotations
@@ -184,7 +184,7 @@ class Trace:
 
 
 def run_episode(world: GridWorld, agent: Agent, goal: str, *, seed: int = 0, max_steps: int = 500) -> Trace:
-    """Runs an agent until it stops or the steps are used up."""
+    """Runs an agent until it stops or has taken all steps."""
     agent.reset(goal, seed)
     trace = Trace([], [(world.x, world.y, world.yaw)], False, math.inf, 0)
     for _ in range(max_steps):

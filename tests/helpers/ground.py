@@ -1,4 +1,4 @@
-"""What an explorer is given, for tests of explorers without an agent."""
+"""The input of an explorer, for tests of explorers without an agent."""
 
 from __future__ import annotations
 

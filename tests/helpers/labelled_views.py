@@ -9,7 +9,7 @@ from stubborn.segmentation.dataset import LabelledView
 
 
 def a_view(height: int = 64, width: int = 96) -> LabelledView:
-    """A chair on the left third, floor elsewhere, a void row at the top; colour and depth follow the labels."""
+    """Returns a view: a chair on the left third, floor elsewhere, void in the top row; colour and depth agree."""
     semantic = np.full((height, width), MPCAT40_ID["floor"], np.uint8)
     semantic[:, : width // 3] = MPCAT40_ID["chair"]
     semantic[0] = 0

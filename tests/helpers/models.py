@@ -27,7 +27,7 @@ LICENCE = "CC0 -- of a test"
 
 
 def obj_text(parts: Mapping[str, Sequence[Box]]) -> str:
-    """An OBJ file of boxes by material."""
+    """Returns the text of an OBJ file with boxes by material."""
     lines, count = ["mtllib model.mtl"], 0
     for material, boxes in parts.items():
         lines.append(f"usemtl {material}")
@@ -40,7 +40,7 @@ def obj_text(parts: Mapping[str, Sequence[Box]]) -> str:
 
 
 def write_folder(folder: Path, chairs: int = 1) -> Path:
-    """A folder with chairs, a table, and a table of them for `stubborn import furniture`."""
+    """Writes a folder with chairs, a dining table and a list of them for `stubborn import furniture`."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.mtl").write_text(MATERIALS)
     rows = ["file,category,uses,width_m,depth_m,height_m,front_deg,license,author,mount"]
@@ -54,7 +54,7 @@ def write_folder(folder: Path, chairs: int = 1) -> Path:
 
 
 def write_catalogue(file: Path, entries: Sequence[Mapping[str, str]], files: Mapping[str, str]) -> Path:
-    """A catalogue of Sweet Home 3D with these properties of its models, and these files."""
+    """Writes a catalogue of Sweet Home 3D with these properties of its models and these files."""
     lines = ["name=Test", f"license={LICENCE}"]
     for n, entry in enumerate(entries, start=1):
         lines += [f"{key}#{n}={value}" for key, value in entry.items()]
@@ -67,6 +67,6 @@ def write_catalogue(file: Path, entries: Sequence[Mapping[str, str]], files: Map
 
 
 def properties(ident: str, model: str, **others: str) -> dict[str, str]:
-    """The properties of a chair's entry, with others in addition or instead."""
+    """Returns the properties of a chair's entry; the given ones are added or replace others."""
     usual = {"id": f"Test#{ident}", "name": "Chair", "category": "Living room", "model": model, "creator": "Somebody"}
     return usual | {"width": "50", "depth": "50", "height": "100"} | others

@@ -1,4 +1,4 @@
-"""Samples of test cases that differ from commit to commit, so that in time all of them are met."""
+"""Samples of test cases that differ from commit to commit, so that all cases are tested over time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ALL_CASES = False
 
 @functools.cache
 def commit() -> str:
-    """Hash of the checked-out commit; the same word where there is no git."""
+    """Returns the hash of the checked-out commit, or a constant word without git."""
     answer = subprocess.run(
         ["git", "rev-parse", "HEAD"], cwd=Path(__file__).parent, capture_output=True, text=True, check=False
     )
@@ -24,7 +24,7 @@ def commit() -> str:
 
 
 def sample(cases: Sequence[CaseT], count: int) -> list[CaseT]:
-    """So many of the cases, drawn by the commit; all of them under `--all-cases`."""
+    """Returns `count` cases sampled with the commit as the seed; all of them under `--all-cases`."""
     if ALL_CASES or count >= len(cases):
         return list(cases)
     chosen = random.Random(commit()).sample(range(len(cases)), count)

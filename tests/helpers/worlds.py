@@ -1,6 +1,6 @@
-"""Ten-line houses for tests: a floor, four walls, and what a test puts between them.
+"""Small houses for tests: a floor, four walls, and the objects that a test adds.
 
-Every function returns a `House`; the `with_*` functions copy the one they are given and add one labelled thing, so
+Every function returns a `House`; the `with_*` functions copy the one they are given and add one labelled object, so
 scenes are built by nesting: `with_box(room(4, 3), "table_00", centre_m=(1, 0, 0.4), half_m=(0.3, 0.3, 0.4))`.
 """
 
@@ -18,7 +18,7 @@ Vec3 = tuple[float, float, float]
 
 
 def open_floor(*, friction: float = 1.0, name: str = "floor_00") -> House:
-    """An endless floor at z = 0 and nothing else."""
+    """Returns an endless floor at z = 0 and nothing else."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_light(pos=(0, 0, 3), dir=(0, 0, -1))
     spec.worldbody.add_geom(
@@ -28,7 +28,7 @@ def open_floor(*, friction: float = 1.0, name: str = "floor_00") -> House:
 
 
 def room(width_m: float = 4.0, depth_m: float = 4.0, *, height_m: float = 2.5, box_floor: bool = False) -> House:
-    """One room around the origin: inner size `width_m` along x and `depth_m` along y, site `room_living_00`."""
+    """Returns a room around the origin: inner size `width_m` (x) times `depth_m` (y), site `room_living_00`."""
     spec = mujoco.MjSpec()
     world = spec.worldbody
     world.add_light(pos=(0, 0, height_m - 0.1), dir=(0, 0, -1))
@@ -61,7 +61,7 @@ def bed_behind_a_wall(wall_from_y_m: float = -0.1) -> House:
 
 
 def two_storeys() -> House:
-    """Two rooms of 6 x 4 m, one above the other, floors at 0 and 3 m, and no stairs: a bed below, a sofa above."""
+    """Returns two rooms of 6 x 4 m without stairs, with floors at 0 m (a bed) and 3 m (a sofa)."""
     house = with_box(room(6, 4), "bed_00", centre_m=(2.4, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "floor_01", centre_m=(0, 0, 2.95), half_m=(3.1, 2.1, 0.05))
     for number, (x, y) in enumerate(((3.05, 0.0), (-3.05, 0.0), (0.0, 2.05), (0.0, -2.05)), start=10):
@@ -75,7 +75,7 @@ def two_storeys() -> House:
 
 
 def ledge(drop_m: float) -> House:
-    """A floor that ends at x = 0, and beyond it another one that is lower by `drop_m`; a bed on the upper one."""
+    """Returns a floor that ends at x = 0 and behind it one that is lower by `drop_m`; a bed is on the upper one."""
     house = with_box(House("ledge", mujoco.MjSpec()), "floor_00", centre_m=(-2, 0, -0.05), half_m=(2, 2, 0.05))
     house = with_box(house, "floor_01", centre_m=(2, 0, -drop_m - 0.05), half_m=(2, 2, 0.05))
     house = with_box(house, "bed_00", centre_m=(-3.5, 1.0, 0.25), half_m=(0.5, 1.0, 0.25))
@@ -92,7 +92,7 @@ def with_box(
     group: int = 0,
     rgba: tuple[float, ...] = (0.6, 0.5, 0.4, 1.0),
 ) -> House:
-    """The house with one static box more."""
+    """Returns the house with an additional static box."""
     spec = house.spec.copy()
     geom = _box(spec.worldbody, name, centre_m, half_m, yaw_rad)
     geom.group, geom.rgba = group, rgba
@@ -102,7 +102,7 @@ def with_box(
 def with_post(
     house: House, name: str, *, xy_m: tuple[float, float], radius_m: float = 0.01, height_m: float = 1.0
 ) -> House:
-    """The house with one static upright cylinder more: a table's leg, a pole."""
+    """Returns the house with an additional static upright cylinder, such as a table's leg or a pole."""
     spec = house.spec.copy()
     spec.worldbody.add_geom(
         name=name,
@@ -122,7 +122,7 @@ def with_movable(
     mass_kg: float = 3.0,
     friction: float = 0.3,
 ) -> House:
-    """The house with one free box more, standing on the floor; `friction` wins over the floor's (priority 1)."""
+    """Returns the house with an additional free box on the floor; its `friction` overrides the floor's (priority 1)."""
     spec = house.spec.copy()
     half = tuple(0.5 * size for size in size_m)
     body = spec.worldbody.add_body(name=name, pos=(*xy_m, half[2]))
@@ -133,7 +133,7 @@ def with_movable(
 
 
 def cluttered_room(boxes: int, *, width_m: float = 12.0, free_radius_m: float = 0.6) -> House:
-    """A square room with `boxes` small static boxes on a regular lattice, none within `free_radius_m` of the origin."""
+    """Returns a square room with `boxes` small static boxes on a lattice, none within `free_radius_m` of the origin."""
     spec = room(width_m, width_m).spec.copy()
     for number, (x_m, y_m) in enumerate(_lattice(boxes, width_m - 1.0, free_radius_m)):
         body = spec.worldbody.add_body(name=f"cabinet_{number:03d}", pos=(x_m, y_m, 0.3))
@@ -142,7 +142,7 @@ def cluttered_room(boxes: int, *, width_m: float = 12.0, free_radius_m: float = 
 
 
 def random_obstacles(seed: int) -> House:
-    """An endless floor with 1 to 8 things around the origin: boxes, 2 cm poles, low slabs, table tops, chairs' legs.
+    """Returns an endless floor with 1 to 8 objects: boxes, poles of 2 cm, low slabs, table tops, legs of chairs.
 
     A disc of radius 0.18 m fits at the origin.
     """
@@ -171,7 +171,7 @@ def random_obstacles(seed: int) -> House:
 
 
 def _lattice(count: int, width_m: float, free_radius_m: float) -> Iterable[tuple[float, float]]:
-    """`count` places on a square lattice of the smallest pitch that leaves them all inside `width_m`."""
+    """Returns `count` places on a square lattice that fills a square of `width_m`."""
     side = math.ceil(math.sqrt(count))
     while True:
         steps = [width_m * ((i + 0.5) / side - 0.5) for i in range(side)]

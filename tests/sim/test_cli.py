@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @dataclass(frozen=True)
 class Args:
-    """Arguments of a test."""
+    """Arguments for the tests."""
 
     episodes: int = 5
     """How many."""
@@ -76,7 +76,7 @@ class Ranges:
 
 
 @pytest.mark.parametrize(
-    ("argv", "told"),
+    ("argv", "expected"),
     [
         (["--seed", "-1"], "--seed must be at least 0, got -1."),
         (["--counts", "1", "0"], "--counts must be at least 1, got 0."),
@@ -93,17 +93,17 @@ class Ranges:
     ],
 )
 def test_an_option_out_of_its_range_is_named_before_the_command_begins(
-    argv: list[str], told: str, capsys: pytest.CaptureFixture[str]
+    argv: list[str], expected: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.run(Ranges, lambda args: pytest.fail("it began"), argv) == 2
     message = capsys.readouterr().err
     assert message.startswith("error: ")
     assert message.count("\n") == 1
-    assert told in message
+    assert expected in message
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "expected"),
     [
         (OSError(28, "No space left on device"), "A file cannot be read or written: No space left on device."),
         (OSError(28, "No space left on device", "a.mp4"), "'a.mp4' cannot be read or written: No space"),
@@ -113,14 +113,14 @@ def test_an_option_out_of_its_range_is_named_before_the_command_begins(
     ],
 )
 def test_a_full_disk_and_the_like_are_one_line_and_with_debug_a_traceback_too(
-    error: Exception, told: str, capsys: pytest.CaptureFixture[str]
+    error: Exception, expected: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def main(args: Args) -> int:
         raise error
 
     assert cli.run(Args, main, []) == 2
     message = capsys.readouterr().err
-    assert told in message
+    assert expected in message
     assert message.count("\n") == 1
     assert cli.run(Args, main, ["--debug"]) == 2
     assert "Traceback" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Settings are set by their path, checked by their dataclass, and wrong names list the right ones."""
+"""Settings are set by their path and checked by their dataclass, and an unknown name lists the valid ones."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_all_fields_have_a_path_and_each_can_be_set_to_its_own_value() -> None:
         ({"sizes_m": [0.5, float("nan")]}, "'sizes_m' cannot be"),
     ],
 )
-def test_what_cannot_be_set_is_refused_by_name(values: dict[str, object], message: str) -> None:
+def test_a_field_that_cannot_be_set_is_refused_by_name(values: dict[str, object], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         with_fields(Table(), values)
 

@@ -30,7 +30,7 @@ def test_a_failed_replacement_leaves_no_part_file(tmp_path: Path) -> None:
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_a_part_file_is_created_beside_its_file_and_older_parts_of_that_file_are_removed(tmp_path: Path) -> None:
+def test_a_part_file_is_created_next_to_its_file_and_older_parts_of_that_file_are_removed(tmp_path: Path) -> None:
     folder = tmp_path / "videos"
     folder.mkdir()
     gone, of_another, whole = (folder / name for name in (".a.part-99999.mp4", ".b.part-99999.mp4", "a.mp4"))
@@ -72,7 +72,7 @@ def test_several_files_are_replaced_together_or_not_at_all(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "message"),
     [
         (lambda folder: folder / "file" / "run", "file"),
         (lambda folder: folder / "is_folder.png", "is a folder"),
@@ -81,11 +81,11 @@ def test_several_files_are_replaced_together_or_not_at_all(tmp_path: Path) -> No
     ],
 )
 def test_a_path_that_cannot_be_written_is_refused_before_any_work(
-    make: Callable[[Path], Path], told: str, tmp_path: Path
+    make: Callable[[Path], Path], message: str, tmp_path: Path
 ) -> None:
     (tmp_path / "file").touch()
     (tmp_path / "is_folder.png").mkdir()
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         require_writable(make(tmp_path), name="--out", folder=False)
     require_writable(tmp_path / "new" / "a.png", name="--out", folder=False)
     require_writable(tmp_path, name="--out", folder=True)

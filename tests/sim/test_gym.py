@@ -72,7 +72,7 @@ def test_a_configuration_may_be_a_dict_of_its_fields(house: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"camera": {"width": 32}}, "camera: There is no field 'width'. Did you mean 'width_px'?"),
         ({"camera": {"width_px": "wide"}}, "camera: 'width_px' cannot be 'wide'"),
@@ -80,8 +80,8 @@ def test_a_configuration_may_be_a_dict_of_its_fields(house: Path) -> None:
         ({"robot": "robot.xml"}, "robot must be a RobotConfig or a dict of its fields, got 'robot.xml'"),
     ],
 )
-def test_a_configuration_that_is_none_is_refused_with_what_is_allowed(options: dict[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_an_invalid_configuration_is_refused_with_the_allowed_values(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         gymnasium.make(ENV_ID, **options)
 
 
@@ -161,7 +161,7 @@ def test_render_returns_the_colour_image(env: gymnasium.Env) -> None:
 
 
 def test_rendering_changes_no_observation(options: dict[str, Any]) -> None:
-    told = []
+    runs = []
     for rendering in (False, True):
         env = gymnasium.make(ENV_ID, noise="realsense", **options)
         frames = [env.reset(seed=4)[0]]
@@ -169,9 +169,9 @@ def test_rendering_changes_no_observation(options: dict[str, Any]) -> None:
             if rendering:
                 env.render()
             frames.append(env.step(action)[0])
-        told.append(frames)
+        runs.append(frames)
         env.close()
-    for plain, rendered in zip(*told, strict=True):
+    for plain, rendered in zip(*runs, strict=True):
         for name, value in plain.items():
             np.testing.assert_array_equal(value, rendered[name])
 

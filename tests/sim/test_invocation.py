@@ -1,4 +1,4 @@
-"""Messages name commands as the user typed them, and files name them in one way."""
+"""Messages name commands as the user typed them, and files always use the same name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with an environment in it, which is not on the path; it is the current folder."""
+    """Creates a folder with an environment in it, which is not on the path, and makes it the current folder."""
     binaries = tmp_path / "project" / ".venv" / "bin"
     binaries.mkdir(parents=True)
     (binaries / "python").symlink_to(sys.executable)
@@ -61,7 +61,9 @@ def test_a_script_is_named_as_it_was_typed(project: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("name", ["sim.run", "sim.web.__main__"])
-def test_a_module_names_modules_where_there_are_some(name: str, project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_started_as_a_module_names_existing_modules(
+    name: str, project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     start_as_module(name, monkeypatch)
     assert invocation.command("report", Path("runs/my run")) == ".venv/bin/python -m sim.report 'runs/my run'"
     assert invocation.command("houses", "generate") == ".venv/bin/stubborn houses generate"

@@ -1,4 +1,4 @@
-"""Whatever a file holds, its reader gives a result or a message that names the file, never a traceback."""
+"""For any content, the reader of a file gives a result or a message that names the file, never a traceback."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def shard(folder: Path) -> bytes:
 
 @dataclass(frozen=True)
 class Reader:
-    """A kind of file: its name, valid content, and what reads it."""
+    """A kind of file: its name, valid content, and its reader."""
 
     name: str
     valid: Callable[[Path], bytes]
@@ -217,7 +217,7 @@ JUNK: tuple[Any, ...] = (
 
 
 def with_junk(content: bytes, path: int, junk: Any) -> bytes:
-    """Returns JSON, zipped or not, in which one value is another; the content itself where it is not JSON."""
+    """Returns JSON, zipped or not, in which one value is replaced; the content itself if it is not JSON."""
     packed = content[:2] == b"\x1f\x8b"
     try:
         tree = json.loads(gzip.decompress(content) if packed else content.splitlines()[0])

@@ -1,4 +1,4 @@
-"""Typed reading: a message names file, line, field, what was found and what is wanted."""
+"""Typed reading: a message names the file, the line, the field, the value found and the type expected."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Row(msgspec.Struct):
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         ("", "is empty"),
         ("\0\0\0\0", "is empty"),
@@ -48,17 +48,17 @@ class Row(msgspec.Struct):
         ("1" * 10_000, "rows.json"),
     ],
 )
-def test_content_of_another_type_is_one_line_that_names_the_field(content: str, told: str, tmp_path: Path) -> None:
+def test_content_of_another_type_is_one_line_that_names_the_field(content: str, message: str, tmp_path: Path) -> None:
     file = tmp_path / "rows.json"
     file.write_text(content)
-    with pytest.raises(HouseError, match=told) as caught:
+    with pytest.raises(HouseError, match=message) as caught:
         reading.read_json(file, Row, what="Rows", error=HouseError)
     assert str(file) in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b'{"name": "a", "at": []}\n\n{"name": "b", "at": []}\n', "line 2 is empty"),
         (b'{"name": "a", "at": []}\n\0\0\0\0\n', "line 2 is empty"),
@@ -66,14 +66,14 @@ def test_content_of_another_type_is_one_line_that_names_the_field(content: str, 
         (b'{"name": "a", "at": []}\n[]\n', "line 2: expected object, got array"),
     ],
 )
-def test_a_broken_line_is_named_by_its_number(content: bytes, told: str, tmp_path: Path) -> None:
+def test_a_broken_line_is_named_by_its_number(content: bytes, message: str, tmp_path: Path) -> None:
     (tmp_path / "rows.jsonl").write_bytes(content)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         reading.read_lines(tmp_path / "rows.jsonl", Row, what="Rows")
 
 
 @pytest.mark.parametrize("torn", [b'{"name": "b"', b"\0\0\0\0", b"\xff"])
-def test_a_torn_last_line_is_left_out_and_said(torn: bytes, tmp_path: Path) -> None:
+def test_an_incomplete_last_line_is_left_out_and_reported(torn: bytes, tmp_path: Path) -> None:
     file = tmp_path / "rows.jsonl"
     whole = b'{"name": "a", "at": [], "more": 1}\n'
     file.write_bytes(whole + torn)
@@ -85,7 +85,7 @@ def test_a_torn_last_line_is_left_out_and_said(torn: bytes, tmp_path: Path) -> N
     assert reading.read_lines(file, Row, what="Rows").torn == ""
 
 
-def test_what_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_expands_without_end_is_refused_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reading, "MAX_BYTES", 1 << 20)
     (tmp_path / "bomb.gz").write_bytes(gzip.compress(b"[" + b" " * (4 << 20), compresslevel=1))
     with pytest.raises(ConfigError, match="expands to more than 1 MB"):
@@ -129,7 +129,7 @@ def member(header: str) -> bytes:
         b"",
         b"no archive",
         damaged_zip(put(b"PK\x01\x02", 16, 0xAA)),  # the checksum
-        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a method of compression that there is not
+        damaged_zip(put(b"PK\x01\x02", 10, 99)),  # a compression method that does not exist
         damaged_zip(put(b"PK\x01\x02", 10, 14)),  # LZMA
         damaged_zip(put(b"PK\x01\x02", 8, 1)),  # encrypted
         damaged_zip(lambda content: content.__setitem__(slice(40, 60), b"\xff" * 20)),

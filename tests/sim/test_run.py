@@ -1,4 +1,4 @@
-"""`python -m sim.run` as a user meets it: results, resuming, workers, one clear line where an option will not do."""
+"""`python -m sim.run` as a user runs it: results, resuming, workers, one clear line for an invalid option."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.helpers.worlds import two_storeys
 
 
 def command(*options: object) -> list[str]:
-    """With ground truth unless another segmentation is asked for: a network would take most of the time."""
+    """Uses ground truth unless another segmentation is requested: a network would take most of the time."""
     semantics = () if "--semantics" in options else ("--semantics", "gt")
     return [sys.executable, "-m", "sim.run", *map(str, (*options, *semantics))]
 
@@ -54,7 +54,7 @@ def test_another_seed_draws_other_starts(house: Path, tmp_path: Path) -> None:
     ]
 
 
-def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_path: Path) -> None:
+def test_a_line_and_the_summary_have_the_fields_of_the_contract(house: Path, tmp_path: Path) -> None:
     run("--agent", "oracle", "--house", house, "--episodes", 2, "--out", tmp_path)
     (line, _), summary = lines_of(tmp_path), json.loads((tmp_path / "summary.json").read_text())
     wanted = (
@@ -72,7 +72,7 @@ def test_a_line_and_the_summary_have_what_the_contract_names(house: Path, tmp_pa
     assert {"mujoco", "numpy", "gl_renderer"} <= set(config["versions"])
 
 
-def test_a_killed_run_goes_on_and_no_line_is_lost_or_doubled(house: Path, tmp_path: Path) -> None:
+def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_path: Path) -> None:
     options = ("--agent", "oracle", "--house", house, "--episodes", 12)
     results = tmp_path / "killed" / "results.jsonl"
     process = subprocess.Popen(command(*options, "--out", tmp_path / "killed"), stdout=subprocess.DEVNULL)
@@ -114,7 +114,7 @@ def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path
         assert {"split", "noise", "profile", "versions", "start"} <= set(trajectory.about)
 
 
-def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_path: Path) -> None:
+def test_an_episode_whose_goal_is_upstairs_runs_and_fails_by_stairs(tmp_path: Path) -> None:
     folder = tmp_path / "tiny"
     folder.mkdir()
     (folder / "duplex.xml").write_text(two_storeys().spec.to_xml())
@@ -131,7 +131,7 @@ def test_an_episode_whose_goal_is_upstairs_is_played_and_fails_by_stairs(tmp_pat
     assert [line["gt_explored"] for line in lines] == [True, False, False, True]
 
 
-def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
+def test_the_shipped_network_is_used_unless_another_segmentation_is_requested(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from sim.run import entry
@@ -143,7 +143,7 @@ def test_the_network_that_ships_plays_unless_another_segmentation_is_asked_for(
     assert "weights" in json.loads((tmp_path / "config.json").read_text())["files_sha256"]
 
 
-def test_anybodys_own_agent_plays(house: Path, tmp_path: Path) -> None:
+def test_an_agent_of_a_user_runs_episodes(house: Path, tmp_path: Path) -> None:
     done = run("--agent", "examples.my_agent:make", "--house", house, "--episodes", 1, "--out", tmp_path)
     assert done.returncode == 0, done.stderr
     assert lines_of(tmp_path)[0]["agent"] == "examples.my_agent:make"
@@ -165,7 +165,7 @@ BROKEN_HOUSES = {
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (("--agent", "stuborn"), "stuborn"),
         (("--agent", "nowhere.at_all:make"), "nowhere"),
@@ -189,7 +189,7 @@ BROKEN_HOUSES = {
 )
 def test_a_wrong_option_is_one_line_and_status_2(
     options: tuple[str, ...],
-    told: str,
+    message: str,
     house: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -201,43 +201,43 @@ def test_a_wrong_option_is_one_line_and_status_2(
         (tmp_path / name).write_text(content)
     monkeypatch.chdir(tmp_path)
     assert entry([str(house) if option == "HOUSE" else option for option in options]) == 2
-    complaint = capsys.readouterr().err
-    assert complaint.startswith("error: ")
-    assert complaint.count("\n") == 1
-    assert told in complaint
+    printed = capsys.readouterr().err
+    assert printed.startswith("error: ")
+    assert printed.count("\n") == 1
+    assert message in printed
 
 
-def test_a_run_that_other_code_goes_on_with_says_so_and_names_both(
+def test_a_run_resumed_by_other_code_says_so_and_names_both(
     house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from sim.run import entry
 
-    def played(episodes: int) -> tuple[str, list[str]]:
-        options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+    def run_quitter(episodes: int) -> tuple[str, list[str]]:
+        options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
         assert entry([*options, "--episodes", str(episodes)]) == 0
         return capsys.readouterr().out, json.loads((tmp_path / "config.json").read_text())["codes"]
 
-    out, (code,) = played(1)
+    out, (code,) = run_quitter(1)
     assert "by other code" not in out
     assert re.fullmatch(rf"{code_hash()}\+[0-9a-f]{{12}}", code)  # "+" and the user's own
     config = json.loads((tmp_path / "config.json").read_text())
     (tmp_path / "config.json").write_text(json.dumps(config | {"codes": ["0lder"]}))
-    out, codes = played(1)
-    assert "by other code" not in out  # nothing was played
+    out, codes = run_quitter(1)
+    assert "by other code" not in out  # no episode was run
     assert codes == ["0lder"]
-    out, codes = played(2)
+    out, codes = run_quitter(2)
     assert [line for line in out.splitlines() if "0lder" in line] == [
         f"The episodes that were there were run by other code (0lder) than these ({code})."
     ]
     assert codes == ["0lder", code]
 
 
-def test_a_run_that_goes_on_after_an_edit_of_the_agent_says_so(
+def test_a_run_resumed_after_an_edit_of_the_agent_says_so(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.syspath_prepend(tmp_path)
     mine = tmp_path / "edited_agent.py"
-    mine.write_text("from tests.helpers.players import make_quitter as make\n")
+    mine.write_text("from tests.helpers.runners import make_quitter as make\n")
     options = ["--agent", "edited_agent:make", "--house", str(house), "--out", str(tmp_path / "run")]
     assert entry([*options, "--episodes", "1"]) == 0
     mine.write_text(mine.read_text() + "GAIN = 2\n")
@@ -258,20 +258,20 @@ def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path
 def test_the_split_for_last_measurements_is_announced_in_one_line_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
     for split, lines in (("test", 2), ("val", 1)):
         assert entry(["--split", split, "--episodes", "100000"]) == 2
-        told = capsys.readouterr()
-        assert ("last measurement" in told.err) == (split == "test")
-        assert len(told.err.strip().splitlines()) == lines
-        assert told.out == ""
+        captured = capsys.readouterr()
+        assert ("last measurement" in captured.err) == (split == "test")
+        assert len(captured.err.strip().splitlines()) == lines
+        assert captured.out == ""
 
 
 def test_a_list_of_the_agents_brings_neither_mujoco_nor_pytorch_nor_numba_nor_video() -> None:
     """They take more than half of the time of a start."""
     code = "import sys; from sim.run import entry; entry(['--list-agents']); print(sorted(sys.modules))"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert "stubborn-plus" in told
-    assert "sim.composition.agents" in told
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert "stubborn-plus" in output
+    assert "sim.composition.agents" in output
     for package in ("'mujoco'", "'torch'", "'numba'", "'av'", "'OpenGL'"):
-        assert package not in told
+        assert package not in output
 
 
 def test_only_the_named_episodes_of_a_split_are_run_and_others_can_follow(
@@ -284,21 +284,21 @@ def test_only_the_named_episodes_of_a_split_are_run_and_others_can_follow(
     assert entry([*options, "--only", "narrow_gap_1", "low_slab_0"]) == 0
     assert len(lines_of(tmp_path / "run")) == 3
     assert entry([*options, "--only", "narow_gap_1"]) == 2
-    told = "error: --only 'narow_gap_1': split 'traps' has no such episode. Did you mean 'narrow_gap_1'?"
-    assert capsys.readouterr().err.strip() == told
+    message = "error: --only 'narow_gap_1': split 'traps' has no such episode. Did you mean 'narrow_gap_1'?"
+    assert capsys.readouterr().err.strip() == message
     assert entry(["--house", "examples/my_house.xml", "--only", "narrow_gap_1"]) == 2
     assert "--only names episodes of a split" in capsys.readouterr().err
 
 
 def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsys: pytest.CaptureFixture[str]) -> None:
     assert entry(["--goal", "toilett"]) == 2
-    told = capsys.readouterr().err
-    assert "--goal 'toilett'" in told
-    assert "Did you mean 'toilet'? It has: chair, table," in told
-    assert "--episodes" not in told
+    message = capsys.readouterr().err
+    assert "--goal 'toilett'" in message
+    assert "Did you mean 'toilet'? It has: chair, table," in message
+    assert "--episodes" not in message
     assert entry(["--goal", "toilet", "--episodes", "9999"]) == 2
-    told = capsys.readouterr().err
-    assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", told)
+    message = capsys.readouterr().err
+    assert re.search(r"Split 'val' has \d+ episodes with goal 'toilet', and 9999 were asked for", message)
 
 
 def test_a_shard_without_episodes_says_so_and_leaves_nothing(

@@ -85,14 +85,14 @@ def test_a_drive_is_recorded_like_an_agents_episode_and_the_next_start_takes_the
     assert lines_of(tmp_path) == [line]
     teleop.drive(args, Script(["x"]))
     assert [line["episode_id"] for line in lines_of(tmp_path)] == ["e0", "e1"]
-    assert lines_of(tmp_path)[1]["failure"] == "misc"  # a person's STOP is no false detection
+    assert lines_of(tmp_path)[1]["failure"] == "misc"  # the STOP of a person is not a false detection
     assert json.loads((tmp_path / "summary.json").read_text())["episodes"] == 2
     with pytest.raises(ConfigError, match="another folder"):
         teleop.drive(args, Script(["x"]))
 
 
 def test_leaving_before_the_first_record_leaves_no_folder(split: Path, tmp_path: Path) -> None:
-    for goal in (None, "sofa"):  # another goal in a folder that was begun would be refused
+    for goal in (None, "sofa"):  # a folder with episodes refuses another goal
         with pytest.raises(teleop.Quit):
             teleop.drive(teleop.Args(split=str(split), goal=goal, out=tmp_path / "out", video=True), Script(["w", "q"]))
         assert not (tmp_path / "out").exists()
@@ -105,16 +105,16 @@ def test_an_episode_that_does_not_exist_leaves_no_folder(split: Path, tmp_path: 
     assert not (tmp_path / "out").exists()
 
 
-def test_keys_that_move_nothing_take_no_step_and_the_distance_is_told_on_request_only(env: ObjectNavEnv) -> None:
+def test_keys_that_move_nothing_take_no_step_and_the_distance_is_shown_on_request_only(env: ObjectNavEnv) -> None:
     cockpit = Script(["g", "c", "m", "p", "p", "?", "x"])
     line = play_episode(env, teleop.Human(env, cockpit), env.split.episodes[0], seed=0)
     assert line["num_steps"] == 1
-    told = [" ".join(screen[:2]) for screen in cockpit.screens]
-    assert [f"{line['shortest_path']:.1f} m" in head for head in told] == [False, True] + [False] * 5
-    assert "the agent would" in told[4]
+    heads = [" ".join(screen[:2]) for screen in cockpit.screens]
+    assert [f"{line['shortest_path']:.1f} m" in head for head in heads] == [False, True] + [False] * 5
+    assert "the agent would" in heads[4]
 
 
-def test_the_map_learns_collisions_from_what_was_driven_not_from_what_it_would_have_done(env: ObjectNavEnv) -> None:
+def test_the_map_learns_collisions_from_executed_actions_and_not_from_its_own_choice(env: ObjectNavEnv) -> None:
     cockpit = Script(["w"] * 9)
     human = teleop.Human(env, cockpit)
     with pytest.raises(teleop.Quit):
@@ -142,7 +142,7 @@ def test_no_line_is_wider_and_no_screen_higher_than_the_terminal(env: ObjectNavE
 
 
 def read_back(lines: Sequence[str]) -> NDArray[np.int64]:
-    """The image that `half_blocks` in 24 bits shows."""
+    """Returns the image that `half_blocks` shows in 24 bits."""
     rows: list[list[list[int]]] = []
     for line in lines:
         upper, lower, colours = [], [], [0] * 6
@@ -205,7 +205,7 @@ def test_keys_come_one_by_one_and_the_terminal_is_as_it_was_afterwards(pty: tupl
             assert [terminal.key() for _ in range(6)] == ["w", "up", "left", "right", "x", "\x1b"]
         assert termios.tcgetattr(slave) == before
     shown = b""
-    while not shown.endswith(b"\x1b[?25h\x1b[?1049l"):  # the cursor is back, and what stood on the screen before
+    while not shown.endswith(b"\x1b[?25h\x1b[?1049l"):  # the cursor and the previous content of the screen are back
         shown += os.read(master, 1000)
 
 

@@ -132,7 +132,7 @@ def test_a_picture_can_be_drawn_before_the_first_step():
 
 
 class Smeared:
-    """A segmenter whose outlines run over what is beside the target."""
+    """A segmenter whose outlines extend over the surroundings of the target."""
 
     def __init__(self, *, exact: bool) -> None:
         self.spec = SegmenterSpec(sensors=("semantic",), exact_outlines=exact)
@@ -156,10 +156,10 @@ def test_a_segmenters_outline_counts_only_where_it_says_that_it_is_exact(exact: 
     rows, cols = np.nonzero(agent.navmap.score_max > 0.5)
     _, y_m = agent.navmap.frame.centres(rows, cols)
     assert rows.size > 10
-    assert (np.abs(y_m).max() > 1.1) == exact  # beside the bed
+    assert (np.abs(y_m).max() > 1.1) == exact  # next to the bed
 
 
-def test_a_clearance_beyond_what_distances_are_computed_for_is_refused():
+def test_a_clearance_beyond_the_computed_distances_is_refused():
     AgentConfig(planning=PlanningConfig(clearance_m=8.9))
     with pytest.raises(ConfigError, match=r"clearance_m and preferred_clearance_m must be at most 8\.9 m"):
         AgentConfig(planning=PlanningConfig(clearance_m=9.0))

@@ -1,4 +1,4 @@
-"""What holds for every agent that `stubborn.agents.make` knows, and for the example."""
+"""Properties of every agent that `stubborn.agents.make` knows, and of the example."""
 
 import dataclasses
 import subprocess
@@ -122,7 +122,7 @@ class Fickle:
 
 
 class SeenOften:
-    """A verifier that wants the target in more than half of the frames, and a few of them."""
+    """A verifier that requires the target in more than half of the frames and in at least a few of them."""
 
     may_refuse = True
 
@@ -164,7 +164,7 @@ TWO_ROOMS = boxes_from_plan(
 
 
 def ends(name: str, start: tuple[float, float, float]) -> tuple[bool, float, float]:
-    """Whether it stopped, and how far from the bed and the table."""
+    """Returns whether the agent stopped, and its distances from the bed and the table."""
     ground = GridWorld(TWO_ROOMS, start, camera=SMALL_CAMERA)
     trace = run_episode(ground, unsure(name), "bed", max_steps=150)
     return trace.stopped, ground.distance_to("bed"), ground.distance_to("table")
@@ -204,7 +204,7 @@ def test_stubborn_plus_goes_past_the_lookalike_too():
     )
     assert isinstance(agent, StubbornAgent)
     assert isinstance(agent.seeker, TrackSeeker)
-    agent.seeker.fusion = Fusion()  # this detector does not err like the network
+    agent.seeker.fusion = Fusion()  # the errors of this detector differ from those of the network
     ground = GridWorld(TWO_ROOMS, (3.6, 0.6, 0.5), camera=SMALL_CAMERA)
     assert run_episode(ground, agent, "bed", max_steps=150).stopped
     assert ground.distance_to("bed") < 1.0
@@ -277,7 +277,7 @@ def test_a_specification_describes_its_agent(name: str):
 
 
 def plain(value: Any) -> bool:
-    """Whether a value is made of JSON's types and frozen dataclasses."""
+    """Returns whether a value consists of JSON types and frozen dataclasses."""
     if dataclasses.is_dataclass(value):
         assert getattr(value, "__dataclass_params__").frozen  # noqa: B009 - not in typeshed
         return all(plain(getattr(value, field.name)) for field in dataclasses.fields(value))
@@ -303,7 +303,7 @@ def test_a_larger_success_distance_lets_the_agent_stop_farther_away():
     assert ends_m[1] > ends_m[0] + 0.5
 
 
-def test_an_unknown_name_or_option_is_refused_with_what_there_is():
+def test_an_unknown_name_or_option_is_refused_with_the_names_that_exist():
     with pytest.raises(ConfigError, match=r"No agent 'stuborn'\. Did you mean 'stubborn'\? There is: stubborn, "):
         build("stuborn")
     with pytest.raises(ConfigError, match=r"no option 'speed'\. It has: cell_m, "):

@@ -1,4 +1,4 @@
-"""The agent's compiled loops compute what NumPy computes, to the last bit: the agent's path depends on it."""
+"""The agent's compiled loops equal NumPy to the last bit, because the agent's path depends on it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def depth_image(rng: np.random.Generator, noise_m: float) -> NDArray[np.float32]
 
 
 def sight_window() -> Window:
-    """Returns a window that holds all that the camera sees from `POSE`."""
+    """Returns a window that holds all cells that the camera sees from `POSE`."""
     return GridFrame.around_start(600, 0.05).window_at(POSE.x_m, POSE.y_m, sight_window_cells(CAMERA, 0.05))
 
 
@@ -144,7 +144,7 @@ def test_pixels_have_the_cells_that_they_are_projected_to() -> None:
 
 
 def seen_past(sight: SightLines, frame: GridFrame, rows: NDArray, cols: NDArray, drop_m: float) -> NDArray[np.bool_]:
-    """Returns what `SightLines.passes` does, with a margin of 5 cm."""
+    """Returns the result of `SightLines.passes` with a margin of 5 cm."""
     x_m, y_m = frame.centres(rows, cols)
     cos, sin = math.cos(sight.pose.yaw_rad), math.sin(sight.pose.yaw_rad)
     dx, dy = x_m - sight.pose.x_m, y_m - sight.pose.y_m
@@ -282,7 +282,7 @@ def test_the_part_of_a_cell_is_the_one_that_opencv_numbers_like_it(connectivity:
         assert np.array_equal(mask, given)
 
 
-def test_a_point_amid_cells_has_their_mean_and_one_off_the_grid_has_none() -> None:
+def test_a_point_between_cells_has_their_mean_and_one_off_the_grid_has_no_value() -> None:
     values = np.array([[1.0, 2.0], [3.0, np.inf]], np.float32)
     x_m, y_m = np.array([0.05, 0.03, 0.099, 0.2]), np.array([0.049, 0.03, 0.099, 0.03])
     found = bilinear(values, 0.0, 0.0, 0.05, x_m, y_m)

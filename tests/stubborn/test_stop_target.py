@@ -1,4 +1,4 @@
-"""The agents state for which place they stop: on the object that they took for the goal."""
+"""The agents state the place for which they stop, on the object that they took for the goal."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_the_place_is_on_the_lookalike_at_which_an_agent_stops_wrongly() -> None
 
 
 @pytest.mark.parametrize("from_viewpoint", [False, True])
-def test_the_stop_in_reach_and_the_one_from_a_viewpoint_state_one(from_viewpoint: bool) -> None:
+def test_a_stop_in_reach_and_a_stop_from_a_viewpoint_state_a_place(from_viewpoint: bool) -> None:
     agent = make("stubborn", GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
     found, find = [], agent.seeker.in_reach
@@ -70,12 +70,12 @@ def test_the_stop_in_reach_and_the_one_from_a_viewpoint_state_one(from_viewpoint
     assert any(cell is not None for cell in found) != from_viewpoint
 
 
-def test_an_agent_that_has_not_stopped_states_none() -> None:
+def test_an_agent_that_has_not_stopped_states_no_place() -> None:
     agent = make("stubborn", GroundTruthSegmenter())
     assert isinstance(agent, StubbornAgent)
     agent.act(GridWorld(TWO_ROOMS, START, camera=SMALL_CAMERA).observe("chair"))
     assert agent.stop_target_xy_m() is None
 
 
-def test_the_random_agent_states_none() -> None:
+def test_the_random_agent_states_no_place() -> None:
     assert not isinstance(make("random", GroundTruthSegmenter()), StatesTarget)

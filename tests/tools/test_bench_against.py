@@ -1,4 +1,4 @@
-"""The comparison with another commit refuses what it cannot compare, and takes turns."""
+"""The comparison with another commit refuses versions that it cannot compare, and alternates between the two."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ pytestmark = pytest.mark.skipif(not (bench_against.ROOT / ".git").exists(), reas
 
 def test_a_wrong_ref_is_refused_in_one_sentence(capsys: pytest.CaptureFixture[str]) -> None:
     assert bench_against.entry(["--against", "no-such-release"]) == 2
-    told = capsys.readouterr().err
-    assert told.startswith("error: --against 'no-such-release' names no commit, tag or branch")
-    assert told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert message.startswith("error: --against 'no-such-release' names no commit, tag or branch")
+    assert message.count("\n") == 1
 
 
 @pytest.mark.parametrize("ref", ["", "--all", "HEAD:README.md"])
-def test_what_is_no_commit_is_no_ref(ref: str) -> None:
+def test_a_reference_without_a_commit_is_refused(ref: str) -> None:
     with pytest.raises(ConfigError, match="names no commit"):
         commit_of(ref)
 
@@ -33,7 +33,7 @@ def test_a_commit_is_unpacked_as_it_was(tmp_path: Path) -> None:
 
 
 class Told(Worker):
-    """A version whose rounds take the given seconds; none is left: its process has ended."""
+    """A version whose rounds take the given seconds; after the last one its process has ended."""
 
     def __init__(self, name: str, seconds: list[float], order: list[str]) -> None:
         self.name, self.seconds, self.order = name, seconds, order

@@ -30,7 +30,7 @@ FAILED = {name: LINE[name] for name in ("house", "goal")} | {"episode_id": "e1",
 
 @pytest.fixture
 def run(tmp_path: Path) -> Path:
-    """A recorded run of an episode in a plan of two rooms, and of one that failed."""
+    """Returns a recorded run of an episode in a plan of two rooms, and of one that failed."""
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     house = with_box(house, "wall_10", centre_m=(0.5, 1.2, 1.25), half_m=(0.05, 1.3, 1.25))
     (plan,) = export_plans(house, {})
@@ -72,7 +72,7 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"agent": "stubborn-plus"}, "the agent 'stubborn-plus', which the twin cannot play. It plays: stubborn, "),
         ({"agent": "latest-frame"}, "the twin cannot play"),
@@ -85,14 +85,14 @@ def test_the_agent_has_the_explorer_and_the_settings_of_the_run(run: Path, optio
         ({"semantics": "noisy"}, "has --semantics noisy; the twin has ground truth"),
     ],
 )
-def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[str, Any], told: str):
+def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[str, Any], message: str):
     record(run, **options)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         check_twin.main(check_twin.Args(plans=run.parent / "plans", runs=(run,), explore=True))
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "told"),
+    ("name", "content", "message"),
     [
         ("results.jsonl", "{\n", "line 1 is not JSON"),
         ("results.jsonl", json.dumps(FAILED) + "\n", "has no trajectory: give folders of runs made with --record"),
@@ -105,9 +105,9 @@ def test_a_run_that_the_twin_cannot_repeat_is_refused(run: Path, options: dict[s
         ("trajectories/e0.npz", "", "is not a trajectory"),
     ],
 )
-def test_a_broken_run_is_named_in_a_sentence(run: Path, name: str, content: str, told: str):
+def test_a_broken_run_is_named_in_a_sentence(run: Path, name: str, content: str, message: str):
     (run / name).write_text(content)
-    with pytest.raises(ConfigError, match=told):
+    with pytest.raises(ConfigError, match=message):
         check_twin.main(check_twin.Args(plans=run.parent / "plans", runs=(run,), explore=True))
 
 

@@ -29,7 +29,7 @@ def root(tmp_path: Path) -> Path:
 
 
 def write(root: Path) -> tuple[str, list[dict[str, str]]]:
-    """Returns the page and the rows of the table."""
+    """Writes the scene of a package, `package/scenes/house.xml`, and its folders `common` and `textures`."""
     describe_houses.main(describe_houses.Args(out=root / "README.md", root=root))
     with (root / "houses.csv").open(encoding="utf-8", newline="") as file:
         return (root / "README.md").read_text(encoding="utf-8"), list(csv.DictReader(file))

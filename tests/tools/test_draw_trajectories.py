@@ -22,12 +22,12 @@ HEIGHT_PX = round(160 * FRAME.cell_m * draw_trajectories.PX_M)
 
 
 @pytest.fixture(scope="module")
-def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run of two recorded episodes in which the agent stops at once."""
-    folder = tmp_path_factory.mktemp("played")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Returns a run of two recorded episodes in which the agent stops at once."""
+    folder = tmp_path_factory.mktemp("recorded")
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
-    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
+    options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(folder / "lounge.xml"), "--record"]
     assert run.entry([*options, "--episodes", "2", "--out", str(folder / "run")]) == 0
     return folder
 
@@ -40,15 +40,15 @@ def test_x_goes_right_and_y_up_at_the_scale_of_the_picture() -> None:
 
 
 def test_each_failed_episode_gets_a_picture_with_the_end_of_its_path(
-    played: Path, capsys: pytest.CaptureFixture[str]
+    recorded: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",))) == 0
-    told = capsys.readouterr().out
-    for episode_id, line in read_run(played / "run").lines.items():
-        assert f"{episode_id} sofa: {line['failure']} (stop); 1 steps, 0.0 m" in told
-        file = played / "run" / "pictures" / f"{episode_id}.png"
+    assert draw_trajectories.main(draw_trajectories.Args(runs=(recorded / "run",))) == 0
+    output = capsys.readouterr().out
+    for episode_id, line in read_run(recorded / "run").lines.items():
+        assert f"{episode_id} sofa: {line['failure']} (stop); 1 steps, 0.0 m" in output
+        file = recorded / "run" / "pictures" / f"{episode_id}.png"
         picture = np.asarray(cv2.imread(str(file)))[..., ::-1]
-        trajectory = read_trajectory(trajectory_file(played / "run", episode_id))
+        trajectory = read_trajectory(trajectory_file(recorded / "run", episode_id))
         x_m, y_m = trajectory.positions_m[-1].tolist()
         from_bottom = picture.shape[0] - draw_trajectories.CHART_PX
         # The plan lies above the chart and begins 0.25 m outside the room.
@@ -60,9 +60,9 @@ def test_each_failed_episode_gets_a_picture_with_the_end_of_its_path(
 
 
 def test_an_episode_without_a_trajectory_is_skipped_and_named(
-    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shutil.copytree(played / "run", tmp_path / "run")
+    shutil.copytree(recorded / "run", tmp_path / "run")
     first, second = read_run(tmp_path / "run").lines
     trajectory_file(tmp_path / "run", first).unlink()
     args = draw_trajectories.Args(runs=(tmp_path / "run",), out=tmp_path / "pictures")
@@ -73,27 +73,27 @@ def test_an_episode_without_a_trajectory_is_skipped_and_named(
     assert draw_trajectories.main(args) == 1  # nothing could be drawn
 
 
-def test_a_house_that_has_changed_since_is_refused(played: Path) -> None:
-    file = played / "lounge.xml"
+def test_a_house_that_has_changed_since_is_refused(recorded: Path) -> None:
+    file = recorded / "lounge.xml"
     before = file.read_text()
     try:
         file.write_text(before + "\n")
         with pytest.raises(ConfigError, match="another version of 'lounge'"):
-            draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",)))
+            draw_trajectories.main(draw_trajectories.Args(runs=(recorded / "run",)))
     finally:
         file.write_text(before)
 
 
-def test_an_unknown_episode_is_refused(played: Path) -> None:
+def test_an_unknown_episode_is_refused(recorded: Path) -> None:
     with pytest.raises(ConfigError, match="no episode 'nowhere'"):
-        draw_trajectories.main(draw_trajectories.Args(runs=(played / "run",), episodes=("nowhere",)))
+        draw_trajectories.main(draw_trajectories.Args(runs=(recorded / "run",), episodes=("nowhere",)))
 
 
-def test_two_runs_are_drawn_side_by_side(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "run", tmp_path / "other")
-    episode_id = next(iter(read_run(played / "run").lines))
+def test_two_runs_are_drawn_side_by_side(recorded: Path, tmp_path: Path) -> None:
+    shutil.copytree(recorded / "run", tmp_path / "other")
+    episode_id = next(iter(read_run(recorded / "run").lines))
     args = draw_trajectories.Args(
-        runs=(played / "run", tmp_path / "other"), episodes=(episode_id,), out=tmp_path / "pictures"
+        runs=(recorded / "run", tmp_path / "other"), episodes=(episode_id,), out=tmp_path / "pictures"
     )
     assert draw_trajectories.main(args) == 0
     picture = np.asarray(cv2.imread(str(tmp_path / "pictures" / f"{episode_id}.png")))
@@ -105,11 +105,11 @@ def test_two_runs_are_drawn_side_by_side(played: Path, tmp_path: Path) -> None:
     assert (left[chart] == right[chart]).all()
 
 
-def test_two_runs_that_agree_leave_nothing_to_draw(
-    played: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_two_runs_that_agree_give_no_pictures(
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shutil.copytree(played / "run", tmp_path / "other")
-    args = draw_trajectories.Args(runs=(played / "run", tmp_path / "other"), out=tmp_path / "pictures")
+    shutil.copytree(recorded / "run", tmp_path / "other")
+    args = draw_trajectories.Args(runs=(recorded / "run", tmp_path / "other"), out=tmp_path / "pictures")
     assert draw_trajectories.main(args) == 0
     assert not (tmp_path / "pictures").exists()
     assert "The runs succeed in the same episodes: nothing to draw." in capsys.readouterr().out

@@ -15,7 +15,7 @@ from tools.maintenance.readme_picture import animation, frames_of, thinned
 
 
 def frames(count: int) -> list[NDArray[np.uint8]]:
-    """Frames of which each is brighter than the one before."""
+    """Returns frames of which each is brighter than the one before."""
     return [np.full((48, 64, 3), 40 + 20 * i, np.uint8) for i in range(count)]
 
 

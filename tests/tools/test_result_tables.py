@@ -1,4 +1,4 @@
-"""The tables of results are those of the archive, and odd archives are reported."""
+"""The tables of results agree with the archive, and unusual archives are reported."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def test_odd_folders_of_an_archive_are_skipped_with_a_message(tmp_path: Path) ->
     assert not (tmp_path / "in" / "outside").exists()
 
 
-def test_of_two_runs_of_one_row_the_one_with_more_episodes_is_shown(tmp_path: Path) -> None:
+def test_the_run_with_more_episodes_is_shown_for_a_row(tmp_path: Path) -> None:
     config, line = json.dumps(CONFIG), json.dumps(LINE) + "\n"
     more = line + json.dumps(LINE | {"episode_id": "val_0001"}) + "\n"
     files = {"a/config.json": config, "a/results.jsonl": more, "b/config.json": config, "b/results.jsonl": line}

@@ -1,4 +1,4 @@
-"""The difficulty of a split whose figures are known."""
+"""The report on the difficulty of a split with known figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The tools of makers start as modules and say how they are called."""
+"""The tools for maintainers start as modules and document their commands."""
 
 from __future__ import annotations
 

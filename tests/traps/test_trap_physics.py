@@ -1,4 +1,4 @@
-"""Tests of agents in traps: which ones escape, and that collision marks agree with contacts."""
+"""Tests of agents in traps: some escape, and collision marks agree with contacts."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def short_env() -> Iterator[ObjectNavEnv]:
     env.close()
 
 
-def play(env: ObjectNavEnv, trap: str, heading: int, name: str) -> tuple[Trial, StubbornAgent]:
+def run_in_trap(env: ObjectNavEnv, trap: str, heading: int, name: str) -> tuple[Trial, StubbornAgent]:
     agent = make_agent(name, env)
     assert isinstance(agent, StubbornAgent)
     return run_trial(env, agent, name, env.split.episode(f"{trap}_{heading}")), agent
@@ -75,7 +75,7 @@ def test_the_oracle_escapes_from_every_trap_without_contact(truth_env, trap, hea
 
 @pytest.mark.parametrize(("trap", "heading", "name"), sample(AGENT_CASES, 3))
 def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap, heading, name):
-    trial, _ = play(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError
+    trial, _ = run_in_trap(short_env, trap, heading, name)  # a fall or a tumble raises PhysicsError
     assert trial.deepest_m < 0.003
     assert trial.metrics["collisions"] == sum(motion.collided for motion in trial.motions)
     if trap != "slippery_floor":  # a robot on wet tiles glides on
@@ -87,8 +87,8 @@ def test_penetration_is_small_and_no_forward_action_is_too_long(short_env, trap,
 
 @pytest.mark.parametrize("trap", sample(BLIND, 1))
 def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_not(short_env, trap):
-    full, _ = play(short_env, trap, 0, "stubborn-v")
-    bare, _ = play(short_env, trap, 0, "stubborn-i")
+    full, _ = run_in_trap(short_env, trap, 0, "stubborn-v")
+    bare, _ = run_in_trap(short_env, trap, 0, "stubborn-i")
     assert full.escaped
     assert not bare.escaped
     assert bare.metrics["collisions"] > 5 * full.metrics["collisions"]
@@ -98,7 +98,7 @@ def test_the_full_agent_escapes_where_the_one_without_collision_avoidance_does_n
 
 @pytest.mark.parametrize(("trap", "heading"), sample([case for case in CASES if case[0] != "slippery_floor"], 2))
 def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
-    trial, agent = play(short_env, trap, heading, "stubborn-v")
+    trial, agent = run_in_trap(short_env, trap, heading, "stubborn-v")
     marks_m = marked_places(agent.navmap)
     for i in failed_forwards(trial):
         gaps_m = mark_gaps(trial, i, short_env.split.episode(trial.episode_id).start, marks_m)
@@ -109,7 +109,7 @@ def test_each_mark_has_a_contact_within_reach(short_env, trap, heading):
 
 
 def test_on_wet_tiles_forward_actions_are_short_without_contact(agent_env):
-    trial, _ = play(agent_env, "slippery_floor", 0, "stubborn-v")
+    trial, _ = run_in_trap(agent_env, "slippery_floor", 0, "stubborn-v")
     slips = [m for m in trial.motions if m.action == Action.MOVE_FORWARD and m.displacement_m < FAILED_M]
     assert sum(not motion.contacts for motion in slips) > 5
 
@@ -117,7 +117,7 @@ def test_on_wet_tiles_forward_actions_are_short_without_contact(agent_env):
 @pytest.mark.slow
 def test_the_full_agent_escapes_from_most_traps_and_from_more_than_the_bare_one(agent_env):
     out = {
-        name: sum(play(agent_env, trap, heading, name)[0].escaped for trap, heading in CASES)
+        name: sum(run_in_trap(agent_env, trap, heading, name)[0].escaped for trap, heading in CASES)
         for name in ("stubborn-v", "stubborn-i")
     }
     assert out["stubborn-v"] >= 0.8 * len(CASES)

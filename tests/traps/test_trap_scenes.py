@@ -81,7 +81,7 @@ def test_writing_and_reading_a_sidecar_is_identity(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         ({"gaol": "bed"}, "gaol"),
         ({"goal": "spoon"}, "spoon"),
@@ -92,9 +92,9 @@ def test_writing_and_reading_a_sidecar_is_identity(tmp_path):
         ([1], "a.json"),
     ],
 )
-def test_the_error_of_a_bad_sidecar_names_the_field(content, told, tmp_path):
+def test_the_error_of_a_bad_sidecar_names_the_field(content, message, tmp_path):
     (tmp_path / "a.json").write_text(json.dumps(content))
-    with pytest.raises(HouseError, match=told):
+    with pytest.raises(HouseError, match=message):
         read_sidecar(tmp_path / "a.xml")
 
 

@@ -26,7 +26,7 @@ from sim.interface import ConfigError
 
 
 def houses(count: int) -> list[str]:
-    """One house for each episode: then intervals over houses are those over episodes."""
+    """Returns one house for each episode, so that intervals over houses equal intervals over episodes."""
     return [f"house_{i:03d}" for i in range(count)]
 
 
@@ -50,7 +50,7 @@ def test_the_difference_has_the_sign_of_second_minus_first() -> None:
     assert paired_difference(second, first, houses(3)).mean == pytest.approx(-1.0)
 
 
-def test_pairing_resolves_what_separate_intervals_do_not() -> None:
+def test_a_paired_difference_is_significant_where_separate_intervals_overlap() -> None:
     rng = np.random.default_rng(0)
     first = rng.random(60)
     second = first + 0.02 + 0.01 * rng.random(60)
@@ -80,7 +80,7 @@ def test_a_pair_without_one_of_its_values_does_not_count() -> None:
         (None, None, 0, False),
     ],
 )
-def test_an_interval_that_holds_zero_and_one_of_few_pairs_are_not_significant(
+def test_an_interval_that_holds_zero_or_has_few_pairs_is_not_significant(
     low: float | None, high: float | None, pairs: int, significant: bool
 ) -> None:
     cell = Cell(Estimate(None if low is None else 0.2, low, high, pairs, pairs), difference=True)
@@ -98,7 +98,7 @@ def run_folder(folder: Path, ids: str, *, split: str = "val", **of_lines: object
     return folder
 
 
-def test_only_episodes_that_both_have_played_are_compared(tmp_path: Path) -> None:
+def test_only_episodes_that_both_runs_have_are_compared(tmp_path: Path) -> None:
     first, second = (read_run(run_folder(tmp_path / name, ids)) for name, ids in (("a", "abc"), ("b", "dcb")))
     assert require_same_episodes(first, second) == ["b", "c"]
     assert code_of(first, "a") == "c0de"
@@ -109,7 +109,7 @@ def test_runs_with_another_success_rule_are_compared_although_their_shortest_pat
     with pytest.raises(ConfigError, match="shortest_path"):
         require_same_episodes(*map(read_run, folders))
     for folder, distance_m in zip(folders, (1.0, 0.5), strict=True):
-        with pytest.raises(ConfigError, match="shortest_path"):  # one of them, at least, has no configuration tree
+        with pytest.raises(ConfigError, match="shortest_path"):  # at least one of them has no configuration tree
             require_same_episodes(*map(read_run, folders))
         config = json.loads((folder / "config.json").read_text())
         config["config"] = {"task": {"success": {"distance_m": distance_m}}}
@@ -117,7 +117,7 @@ def test_runs_with_another_success_rule_are_compared_although_their_shortest_pat
     assert require_same_episodes(*map(read_run, folders)) == ["a", "b"]
 
 
-def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) -> None:
+def test_runs_that_cannot_be_compared_are_named(tmp_path: Path) -> None:
     first, other, foreign = (
         read_run(run_folder(tmp_path / name, ids, split=split))
         for name, ids, split in (("a", "ab", "val"), ("b", "cd", "val"), ("c", "ab", "test"))
@@ -129,7 +129,7 @@ def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("other", "told"),
+    ("other", "message"),
     [
         ({"house": "house_1"}, 'house "house_0" and "house_1"'),
         ({"goal": "sofa"}, 'goal "bed" and "sofa"'),
@@ -137,13 +137,13 @@ def test_runs_that_cannot_be_compared_are_told_with_their_names(tmp_path: Path) 
         ({"shortest_path": None}, "shortest_path 4.2 and null"),
     ],
 )
-def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, told: str, tmp_path: Path) -> None:
+def test_episodes_that_only_have_their_id_in_common_are_not_compared(other: dict, message: str, tmp_path: Path) -> None:
     first, second = read_run(run_folder(tmp_path / "a", "ab")), read_run(run_folder(tmp_path / "b", "bc", **other))
-    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(told)}"):
+    with pytest.raises(ConfigError, match=f"same episodes: 'b' has {re.escape(message)}"):
         require_same_episodes(first, second)
 
 
-def test_an_episode_that_broke_or_whose_way_was_measured_anew_is_still_the_same(tmp_path: Path) -> None:
+def test_an_episode_that_broke_or_whose_path_was_measured_again_is_still_the_same(tmp_path: Path) -> None:
     first = read_run(run_folder(tmp_path / "a", "ab"))
     rounded = read_run(run_folder(tmp_path / "b", "ab", shortest_path=4.21))
     broken = read_run(run_folder(tmp_path / "c", "ab", shortest_path=None, end_reason="error"))
@@ -152,7 +152,7 @@ def test_an_episode_that_broke_or_whose_way_was_measured_anew_is_still_the_same(
     assert require_same_episodes(nowhere, nowhere) == ["a", "b"]
 
 
-def test_a_folder_that_is_no_run_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_a_run_is_reported(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"it has no config\.json"):
         read_run(tmp_path)
     (tmp_path / "config.json").write_text("{}")

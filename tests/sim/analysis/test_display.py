@@ -100,7 +100,7 @@ def test_the_printed_commands_start_as_they_are_printed(
 ) -> None:
     script = Path(sys.executable).with_name("stubborn")
     monkeypatch.setattr(sys, "argv", [str(script)])
-    monkeypatch.setenv("PATH", "/nowhere")  # outside of the virtual environment
+    monkeypatch.setenv("PATH", "/nowhere")  # outside the virtual environment
     print_where_to_look(PlainConsole(width=120), tmp_path / "a run", video=False)
     report, web = re.findall(r": (\S*stubborn .*)", capsys.readouterr().out)
     assert shlex.split(report) == [str(script), "report", str(tmp_path / "a run")]

@@ -25,7 +25,7 @@ Line = dict[str, Any]
 
 
 def line(**changed: Any) -> Line:
-    """The line of an episode that was found."""
+    """Returns the line of a successful episode."""
     usual = {"house": "h0", "success": 1.0, "spl": 0.5, "end_reason": "stop", "gt_explored": True}
     return usual | {"first_seen_step": 7, "steps_to_first_sight": 7, "collisions": 2} | changed
 

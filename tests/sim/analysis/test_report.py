@@ -39,9 +39,9 @@ HOSTILE = "</script><img src=x onerror=alert(1)> & \"' {{ 7*7 }}"
 
 
 @pytest.fixture(scope="module")
-def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the recorded run `found`: four episodes in which the oracle finds a sofa behind a wall."""
-    folder = tmp_path_factory.mktemp("played")
+def recorded_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Returns a folder with the recorded run `found`: four episodes in which the oracle finds a sofa behind a wall."""
+    folder = tmp_path_factory.mktemp("recorded_run")
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0.6, 1.25), half_m=(0.05, 1.4, 1.25))
     (folder / "lounge.xml").write_text(house.spec.to_xml())
@@ -51,10 +51,10 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def pair(played: Path, tmp_path: Path) -> tuple[Path, Path]:
-    """Two runs of the same episodes: one as it was, one in which the first episode failed and the second broke."""
-    shutil.copytree(played / "found", tmp_path / "found")
-    shutil.copytree(played / "found", tmp_path / "worse")
+def pair(recorded_run: Path, tmp_path: Path) -> tuple[Path, Path]:
+    """Returns two runs of the same episodes; in the second run the first episode failed and the second one broke."""
+    shutil.copytree(recorded_run / "found", tmp_path / "found")
+    shutil.copytree(recorded_run / "found", tmp_path / "worse")
     failed = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "explore", "end_reason": "max_steps"}
     broken = {"success": 0.0, "spl": 0.0, "failure": "misc", "end_reason": "error", "error": HOSTILE}
     lines = [line | changed for line, changed in zip(_lines(tmp_path / "worse"), (failed, broken, {}, {}), strict=True)]
@@ -94,22 +94,22 @@ def _points(numbers: list[int]) -> np.ndarray:
     return np.array(numbers).reshape(-1, 2)
 
 
-def test_a_path_on_the_page_is_the_recorded_one(played: Path) -> None:
-    run_read = read_run(played / "found")
-    data = _data(_page(played / "found"))
+def test_a_path_on_the_page_is_the_recorded_one(recorded_run: Path) -> None:
+    run_read = read_run(recorded_run / "found")
+    data = _data(_page(recorded_run / "found"))
     sheet = Sheet(GroundTruth(World(split_of(run_read).load_house("lounge"))).space().frame)
     for episode in data["episodes"]:
-        recorded = read_trajectory(trajectory_file(played / "found", episode["id"]))
+        recorded = read_trajectory(trajectory_file(recorded_run / "found", episode["id"]))
         drawn = episode["paths"][0]
         places_m = np.cumsum([drawn["x"], drawn["y"]], axis=1).T / PX_M * (1, -1)
         places_m += (sheet.frame.origin_xy_m[0], sheet.frame.origin_xy_m[1] + sheet.size_px[1] / PX_M)
         np.testing.assert_allclose(places_m, recorded.positions_m, atol=0.006)
-        assert np.cumsum(drawn["a"])[0] == -90  # up on the page is against its y
+        assert np.cumsum(drawn["a"])[0] == -90  # the page's y points down
         assert len(drawn["actions"]) == len(drawn["d"]) - 1 == recorded.num_steps
 
 
-def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(played: Path) -> None:
-    run_read = read_run(played / "found")
+def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(recorded_run: Path) -> None:
+    run_read = read_run(recorded_run / "found")
     truth = GroundTruth(World(split_of(run_read).load_house("lounge")))
     corners = shortest_path(truth.space(), truth.target("sofa"), (-2.0, 1.0))
     assert corners is not None
@@ -119,7 +119,7 @@ def test_the_shortest_path_has_the_measured_length_and_goes_round_the_wall(playe
     assert truth.space().free[tuple(truth.space().frame.to_cells(samples).T)].all()
 
 
-def test_no_path_is_drawn_where_there_is_none() -> None:
+def test_without_a_path_no_path_is_drawn() -> None:
     house = with_box(room(6, 4), "sofa_00", centre_m=(2.5, 0, 0.4), half_m=(0.4, 0.8, 0.4))
     house = with_box(house, "wall_10", centre_m=(0.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     truth = GroundTruth(World(house))
@@ -155,7 +155,7 @@ def test_a_plan_shows_one_storey() -> None:
 
 
 def _covers(path: str, place: np.ndarray) -> bool:
-    """Even-odd rule over the closed parts of a path of relative lines."""
+    """Applies the even-odd rule to the closed parts of a path of relative lines."""
     inside = False
     for part in path.split("z")[:-1]:
         numbers = [int(n) for n in re.findall(r"-?\d+", part)]
@@ -166,8 +166,8 @@ def _covers(path: str, place: np.ndarray) -> bool:
     return inside
 
 
-def test_a_house_is_drawn_once_for_all_its_episodes(played: Path) -> None:
-    data = _data(_page(played / "found"))
+def test_a_house_is_drawn_once_for_all_its_episodes(recorded_run: Path) -> None:
+    data = _data(_page(recorded_run / "found"))
     assert len(data["episodes"]) == 4
     assert list(data["plans"]) == ["lounge@0"]
     assert list(data["areas"]) == ["lounge@0/sofa"]
@@ -208,13 +208,13 @@ def test_text_from_files_stays_text(pair: tuple[Path, Path]) -> None:
     assert _data(page)["episodes"][0]["id"].startswith(HOSTILE)
 
 
-def test_a_page_names_no_other_address(played: Path) -> None:
-    page = _page(played / "found")
+def test_a_page_names_no_other_address(recorded_run: Path) -> None:
+    page = _page(recorded_run / "found")
     assert not re.search(r'(src|href)="(?!#|data:)|url\(|@import|https?://(?!www\.w3\.org/)', page)
 
 
-def test_videos_are_linked_from_where_the_page_lies_and_only_those_that_are_there(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "found", tmp_path / "a run")
+def test_only_existing_videos_are_linked_and_relative_to_the_page(recorded_run: Path, tmp_path: Path) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "a run")
     episode_id = _lines(tmp_path / "a run")[1]["episode_id"]
     (tmp_path / "a run" / "videos").mkdir()
     (tmp_path / "a run" / "videos" / f"{episode_id}.mp4").touch()
@@ -226,8 +226,8 @@ def test_videos_are_linked_from_where_the_page_lies_and_only_those_that_are_ther
     assert set(videos.values()) == {None}
 
 
-def test_the_last_picture_is_linked_and_its_thumbnail_is_part_of_the_page(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "found", tmp_path / "run")
+def test_the_last_picture_is_linked_and_its_thumbnail_is_part_of_the_page(recorded_run: Path, tmp_path: Path) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
     first, second, *_ = [line["episode_id"] for line in _lines(tmp_path / "run")]
     picture_file(tmp_path / "run", first).write_bytes(b"rubbish")
     picture_file(tmp_path / "run", second).unlink()
@@ -242,8 +242,10 @@ def test_the_last_picture_is_linked_and_its_thumbnail_is_part_of_the_page(played
     assert "1 of 4 episodes have no pictures of the end (they were run without --record)." in page
 
 
-def test_a_run_without_trajectories_has_a_report_that_says_how_to_get_pictures(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "found", tmp_path / "run")
+def test_a_run_without_trajectories_has_a_report_that_says_how_to_get_pictures(
+    recorded_run: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
     shutil.rmtree(tmp_path / "run" / "trajectories")
     page = _page(tmp_path / "run")
     assert "There are no trajectories (plans with paths) and no videos." in page
@@ -253,8 +255,8 @@ def test_a_run_without_trajectories_has_a_report_that_says_how_to_get_pictures(p
     assert _data(page)["episodes"][0]["words"] == ["Found."]
 
 
-def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "found", tmp_path / "run")
+def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(recorded_run: Path, tmp_path: Path) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
     config = json.loads((tmp_path / "run/config.json").read_text())
     config["split_identity"]["sha256"] = "0" * 64
     (tmp_path / "run/config.json").write_text(json.dumps(config))
@@ -264,7 +266,7 @@ def test_a_house_that_has_changed_is_not_drawn_but_the_paths_are(played: Path, t
     assert len(_data(page)["episodes"][0]["paths"][0]["x"]) > 5
 
 
-def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path]) -> None:
+def test_an_unfinished_run_and_broken_episodes_are_reported(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, _lines(folder)[:3])
     page = _page(folder)
@@ -281,16 +283,18 @@ def test_an_unfinished_run_and_broken_episodes_are_told(pair: tuple[Path, Path])
         (lambda folder: (folder / "results.jsonl").write_text('{"a": 1}\n{}\n'), "is not a run"),
     ],
 )
-def test_what_is_no_run_is_one_sentence(played: Path, tmp_path: Path, broken: Any, sentence: str) -> None:
-    shutil.copytree(played / "found", tmp_path / "run")
+def test_a_folder_that_is_not_a_run_gives_one_sentence(
+    recorded_run: Path, tmp_path: Path, broken: Any, sentence: str
+) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
     broken(tmp_path / "run")
     with pytest.raises(ConfigError, match=sentence):
         main(Args(runs=(tmp_path / "run",)))
     assert not (tmp_path / "run" / "report.html").exists()
 
 
-def test_a_trajectory_that_cannot_be_read_is_told_and_the_rest_is_drawn(played: Path, tmp_path: Path) -> None:
-    shutil.copytree(played / "found", tmp_path / "run")
+def test_an_unreadable_trajectory_is_reported_and_the_others_are_drawn(recorded_run: Path, tmp_path: Path) -> None:
+    shutil.copytree(recorded_run / "found", tmp_path / "run")
     first = _lines(tmp_path / "run")[0]["episode_id"]
     trajectory_file(tmp_path / "run", first).write_bytes(b"PK rubbish")
     page = _page(tmp_path / "run")
@@ -332,17 +336,17 @@ def test_several_runs_are_columns_with_differences_from_the_first_and_a_trend(pa
         main(Args(runs=(pair[0],) * 13))
 
 
-def test_the_page_says_over_what_its_intervals_are(pair: tuple[Path, Path]) -> None:
+def test_the_page_states_what_its_intervals_resample(pair: tuple[Path, Path]) -> None:
     assert "There is one house: its episodes are resampled" in _page(pair[0])
     _write_lines(pair[0], [line | {"house": f"h{i}"} for i, line in enumerate(_lines(pair[0]))])
     assert "houses are resampled, then the episodes of each house." in _page(pair[0])
 
 
-def test_runs_of_other_episodes_are_refused(played: Path, pair: tuple[Path, Path]) -> None:
+def test_runs_of_other_episodes_are_refused(recorded_run: Path, pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, [line | {"shortest_path": 99.0} for line in _lines(folder)[2:]])
     with pytest.raises(ConfigError, match="not played on the same episodes"):
-        main(Args(runs=(played / "found", folder)))
+        main(Args(runs=(recorded_run / "found", folder)))
 
 
 def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> None:
@@ -357,7 +361,7 @@ def test_the_words_give_the_rule_with_its_numbers(pair: tuple[Path, Path]) -> No
     assert "By the rules of the code that wrote this report the cause is explore." in other
 
 
-def test_a_wrong_stop_is_told_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
+def test_a_wrong_stop_is_reported_with_the_place_for_which_the_agent_stopped(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     line = _lines(folder)[0] | {"failure": "false_detection", "end_reason": "stop"}
     whole = read_trajectory(trajectory_file(folder, line["episode_id"]))
@@ -373,7 +377,7 @@ def test_a_wrong_stop_is_told_with_the_place_for_which_the_agent_stopped(pair: t
     assert words.startswith(f"{begin} short of the goal: the robot is 1.7 m from the nearest sofa.")
 
 
-def test_who_missed_the_goal_did_so_after_it_came_into_view(pair: tuple[Path, Path]) -> None:
+def test_a_missed_goal_was_in_view_before(pair: tuple[Path, Path]) -> None:
     _, folder = pair
     line = _lines(folder)[0] | {"failure": "missed_detection"}
     trajectory = read_trajectory(trajectory_file(folder, line["episode_id"]))
@@ -409,14 +413,14 @@ def test_an_interval_has_a_width_where_all_episodes_ended_alike() -> None:
     assert wilson(3, 12).interval == pytest.approx(tuple(1 - v for v in reversed(wilson(9, 12).interval)))
 
 
-def test_the_command_of_a_run_makes_the_same_run(played: Path) -> None:
-    words = command_of(read_run(played / "found").config)
+def test_the_command_of_a_run_makes_the_same_run(recorded_run: Path) -> None:
+    words = command_of(read_run(recorded_run / "found").config)
     assert words.startswith("stubborn run --agent oracle --semantics rednet --house")
     assert "--split" not in words
 
 
 @pytest.mark.parametrize("scheme", [0, 1], ids=["light", "dark"])
-def test_text_stands_out_from_what_is_behind_it_by_the_ratio_of_wcag(scheme: int) -> None:
+def test_text_has_the_contrast_ratio_of_wcag(scheme: int) -> None:
     css = (files("sim.analysis.report") / "page" / "report.css").read_text()
     blocks = re.findall(r":root \{(.*?)\}", css, re.DOTALL)
     colours = dict(re.findall(r"--([\w-]+): (#[0-9a-f]{6});", blocks[scheme]))
@@ -428,7 +432,7 @@ def test_text_stands_out_from_what_is_behind_it_by_the_ratio_of_wcag(scheme: int
 
 
 def _luminance(colour: str) -> float:
-    """Relative luminance as WCAG 2 has it."""
+    """Returns the relative luminance as defined by WCAG 2."""
     shares = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in shares]
     return float(np.dot([0.2126, 0.7152, 0.0722], linear))
@@ -456,16 +460,14 @@ def _open(browser: Browser, *folders: Path, fragment: str = "") -> None:
     browser.open(folders[-1] / "page.html", fragment)
 
 
-def test_the_page_opens_from_disk_fetches_nothing_and_complains_of_nothing(
-    browser: Browser, pair: tuple[Path, Path]
-) -> None:
+def test_the_page_opens_from_disk_without_requests_or_console_errors(browser: Browser, pair: tuple[Path, Path]) -> None:
     for folders in ((pair[0],), pair):
         _open(browser, *folders)
         assert len(browser.run(SHOWN)) == 4
         assert browser.run("return performance.getEntriesByType('navigation')[0].loadEventEnd") < 2000
         fetched = [address for address in browser.requests() if not address.startswith("data:image/jpeg;base64,")]
         assert all(address.startswith("file:") and "page.html" in address for address in fetched)
-        assert browser.complaints() == []
+        assert browser.console_errors() == []
 
 
 def test_the_table_sorts_both_ways_and_says_so(browser: Browser, pair: tuple[Path, Path]) -> None:
@@ -482,10 +484,10 @@ def test_the_table_sorts_both_ways_and_says_so(browser: Browser, pair: tuple[Pat
     assert browser.run(f'return document.querySelector("{column}").parentNode.ariaSort') == "ascending"
     browser.keys(column, ENTER)
     assert browser.run(SHOWN) == [ids[i] for i in (2, 3, 0, 1)]
-    for _ in range(2):  # what has no value is last either way
+    for _ in range(2):  # rows without a value are last in both directions
         browser.click("thead button[data-column='7']")
         assert browser.run(SHOWN)[-1] == ids[3]
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_the_table_filters_by_words_by_outcome_and_from_the_causes(browser: Browser, pair: tuple[Path, Path]) -> None:
@@ -504,7 +506,7 @@ def test_the_table_filters_by_words_by_outcome_and_from_the_causes(browser: Brow
     assert browser.run(SHOWN) == ids
     browser.keys("input[name=text]", "nothing like it")
     assert browser.run("return document.getElementById('none').hidden") is False
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_a_row_opens_its_picture_by_key_and_the_slider_moves_the_robot(
@@ -522,13 +524,13 @@ def test_a_row_opens_its_picture_by_key_and_the_slider_moves_the_robot(
     assert "to go" in browser.run("return document.querySelector('.scrub output').textContent")
     browser.keys(".open", ENTER)
     assert browser.run("return document.querySelectorAll('.plan').length") == 0
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_an_address_with_an_episode_opens_it(browser: Browser, pair: tuple[Path, Path]) -> None:
     _open(browser, pair[1], fragment=f"#episode={_lines(pair[1])[2]['episode_id']}")
     assert browser.run("return document.querySelectorAll('.detail').length") == 1
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_nothing_runs_out_of_a_narrow_window(browser: Browser, pair: tuple[Path, Path]) -> None:
@@ -560,9 +562,9 @@ def test_no_column_is_clipped_at_1400_and_800_pixels(browser: Browser, pair: tup
 
 
 def test_pictures_and_videos_show_where_the_page_was_moved_with_its_run(
-    browser: Browser, played: Path, tmp_path: Path
+    browser: Browser, recorded_run: Path, tmp_path: Path
 ) -> None:
-    shutil.copytree(played / "found", tmp_path / "first")
+    shutil.copytree(recorded_run / "found", tmp_path / "first")
     episode_id = _lines(tmp_path / "first")[0]["episode_id"]
     writer = VideoWriter(video_file(tmp_path / "first", episode_id), size_px=(128, 96))
     writer.write(np.zeros((96, 128, 3), np.uint8))
@@ -579,8 +581,8 @@ def test_pictures_and_videos_show_where_the_page_was_moved_with_its_run(
       ));
       video.load(); video.play();
     })"""
-    assert browser.run(loaded) == [640, 128, ""]  # the picture of the end stands above it
-    assert browser.complaints() == []
+    assert browser.run(loaded) == [640, 128, ""]  # the picture of the end is above it
+    assert browser.console_errors() == []
     shutil.copy(tmp_path / "moved" / "page.html", tmp_path / "page.html")
     browser.open(tmp_path / "page.html")
     browser.click(".open")
@@ -594,7 +596,7 @@ def test_text_from_files_runs_nothing_in_the_browser(browser: Browser, pair: tup
     _open(browser, pair[1])
     browser.run("document.querySelectorAll('.open').forEach(button => button.click())")
     assert browser.run("return document.querySelectorAll('img').length") == 0
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_the_ground_truth_of_a_page_follows_the_success_rule_of_the_run() -> None:

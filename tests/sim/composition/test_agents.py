@@ -22,8 +22,8 @@ from tests.helpers import agents
 SMALL = ("camera.width_px=160", "camera.height_px=120")
 
 
-def played(house: Path, out: Path, agent: str, semantics: str, *config: str) -> tuple[dict, set[str]]:
-    """The result line of one episode and the keys of the observations."""
+def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str) -> tuple[dict, set[str]]:
+    """Runs one episode; returns its result line and the keys of the observations."""
     agents.SEEN.clear()
     options = ["--agent", agent, "--semantics", semantics, "--house", str(house), "--episodes", "1", "--out", str(out)]
     assert entry([*options, "--config", *SMALL, *config]) == 0
@@ -39,20 +39,20 @@ def played(house: Path, out: Path, agent: str, semantics: str, *config: str) -> 
 def test_no_true_image_reaches_an_agent_that_does_not_declare_it(
     house: Path, tmp_path: Path, agent: str, sensors: set[str], semantics: str
 ) -> None:
-    line, keys = played(house, tmp_path, agent, semantics)
+    line, keys = run_episode(house, tmp_path, agent, semantics)
     assert keys == sensors | set(POSE_SENSORS)
     assert line["uses_ground_truth"] is False
     assert line["semantics"] == semantics
 
 
 def test_an_agent_that_declares_ground_truth_gets_it_and_its_results_say_so(house: Path, tmp_path: Path) -> None:
-    line, keys = played(house, tmp_path, "tests.helpers.agents:CHEAT", "gt")
+    line, keys = run_episode(house, tmp_path, "tests.helpers.agents:CHEAT", "gt")
     assert keys == {"semantic", *POSE_SENSORS}
     assert line["uses_ground_truth"] is True
 
 
 def test_an_agent_gets_a_sensor_of_its_own(house: Path, tmp_path: Path) -> None:
-    _, keys = played(house, tmp_path, "tests.helpers.agents:FEELER", "gt")
+    _, keys = run_episode(house, tmp_path, "tests.helpers.agents:FEELER", "gt")
     assert keys == {"depth", "ahead", *POSE_SENSORS}
     assert json.loads((tmp_path / "config.json").read_text())["config"]["sensors"] == ["depth", "ahead"]
 
@@ -82,7 +82,7 @@ def test_ground_truth_cannot_be_asked_for_without_declaring_it() -> None:
 
 
 def test_an_agents_own_option_is_set_from_the_command_line(house: Path, tmp_path: Path) -> None:
-    line, _ = played(house, tmp_path, "tests.helpers.agents:SPY", "gt", "agent.forwards=4")
+    line, _ = run_episode(house, tmp_path, "tests.helpers.agents:SPY", "gt", "agent.forwards=4")
     assert line["num_steps"] == 5
     assert json.loads((tmp_path / "config.json").read_text())["config"]["agent"] == {"forwards": 4}
 
@@ -116,7 +116,7 @@ def test_every_agent_has_a_description_of_one_line() -> None:
 
 
 @pytest.mark.parametrize(
-    ("module", "told"),
+    ("module", "expected"),
     [
         ("import nowhere_at_all", "no module 'nowhere_at_all' can be imported"),
         ("def make(:", "cannot be imported: SyntaxError"),
@@ -130,7 +130,7 @@ def test_every_agent_has_a_description_of_one_line() -> None:
 )
 def test_an_agent_that_cannot_be_built_is_one_line_and_leaves_no_run_behind(
     module: str,
-    told: str,
+    expected: str,
     house: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -143,6 +143,6 @@ def test_an_agent_that_cannot_be_built_is_one_line_and_leaves_no_run_behind(
     assert entry([*options, "--agent", "users_agent:make"]) == 2
     message = capsys.readouterr().err
     assert message.startswith("error: ")
-    assert told in message
+    assert expected in message
     assert message.count("\n") == 1
     assert not (tmp_path / "run").exists()

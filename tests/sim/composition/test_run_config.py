@@ -34,7 +34,7 @@ def test_presets_then_the_file_then_the_command_line(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("agent", ["stubborn", "stubborn-plus", "frontier", "random", "oracle"])
 @pytest.mark.parametrize("semantics", ["gt", "noisy", "rednet"])
-def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semantics: str) -> None:
+def test_every_field_of_every_agent_can_be_set_to_its_own_value(agent: str, semantics: str) -> None:
     config = resolve(RunOptions(agent=agent, semantics=semantics)).config
     content = as_json(config)
     json.dumps(content, allow_nan=False)
@@ -51,7 +51,7 @@ def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semanti
 
 
 @pytest.mark.parametrize(
-    ("assignment", "message"),
+    ("assignment", "expected"),
     [
         ("agent.planing.dilation_m=0.1", "Did you mean 'planning'"),
         ("agent.planning.dilation_m=wide", "'agent.planning.dilation_m' cannot be 'wide'"),
@@ -63,12 +63,12 @@ def test_every_field_of_every_agent_can_be_set_to_what_it_is(agent: str, semanti
     ],
 )
 def test_a_setting_that_does_not_exist_or_is_not_allowed_is_one_line(
-    assignment: str, message: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    assignment: str, expected: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     assert entry(["--semantics", "gt", "--config", assignment, "--out", str(tmp_path / "run")]) == 2
-    complaint = capsys.readouterr().err
-    assert message in complaint
-    assert complaint.count("\n") == 1
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
     assert not (tmp_path / "run").exists()
 
 

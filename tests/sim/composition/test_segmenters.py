@@ -1,4 +1,4 @@
-"""Names to segmenters: RedNet's weights in the run, and clear words where they are missing."""
+"""Segmenters by name: RedNet's weights in the run, and a clear message if they are missing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 
 class Eyes:
-    """What a segmenter reads of an environment."""
+    """The part of an environment that a segmenter reads."""
 
     camera_model = CameraModel()
 

@@ -1,4 +1,4 @@
-"""Options are resolved once: no name is looked up and no verifier is built a second time."""
+"""Options are read once: no name is looked up and no verifier is built a second time."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_setup_is_pickled_as_its_options() -> None:
     assert again.spec is setup.spec
 
 
-def test_an_agent_takes_a_seeker_of_the_users() -> None:
+def test_an_agent_accepts_a_seeker_of_a_user() -> None:
     made: list[SeekerParts] = []
 
     @dataclass(frozen=True)

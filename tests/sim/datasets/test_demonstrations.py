@@ -1,4 +1,4 @@
-"""Demonstrations: what they hold, and files that are none."""
+"""Demonstrations: their content, and invalid files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ACTIONS = [Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP]
 
 @pytest.fixture(scope="module")
 def shown() -> Demonstration:
-    """Two metres in front of a bed, then nearer, then turned."""
+    """Returns images of a bed: from two metres, from nearer, and after a turn."""
     world = World(with_box(room(6, 4), "bed_00", centre_m=(1.9, 0.0, 0.5), half_m=(0.5, 0.6, 0.5)))
     camera = Camera(world.model, world.labels, camera=CAMERA)
     try:

@@ -36,7 +36,7 @@ SMALL = CameraModel(width_px=160, height_px=120)
 
 @pytest.fixture(scope="module")
 def scene() -> Iterator[Scene]:
-    """A room of 6 x 5 m with a sofa and, in front of it, a table."""
+    """Returns a room of 6 x 5 m with a sofa and, in front of it, a table."""
     house = with_box(room(6, 5), "sofa_00", centre_m=(1.5, 0.5, 0.4), half_m=(0.4, 0.9, 0.4))
     house = with_box(house, "table_03", centre_m=(0.5, 0.5, 0.2), half_m=(0.3, 0.3, 0.2))
     scene = Scene(house, robot=RobotConfig(), camera=SMALL, profile="fast")
@@ -60,7 +60,7 @@ def views_of(scene: Scene, count: int, **more: Any) -> list[View]:
     return list(sample_views(scene, np.random.default_rng(0), count, stem="v", record={}, **more))
 
 
-def test_extras_change_nothing_of_what_a_view_holds_without_them(scene: Scene, views: list[View]) -> None:
+def test_extras_do_not_change_the_other_arrays_of_a_view(scene: Scene, views: list[View]) -> None:
     for plain, rich in zip(views_of(scene, count=3), views, strict=False):
         assert (plain.instances, plain.annotations, plain.normals) == (None, None, None)
         for name in ("rgb", "depth_mm", "semantic"):
@@ -68,7 +68,7 @@ def test_extras_change_nothing_of_what_a_view_holds_without_them(scene: Scene, v
         assert set(rich.record) - set(plain.record) == {"T_world_cam"}
 
 
-def test_a_shard_without_extras_has_the_four_members_of_before(scene: Scene, tmp_path: Path) -> None:
+def test_a_shard_without_extras_has_its_four_standard_members(scene: Scene, tmp_path: Path) -> None:
     write_shard(tmp_path, "views-000000", views_of(scene, count=1), house="room", config={})
     with tarfile.open(tmp_path / "views-000000.tar") as archive:
         assert [name.partition(".")[2] for name in archive.getnames()] == [
@@ -161,7 +161,7 @@ def test_a_sequence_is_one_drive_without_gaps(scene: Scene) -> None:
         views_of(scene, count=500, sequence=500)
 
 
-def test_our_reader_and_webdataset_give_what_was_stored(views: list[View], shards: Path) -> None:
+def test_our_reader_and_webdataset_return_the_stored_arrays(views: list[View], shards: Path) -> None:
     ours = list(read_shard(shards / "views-000000.tar"))
     theirs = list(read_with_webdataset(str(shards / "views-000000.tar")))
     for view, mine, other in zip(views, ours, theirs, strict=True):

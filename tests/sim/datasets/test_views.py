@@ -54,7 +54,7 @@ def test_views_are_from_free_space_and_show_the_objects_of_the_house(scene: Scen
 
 
 def test_path_views_follow_one_another_as_a_robot_moves(scene: Scene) -> None:
-    """Along a path the headings are multiples of 30 deg from the first one."""
+    """Along a path, the headings are multiples of 30 deg from the first one."""
     from sim.datasets.poses import path_poses
 
     space = scene.task.truth.space(0.0)

@@ -1,4 +1,4 @@
-"""The noisy detector: rates and duration of its errors are those of its configuration."""
+"""The noisy detector: the rates and durations of its errors agree with its configuration."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_an_error_lasts_over_the_frames_and_small_moves_of_a_view_and_not_beyond
     here = seen(config, of).first
     np.testing.assert_array_equal(here, seen(config, of, frame=99).first)
     moved = seen(config, of, eye=(2.05, 0.52)).first
-    assert (moved == here).mean() > 0.95  # but for the few on whose edge of a sector it lies
+    assert (moved == here).mean() > 0.95  # except for the few that lie on the edge of a sector
     was_mistaken = here != MPCAT40_ID["table"]
     for elsewhere in ((-2.0, -0.5), (0.6, 0.15), (4.0, 1.0)):  # another side, nearer, farther
         again = seen(config, of, eye=elsewhere).first[was_mistaken] != MPCAT40_ID["table"]
@@ -232,7 +232,7 @@ def test_a_sofa_taken_for_seating_has_a_high_other_score_and_seating_taken_for_a
     assert all(seating < 0.5 < sofa for sofa, seating in right.values())
 
 
-def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_with(house: Path, tmp_path: Path):
+def test_a_run_with_noisy_semantics_is_reproducible_and_records_its_settings(house: Path, tmp_path: Path):
     lines = []
     for name in ("once", "twice"):
         args = RunOptions(house=house, goal="sofa", semantics="noisy", episodes=1, out=tmp_path / name)
@@ -245,7 +245,7 @@ def test_a_run_with_noisy_semantics_is_the_same_twice_and_says_what_it_was_made_
     assert lines[0]["semantics"] == "noisy"
 
 
-def test_unknown_semantics_are_refused_with_what_there_is(house: Path, tmp_path: Path):
+def test_unknown_semantics_are_refused_with_the_names_that_exist(house: Path, tmp_path: Path):
     with pytest.raises(ConfigError, match=r"Unknown --semantics 'dreams'\. There is: gt, noisy"):
         run.main(RunOptions(house=house, semantics="dreams", out=tmp_path))
 

@@ -109,7 +109,7 @@ print(resident_mb() - before_mb)
 
 
 def test_freed_layers_are_returned_though_small_blocks_between_them_live_on() -> None:
-    """In a process of its own, because the switch is for a whole process."""
+    """Runs in a process of its own, because the switch is for a whole process."""
     ended = subprocess.run([sys.executable, "-c", LAYERS], capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(ended.stdout) < 10, ended.stdout  # the layers have 100
 
@@ -126,19 +126,19 @@ from tests.sim.env.test_memory import resident_mb
 options = RunOptions(agent="oracle", semantics="gt", only=("val_0000", "val_0030"))
 first, second = episodes_of(resolve(options))[0]
 assert first.house == second.house
-player = EpisodeRunner(resolve(options))
-player.run(first)
+runner = EpisodeRunner(resolve(options))
+runner.run(first)
 shreds = [np.ones(100_000, np.uint8) for _ in range(3000)]
 pins = shreds[::2]
 shreds.clear()
 before_mb = resident_mb()
-player.run(second)
+runner.run(second)
 print(before_mb - resident_mb())
 """
 
 
 def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
-    """In a process of its own; the pieces between the freed ones live on."""
+    """Runs in a process of its own; the blocks between the freed ones stay allocated."""
     ended = subprocess.run([sys.executable, "-c", SHREDS], capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(ended.stdout) > 50, ended.stdout  # 150 are freed, some are used again
 
@@ -147,8 +147,8 @@ def test_memory_freed_in_pieces_is_returned_before_the_next_episode() -> None:
 def test_a_worker_imports_no_library_that_it_does_not_need(options: str) -> None:
     imports = "from sim.composition.options import RunOptions; from sim.composition.runner import EpisodeRunner"
     imports += "; from sim.composition.setup import resolve"
-    player = f"{imports}; player = EpisodeRunner(resolve(RunOptions({options}))); player.close()"
+    runner = f"{imports}; runner = EpisodeRunner(resolve(RunOptions({options}))); runner.close()"
     heavy = ("torch", "sklearn", "ray", "rerun", "webdataset")
-    told = f"{player}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
-    ended = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
+    code = f"{runner}; import sys; print(*[name for name in {heavy} if name in sys.modules])"
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert ended.stdout.split() == []

@@ -139,7 +139,7 @@ def test_an_episode_is_truncated_not_terminated_at_max_steps(env: ObjectNavEnv) 
     assert env.scene.world.pose == there
 
 
-def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_none(env: ObjectNavEnv) -> None:
+def test_driving_into_a_wall_is_a_collision_and_driving_freely_is_not(env: ObjectNavEnv) -> None:
     env.reset(seed=0)
     infos = [env.step(action)[4] for action in [Action.TURN_RIGHT] * 3 + [Action.MOVE_FORWARD] * 16]
     collided = [info["collided"] for info in infos]
@@ -176,7 +176,7 @@ def test_the_robot_is_in_no_image(house: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "error", "told"),
+    ("options", "error", "message"),
     [
         ({"sensors": ("rgb", "thermal")}, ConfigError, "thermal"),
         ({"profile": "best"}, ConfigError, "best"),
@@ -187,8 +187,8 @@ def test_the_robot_is_in_no_image(house: Path) -> None:
         ({"house": None, "split": "nosplit"}, ConfigError, "val"),
     ],
 )
-def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exception], told: str) -> None:
-    with pytest.raises(error, match=told):
+def test_an_invalid_option_is_named(house: Path, options: dict, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
         ObjectNavEnv(**{"house": house, "camera": SMALL, **options}).reset(seed=0)
 
 
@@ -219,7 +219,7 @@ def test_a_closed_environment_says_so(house: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         ({"episode": None, "episode_id": "a"}, "one of the options episode and episode_id"),
         ({"epsiode_id": "a"}, "got epsiode_id"),
@@ -227,13 +227,13 @@ def test_a_closed_environment_says_so(house: Path) -> None:
         ({"episode": None}, "must be an Episode, got None"),
     ],
 )
-def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         env.reset(options=options)
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "message"),
     [
         (lambda: ObjectNavEnv(labels="rules.json"), "labels, root and start need house"),
         (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels, root and start need house"),
@@ -251,6 +251,6 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
         (lambda: Episode("e", "h", "spoon", Pose(0.0, 0.0, 0.0)), "Unknown goal 'spoon'"),
     ],
 )
-def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], told: str) -> None:
-    with pytest.raises((ConfigError, EpisodeError), match=told):
+def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], message: str) -> None:
+    with pytest.raises((ConfigError, EpisodeError), match=message):
         make()

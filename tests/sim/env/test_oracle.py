@@ -25,7 +25,7 @@ class RunningEpisode:
         return self
 
 
-def play(house, goal: str, start: Pose) -> dict:
+def run_oracle(house, goal: str, start: Pose) -> dict:
     world = World(house)
     task = Task(world)
     world.reset(start)
@@ -39,7 +39,7 @@ def play(house, goal: str, start: Pose) -> dict:
 
 
 def maze():
-    """8 x 6 m: two walls make an S, the bed at its end."""
+    """Returns a room of 8 x 6 m in which two walls form an S, with the bed at its end."""
     house = with_box(room(8, 6), "wall_10", centre_m=(-1.3, -0.6, 1.25), half_m=(0.05, 2.4, 1.25))
     house = with_box(house, "wall_11", centre_m=(1.3, 0.6, 1.25), half_m=(0.05, 2.4, 1.25))
     return with_box(house, "bed_00", centre_m=(3.3, 1.5, 0.25), half_m=(0.5, 0.8, 0.25))
@@ -47,7 +47,7 @@ def maze():
 
 @pytest.mark.parametrize("yaw", [0.0, 1.0, 2.5, -2.0])
 def test_the_oracle_finds_its_path_through_a_maze_from_any_heading(yaw):
-    result = play(maze(), "bed", Pose(-3.0, -2.0, yaw))
+    result = run_oracle(maze(), "bed", Pose(-3.0, -2.0, yaw))
     assert result["success"] == 1.0
     assert result["spl"] > 0.9
     assert result["collisions"] == result["touches"] == 0
@@ -56,13 +56,13 @@ def test_the_oracle_finds_its_path_through_a_maze_from_any_heading(yaw):
 
 def test_the_oracle_turns_no_more_than_it_must():
     house = with_box(room(10, 4), "bed_00", centre_m=(4.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
-    result = play(house, "bed", Pose(-3.0, 0.0, 0.0))
+    result = run_oracle(house, "bed", Pose(-3.0, 0.0, 0.0))
     assert result["num_steps"] == math.ceil(result["shortest_path"] / 0.25) + 1
 
 
 def test_the_oracle_stops_at_once_where_a_stop_succeeds():
     house = with_box(room(6, 4), "bed_00", centre_m=(2.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
-    result = play(house, "bed", Pose(1.0, 0.0, 0.0))
+    result = run_oracle(house, "bed", Pose(1.0, 0.0, 0.0))
     assert result["num_steps"] == 1
     assert result["success"] == result["spl"] == 1.0
 

@@ -1,4 +1,4 @@
-"""The dense reward: progress to the goal, whatever the route, and what steps and collisions cost."""
+"""The dense reward: progress to the goal on any route, minus the costs of steps and collisions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FORWARD, LEFT, RIGHT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_
 
 @pytest.fixture(scope="module")
 def options(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """A room of 6 x 6 m, in which the robot stands 2.1 m from where a STOP for the sofa succeeds."""
+    """Returns options for a room of 6 x 6 m; the robot starts 2.1 m from the nearest place of a successful STOP."""
     file = tmp_path_factory.mktemp("house") / "sofa_room.xml"
     furnished = sofa_room()
     file.write_text(furnished.spec.to_xml())
@@ -35,7 +35,7 @@ def rewards(options: dict[str, Any], actions: list[Action], **weights: float) ->
     return given
 
 
-def test_driving_to_the_goal_and_back_earns_what_is_lost(options: dict[str, Any]) -> None:
+def test_driving_to_the_goal_and_back_has_no_net_reward(options: dict[str, Any]) -> None:
     earned = rewards(options, [FORWARD] * 4 + [LEFT] * 6 + [FORWARD] * 4, per_step=0.0)
     assert earned[:4] == pytest.approx([0.25] * 4, abs=0.03)
     assert sum(earned[4:10]) == pytest.approx(0.0, abs=0.05)
@@ -56,9 +56,9 @@ def test_a_collision_costs_its_price(options: dict[str, Any]) -> None:
 
 def test_a_step_without_a_path_counts_as_no_progress(options: dict[str, Any]) -> None:
     env = gymnasium.make(ENV_ID, **options)
-    told = ProgressReward(_Told(env, [3.0, None, 2.0, 1.5]), per_step=0.0)
-    told.reset(seed=0)
-    assert [told.step(LEFT)[1] for _ in range(3)] == [0.0, 0.0, 0.5]
+    rewarded = ProgressReward(_GivenDistances(env, [3.0, None, 2.0, 1.5]), per_step=0.0)
+    rewarded.reset(seed=0)
+    assert [rewarded.step(LEFT)[1] for _ in range(3)] == [0.0, 0.0, 0.5]
     env.close()
 
 
@@ -79,7 +79,7 @@ def test_an_environment_without_distances_and_weights_that_are_no_numbers_are_re
         ProgressReward(gymnasium.make("CartPole-v1"), per_metre=math.nan)
 
 
-class _Told(gymnasium.Wrapper):
+class _GivenDistances(gymnasium.Wrapper):
     """An environment that reports given distances."""
 
     def __init__(self, env: gymnasium.Env, distances: list[float | None]) -> None:

@@ -24,7 +24,7 @@ TASK = task_in()
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_a_drawn_start_is_free_far_enough_and_accepted_by_the_world(seed):
+def test_a_sampled_start_is_free_far_enough_and_accepted_by_the_world(seed):
     start = draw_start(TASK, "bed", np.random.default_rng(seed))
     TASK.world.reset(start)
     TASK.begin("bed", start)
@@ -34,7 +34,7 @@ def test_a_drawn_start_is_free_far_enough_and_accepted_by_the_world(seed):
 
 
 def test_no_start_is_in_a_closet_without_a_door():
-    # A bed on either side of the wall; what is right of it is smaller.
+    # A bed on each side of the wall; the area to its right is smaller.
     house = with_box(room(14, 4), "wall_10", centre_m=(1.5, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     for number, x in enumerate((-6.5, 6.5)):
         house = with_box(house, f"bed_{number:02d}", centre_m=(x, 0, 0.25), half_m=(0.3, 1.0, 0.25))
@@ -44,12 +44,12 @@ def test_no_start_is_in_a_closet_without_a_door():
 
 
 def test_the_same_stream_draws_the_same_episode_and_another_another():
-    def drawn(seed):
+    def sampled(seed):
         return sample_episode(TASK, "h", np.random.default_rng(seed))
 
-    assert drawn(3) == drawn(3)
-    assert drawn(3) != drawn(4)
-    assert {drawn(seed).goal for seed in range(12)} == {"bed", "table"}
+    assert sampled(3) == sampled(3)
+    assert sampled(3) != sampled(4)
+    assert {sampled(seed).goal for seed in range(12)} == {"bed", "table"}
 
 
 def test_a_given_goal_and_start_are_kept():

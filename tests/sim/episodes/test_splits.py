@@ -49,7 +49,7 @@ def test_a_pose_to_habitat_and_back_is_identity(x, y, z, yaw):
 
 
 @given(yaw=yaws)
-def test_a_heading_looks_the_same_way_in_both_frames(yaw):
+def test_a_heading_has_the_same_direction_in_both_frames(yaw):
     x, y, z, w = habitat.to_rotation(yaw)
     forward = np.array([0.0, 0.0, -1.0])  # Habitat's agents look along -z; v' = v + 2 q x (q x v + w v)
     axis = np.array([x, y, z])
@@ -77,7 +77,7 @@ def test_a_split_written_and_read_is_the_same_in_the_same_order(folder):
     assert split.episode("tiny_0001").house == "a"
 
 
-def test_the_files_have_what_habitats_loader_reads(folder):
+def test_the_files_have_the_fields_that_habitats_loader_reads(folder):
     content = json.loads(gzip.decompress((folder / "content" / "b.json.gz").read_bytes()))
     assert set(content) == {
         "category_to_task_category_id",

@@ -23,7 +23,7 @@ HIDDEN = EpisodeRecipe(rule="hidden", min_distance_m=12.0, only_instance_min_dis
 
 
 def divided() -> House:
-    """24 x 6 m; a wall at x = 0 with a doorway in the north, a bed in the west, chairs in both halves."""
+    """Returns a room of 24 x 6 m: a wall at x = 0 with a doorway in the north, a bed (west), chairs (both halves)."""
     house = with_box(room(24, 6), "wall_10", centre_m=(0.0, -0.6, 1.25), half_m=(0.05, 2.4, 1.25))
     house = with_box(house, "bed_00", centre_m=(-11.0, -1.5, 0.25), half_m=(0.9, 0.9, 0.25))
     house = with_box(house, "chair_00", centre_m=(-11.5, 2.0, 0.4), half_m=(0.25, 0.25, 0.4))
@@ -37,7 +37,7 @@ def task() -> Task:
 
 def test_hidden_goals_are_far_away_and_visible_in_no_direction(task):
     asks = find_house_asks(task, HIDDEN).asks
-    assert asks == (Ask("bed"),)  # no place is 12 m from both chairs
+    assert asks == (Ask("bed"),)  # no place is 12 m away from both chairs
     drawer, lookout = StartDrawer(task, HIDDEN, house=0, seed=0), Lookout(task)
     starts = [drawer.draw(asks[0], number, np.random.default_rng(number)) for number in range(12)]
     for start in starts:
@@ -110,7 +110,7 @@ def test_a_house_without_hazards_still_has_episodes_but_they_do_not_meet_the_rul
     assert start.distance_m is not None
 
 
-def test_a_cell_on_no_path_is_past_nothing():
+def test_an_unreachable_cell_has_no_path_past_a_mark():
     distance_m = np.array([[0.0, 1.0, 2.0, 3.0, np.inf]], np.float32)
     marked = np.array([[False, True, False, False, True]])
     assert leads_past(distance_m, marked).tolist() == [[False, True, True, True, False]]

@@ -15,7 +15,7 @@ def houses_of(count: int, episodes: int) -> list[str]:
 
 
 def each_in_its_house(count: int) -> list[str]:
-    """With one episode in each house the bootstrap over houses is the ordinary one over episodes."""
+    """With one episode in each house, the bootstrap over houses equals the ordinary bootstrap over episodes."""
     return houses_of(count, 1)
 
 
@@ -61,7 +61,7 @@ def test_intervals_over_twenty_houses_hold_the_true_mean_in_about_95_of_100_samp
 def test_houses_with_more_episodes_weigh_more_as_in_the_mean() -> None:
     values, names = np.array([0.0] * 9 + [1.0]), ["large"] * 9 + ["small"]
     low, high = bootstrap_interval(values, names)
-    assert (low, high) == (0.0, 1.0)  # each house is drawn alone with chance 1/4
+    assert (low, high) == (0.0, 1.0)  # a resample holds only one of the houses with probability 1/4
     assert estimate(list(values), names).mean == pytest.approx(0.1)
 
 
@@ -78,7 +78,7 @@ def test_the_interval_does_not_depend_on_the_order_of_episodes() -> None:
     assert bootstrap_interval(values, list(names)) == bootstrap_interval(values[order], list(names[order]))
 
 
-def test_missing_values_do_not_count_and_a_house_without_values_is_no_house() -> None:
+def test_missing_values_and_houses_without_values_do_not_count() -> None:
     assert estimate([1.0, None, 3.0], ["a", "b", "a"]).houses == 1
     assert estimate([None, None], ["a", "b"]) == Estimate(None, None, None, 0, 0)
     assert paired_difference([1.0, None, 3.0], [2.0, 5.0, None], ["a", "b", "c"]) == Estimate(1.0, 1.0, 1.0, 1, 1)
@@ -99,7 +99,7 @@ def test_a_split_of_a_thousand_episodes_takes_well_under_a_second() -> None:
     assert time.process_time() - began_s < 1.0
 
 
-def test_a_ratio_of_medians_is_resolved_against_one() -> None:
+def test_a_ratio_of_medians_is_significant_when_its_interval_excludes_one() -> None:
     rng, names = np.random.default_rng(0), houses_of(20, 10)
     first = rng.uniform(50.0, 150.0, 200)
     half, same = (

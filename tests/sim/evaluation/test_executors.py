@@ -1,4 +1,4 @@
-"""The executor changes no line: this process, several processes, a Ray cluster of which a machine dies."""
+"""No executor changes a result line: this process, several processes, a Ray cluster in which a machine dies."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from sim.evaluation.parallel import Shard, ordered_map
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import MAX_FAILED_STARTS, RunnerSpec, WorkerLost, run_in_pool
 from sim.interface import ConfigError
-from tests.helpers.players import Job, die, die_the_first_time, slow_double
 from tests.helpers.results import lines_of
+from tests.helpers.runners import Job, die, die_the_first_time, slow_double
 from tests.helpers.worlds import sofa_room
 
-SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
+SPEC = RunnerSpec("tests.helpers.runners:make_runner", None)
 
 
 def jobs(count: int) -> list[Job]:
@@ -80,7 +80,7 @@ def test_workers_that_cannot_start_end_the_run_and_say_why() -> None:
 
 
 class OneProcessor(executors.ProcessPool):
-    """A pool like a cluster with one free processor: its other workers never get ready."""
+    """A pool like a cluster with one free processor: its other workers never become ready."""
 
     first: Any = None
 
@@ -123,12 +123,12 @@ def test_a_shard_that_does_not_exist_is_refused(text: str) -> None:
     ],
 )
 def test_options_that_contradict_each_other_are_refused(options: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(ConfigError) as told:
+    with pytest.raises(ConfigError) as raised:
         make_executor(**{"workers": 1, **options})
-    assert str(told.value) == sentence
+    assert str(raised.value) == sentence
 
 
-def test_without_ray_one_sentence_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ray_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "sim.evaluation.executors_ray", raising=False)
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(ConfigError, match=r"pip install 'stubborn-objectnav\[ray\]'"):
@@ -143,7 +143,7 @@ def test_without_a_cluster_one_sentence_says_how_to_start_one() -> None:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    """Two machines of one processor each, and a death that is noticed within two seconds."""
+    """Starts two machines of one processor each; a dead machine is detected within two seconds."""
     ray = pytest.importorskip("ray")
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     noticed = {f"health_check_{name}": value for name, value in HEALTH.items()}
@@ -211,9 +211,9 @@ def test_workers_end_with_the_process_that_started_them_in_the_middle_of_an_item
     code = f"""
 from pathlib import Path
 from sim.evaluation.parallel import ordered_map
-from tests.helpers.players import tell_and_sleep
+from tests.helpers.runners import write_pid_and_sleep
 if __name__ == "__main__":
-    list(ordered_map(tell_and_sleep, [Path({str(markers[0])!r}), Path({str(markers[1])!r})], workers=2))
+    list(ordered_map(write_pid_and_sleep, [Path({str(markers[0])!r}), Path({str(markers[1])!r})], workers=2))
 """
     (tmp_path / "main.py").write_text(code)
     path = os.pathsep.join([str(Path(__file__).parents[3]), os.environ.get("PYTHONPATH", "")])

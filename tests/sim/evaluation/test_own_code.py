@@ -1,4 +1,4 @@
-"""A message about an error in a user's code names the innermost line of that code; a hash tells two versions apart."""
+"""A message about an error in a user's code names its innermost line; a hash distinguishes two versions."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def in_this_project():
 
 @pytest.fixture
 def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A module `mine/bad.py` below the current folder."""
+    """Writes a module `mine/bad.py` below the current folder and returns it."""
     file = tmp_path / "mine" / "bad.py"
     file.parent.mkdir()
     file.write_text(AGENT)
@@ -82,7 +82,7 @@ def test_an_agent_of_this_project_is_named_by_its_own_line(tmp_path: Path, monke
 
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A package with an agent, what it imports at once, what it imports late, and what it does not import."""
+    """Writes a package with an agent and modules that it imports at the start, imports later, and does not import."""
     folder = tmp_path / "hashed"
     folder.mkdir()
     for name, text in {
@@ -102,14 +102,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("name", ["agent", "helper", "deeper", "late", "__init__"])
-def test_an_edit_of_what_an_agent_imports_changes_its_hash(package: Path, name: str) -> None:
+def test_an_edit_of_a_module_that_an_agent_imports_changes_its_hash(package: Path, name: str) -> None:
     before = hash_of_own(["hashed.agent"])
     with (package / f"{name}.py").open("a") as file:
         file.write("# edited\n")
     assert hash_of_own(["hashed.agent"]) != before
 
 
-def test_what_an_agent_does_not_import_has_no_part_in_its_hash(package: Path) -> None:
+def test_modules_that_an_agent_does_not_import_do_not_change_its_hash(package: Path) -> None:
     before = hash_of_own(["hashed.agent"])
     (package / "unrelated.py").write_text("GAIN = 3\n")
     importlib.import_module("hashed.unrelated")

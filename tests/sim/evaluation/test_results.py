@@ -73,7 +73,7 @@ def test_the_number_of_workers_may_change_when_a_run_goes_on(tmp_path: Path) -> 
     RunDirectory(tmp_path, CONFIG | {"workers": 2}).close()
 
 
-def test_a_run_goes_on_to_more_episodes_and_says_so(tmp_path: Path) -> None:
+def test_a_run_continues_to_more_episodes_and_says_so(tmp_path: Path) -> None:
     for episodes in (5, 8, 6):
         RunDirectory(tmp_path, CONFIG | {"episodes": episodes}).close()
     assert json.loads((tmp_path / "config.json").read_text())["episodes"] == 8
@@ -96,7 +96,7 @@ def test_every_code_that_ran_in_a_folder_is_recorded(tmp_path: Path) -> None:
     assert written["versions"] == {"code": "a1"}
 
 
-def test_code_from_before_codes_were_listed_is_known_and_code_that_ran_nothing_is_not(tmp_path: Path) -> None:
+def test_runs_without_a_list_of_codes_name_their_code_and_code_that_ran_nothing_is_not_named(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a1"}}).close()
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
     assert run.record_code("b2") == []
@@ -106,7 +106,7 @@ def test_code_from_before_codes_were_listed_is_known_and_code_that_ran_nothing_i
     assert config.pop("codes") == ["b2"]
     (tmp_path / "config.json").write_text(json.dumps(config))
     again = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "b2"}})
-    assert again.record_code("b2") == ["a1"]  # the code that began the folder, where no list is known
+    assert again.record_code("b2") == ["a1"]  # the code that created the folder, if there is no list
     again.close()
 
 
@@ -146,7 +146,7 @@ def test_a_summary_of_nothing_is_valid_json() -> None:
     assert json.loads(json.dumps(summarise([]), allow_nan=False))["success"] == {"mean": None, "ci95": [None, None]}
 
 
-def test_a_summary_says_over_what_its_intervals_resample() -> None:
+def test_a_summary_states_what_its_intervals_resample() -> None:
     two_houses, one_house = summarise([line(1), line(2)]), summarise([line(1), line(3)])
     assert (two_houses["houses"], two_houses["ci95_resamples"]) == (2, "houses, then the episodes of each")
     assert (one_house["houses"], one_house["ci95_resamples"]) == (1, "the episodes of the one house")
@@ -196,14 +196,14 @@ def test_an_option_that_a_run_does_not_have_is_the_same_as_null(tmp_path: Path) 
 
 
 def write_lines(folder: Path, *lines: dict | str) -> None:
-    """Begins a run whose file of results has these lines."""
+    """Starts a run whose file of results has these lines."""
     RunDirectory(folder, CONFIG | {"seed": 0}).close()
     text = "".join((each if isinstance(each, str) else json.dumps(each)) + "\n" for each in lines)
     (folder / "results.jsonl").write_text(text)
 
 
 @pytest.mark.parametrize(
-    ("lines", "told"),
+    ("lines", "message"),
     [
         ([line(1), line(1)], "line 2: episode 'e1' has the same result in line 1"),
         ([line(1), line(2), line(1, success=0.0)], "line 3: episode 'e1' has another result in line 1"),
@@ -220,16 +220,18 @@ def write_lines(folder: Path, *lines: dict | str) -> None:
         (['{"spl": NaN}'], "line 1 is not JSON"),
     ],
 )
-def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: list, told: str, tmp_path: Path) -> None:
+def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(
+    lines: list, message: str, tmp_path: Path
+) -> None:
     write_lines(tmp_path, *lines)
-    with pytest.raises(ConfigError, match=re.escape(told)):
+    with pytest.raises(ConfigError, match=re.escape(message)):
         RunDirectory(tmp_path, CONFIG | {"seed": 0})
     (tmp_path / "results.jsonl").write_text("")
     RunDirectory(tmp_path, CONFIG | {"seed": 0}).close()  # it is not locked
 
 
 @pytest.mark.parametrize(
-    ("episodes", "told"),
+    ("episodes", "message"),
     [
         ({"e1": ("h1", "bed")}, None),
         ({"e2": ("h1", "bed")}, "line 1: 'e1' is not an episode of this run"),
@@ -237,15 +239,15 @@ def test_lines_that_are_not_of_this_run_are_refused_by_number_and_field(lines: l
         ({"e1": ("h1", "sofa")}, "line 1: goal is 'bed', but 'sofa'"),
     ],
 )
-def test_lines_of_another_split_are_refused(episodes: dict, told: str | None, tmp_path: Path) -> None:
+def test_lines_of_another_split_are_refused(episodes: dict, message: str | None, tmp_path: Path) -> None:
     write_lines(tmp_path, line(1))
     run = RunDirectory(tmp_path, CONFIG | {"seed": 0})
-    with contextlib.nullcontext() if told is None else pytest.raises(ConfigError, match=told):
+    with contextlib.nullcontext() if message is None else pytest.raises(ConfigError, match=message):
         run.require_of(episodes)
     run.close()
 
 
-def test_the_place_of_a_stop_is_read_back_and_is_none_in_lines_of_older_versions(tmp_path: Path) -> None:
+def test_the_place_of_a_stop_is_read_back_and_missing_in_lines_of_older_versions(tmp_path: Path) -> None:
     stated = {"stop_target_xy_m": [1.5, -2.0], "stop_target_to_goal_m": 0.25}
     write_lines(tmp_path, line(1, **stated), line(2))
     first, second = read_result_lines(tmp_path / "results.jsonl").values
@@ -253,7 +255,7 @@ def test_the_place_of_a_stop_is_read_back_and_is_none_in_lines_of_older_versions
     assert {key: second[key] for key in stated} == dict.fromkeys(stated)
 
 
-def test_a_dropped_line_is_said(tmp_path: Path) -> None:
+def test_a_dropped_line_is_reported(tmp_path: Path) -> None:
     write_lines(tmp_path, line(1))
     with (tmp_path / "results.jsonl").open("a") as stream:
         stream.write('{"episode_id": "e2", "su')
@@ -303,7 +305,7 @@ def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> N
     assert not (tmp_path / "run").exists()
 
 
-def test_a_run_that_goes_on_with_another_library_tells_which(tmp_path: Path) -> None:
+def test_a_run_resumed_with_another_library_names_it(tmp_path: Path) -> None:
     RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.0.0", "numpy": "2.4.6", "code": "a"}}).close()
     run = RunDirectory(tmp_path, CONFIG | {"versions": {"mujoco": "4.1.0", "numpy": "2.4.6", "code": "b"}})
     assert run.other_versions() == {"mujoco": ("4.0.0", "4.1.0")}

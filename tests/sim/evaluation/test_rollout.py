@@ -1,4 +1,4 @@
-"""Each episode gives one line, even where the physics fail."""
+"""Each episode gives one line, even if the physics fail."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
 from sim.run import entry
 from sim.sensors.noise import NoiseConfig, PoseNoise
-from tests.helpers.players import Script
+from tests.helpers.runners import Script
 from tests.helpers.worlds import ledge, sofa_room
 
 SMALL = CameraModel(width_px=64, height_px=48)
@@ -45,7 +45,7 @@ def test_a_finished_episode_is_a_line_that_json_can_hold(env: ObjectNavEnv) -> N
 
 
 class Sure(Script):
-    """A script that tells a confidence."""
+    """A script that states a confidence."""
 
     def __init__(self, actions: list[Action], confidence: Any) -> None:
         super().__init__(actions)
@@ -83,7 +83,9 @@ class Aimed(Script):
         self.place = place
 
     def act(self, observation: Any) -> Action:
-        self.told = Pose(float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0]))
+        self.last_pose = Pose(
+            float(observation["gps"][0]), float(observation["gps"][1]), float(observation["compass"][0])
+        )
         return super().act(observation)
 
     def stop_target_xy_m(self) -> Any:
@@ -124,11 +126,11 @@ def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_rob
     file.write_text(sofa_room().spec.to_xml())
     noise = NoiseConfig(pose=PoseNoise(gps_walk_m=0.3, compass_walk_rad=0.1))
     env = ObjectNavEnv(house=file, sensors=("depth",), camera=SMALL, noise=noise)
-    agent = Aimed(AHEAD_AND_STOP, lambda: agent.told.place_of(2.0, 1.0))
+    agent = Aimed(AHEAD_AND_STOP, lambda: agent.last_pose.place_of(2.0, 1.0))
     line = play_episode(env, agent, EPISODE, seed=0)
     true = env.scene.world.pose
     env.close()
-    assert agent.told.distance_to(true.relative_to(EPISODE.start)) > 0.2
+    assert agent.last_pose.distance_to(true.relative_to(EPISODE.start)) > 0.2
     assert line["stop_target_xy_m"] == pytest.approx(true.place_of(2.0, 1.0), abs=1e-5)
 
 
@@ -160,7 +162,7 @@ def test_a_state_that_is_not_finite_ends_the_episode_as_an_error_that_names_hous
     assert "Step 3" in line["error"]
 
 
-def test_the_episode_after_a_broken_one_is_as_if_nothing_had_been(env: ObjectNavEnv) -> None:
+def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> None:
     def break_it(step: int, agent: object, info: dict) -> None:
         env.scene.world.data.qvel[:] = np.nan
 
@@ -191,7 +193,7 @@ def test_a_fall_is_a_line_and_no_error(tmp_path) -> None:
 
 
 class Answers:
-    """An agent whose `act` answers with what a function returns."""
+    """An agent whose `act` returns the result of a function."""
 
     def __init__(self, answer: Callable[[], object]) -> None:
         self.answer = answer
@@ -214,7 +216,7 @@ class Signature:
 
 
 @pytest.mark.parametrize(
-    ("agent", "told"),
+    ("agent", "message"),
     [
         (Answers(lambda: 7), "step 2: act() returned 7; an action is one of 0 STOP, 1 MOVE_FORWARD"),
         (Answers(lambda: None), "step 2: act() returned None"),
@@ -226,12 +228,12 @@ class Signature:
     ],
 )
 def test_an_agent_that_breaks_ends_its_episode_as_an_error_that_names_agent_and_step(
-    agent: Any, told: str, env: ObjectNavEnv
+    agent: Any, message: str, env: ObjectNavEnv
 ) -> None:
     line = play_episode(env, agent, EPISODE, seed=0, name="my.agents:mine")
     assert line["end_reason"] == "error"
     assert line["error"].startswith("Agent 'my.agents:mine', ")
-    assert told in line["error"]
+    assert message in line["error"]
     assert line["num_steps"] == (0 if isinstance(agent, Signature) else 1)
     assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0)["end_reason"] == "stop"
 
@@ -252,7 +254,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
     write_split(folder, episodes, {house: {} for house, _ in asked}, version="1")
     monkeypatch.setenv("STUBBORN_TEST_FAULT", str(fault))
     fault.touch()
-    command = ["--agent", "tests.helpers.players:make_faulty", "--split", str(folder), "--episodes", "4"]
+    command = ["--agent", "tests.helpers.runners:make_faulty", "--split", str(folder), "--episodes", "4"]
     command += ["--workers", workers, "--semantics", "gt", "--out", str(tmp_path / "run")]
 
     def reasons() -> dict[str, str]:
@@ -261,7 +263,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
 
     assert entry(command) == 1
     before = reasons()
-    assert "Agent 'tests.helpers.players:make_faulty', step 2: Faulty: it [bold]broke[/bold]" in before["e0"]
+    assert "Agent 'tests.helpers.runners:make_faulty', step 2: Faulty: it [bold]broke[/bold]" in before["e0"]
     assert "torn.xml" in before["e1"]
     assert "psychic" in before["e2"]
     assert "inside" in before["e3"]
@@ -269,7 +271,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
         return
     fault.unlink()
     assert entry(command) == 1
-    assert reasons() == before  # nothing is run again unasked
+    assert reasons() == before  # nothing is run again without a request
     assert entry([*command, "--retry-errors"]) == 1
     assert reasons() == before | {"e0": ""}
     assert "4 episodes that ended with an error are run again" in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Many items on several processes: each gives one line, even where workers die."""
+"""Many items on several processes: each gives one line, even if workers die."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import pytest
 
 from sim.evaluation.executors import Processes
 from sim.evaluation.workers import MAX_TRIES, RunnerSpec
-from tests.helpers.players import Job
+from tests.helpers.runners import Job
 
-SPEC = RunnerSpec("tests.helpers.players:make_runner", None)
+SPEC = RunnerSpec("tests.helpers.runners:make_runner", None)
 
 
 def jobs(count: int, houses: int = 3) -> list[Job]:

@@ -1,4 +1,4 @@
-"""Kernels are compiled when they are called, and not before."""
+"""Kernels are compiled at their first call and not before."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sim.geometry.compiling import Kernel, must_compile, njit
 
 @njit()
 def add_twice(values, more):
-    """Adds a number to all values, and again."""
+    """Adds a number to all values, twice."""
     for i in range(values.size):
         values[i] += twice(more)
 
@@ -25,7 +25,7 @@ def twice(value):
     return 2 * value
 
 
-def test_a_kernel_that_calls_a_later_one_does_what_its_function_does() -> None:
+def test_a_kernel_that_calls_a_later_one_equals_its_function() -> None:
     values = np.arange(3.0)
     add_twice(values, 1.5)
     assert values.tolist() == [3.0, 4.0, 5.0]
@@ -47,8 +47,8 @@ import numpy as np
 from stubborn.kernels.grids import distance_within
 print("numba" in sys.modules, distance_within(np.ones((1, 1), np.bool_), 1)[0, 0], "numba" in sys.modules)
 """
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert told.split() == ["False", "0.0", "True"]
+    output = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert output.split() == ["False", "0.0", "True"]
 
 
 def test_an_empty_cache_means_that_kernels_are_compiled_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

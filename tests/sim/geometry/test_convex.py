@@ -1,4 +1,4 @@
-"""Plan projections of MuJoCo's shapes against sums done by hand, and lines that cross them."""
+"""Plan projections of MuJoCo's shapes against values computed by hand, and lines that cross them."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_a_plane_blocks_everything_below_itself_and_nothing_above():
     assert below.contains(np.array([[40.0, -40.0]])).all()
 
 
-def test_what_does_not_reach_between_the_heights_projects_to_nothing():
+def test_a_shape_outside_the_height_band_projects_to_nothing():
     table_top = '<geom type="box" size="1 1 .02" pos="0 0 .92"/>'
     assert projection(table_top, 0.03, 0.88) is None
     assert projection(table_top, 0.03, 0.91) is not None
@@ -126,7 +126,7 @@ def test_distance_to_a_turned_rectangle_is_the_analytic_one(angle, x, y):
     assert polygon.distance(point[None])[0] == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_line_is_blocked_by_a_wall_between_and_not_by_one_beside_or_behind():
+def test_a_line_is_blocked_by_a_wall_between_and_not_by_one_next_to_it_or_behind():
     wall = [rectangle(1.0, -1.0, 1.1, 1.0)]
     start = np.zeros((4, 2))
     end = np.array([[2.0, 0.0], [0.9, 0.0], [1.0, 3.0], [-2.0, 0.0]])

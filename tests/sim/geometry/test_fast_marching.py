@@ -14,7 +14,7 @@ CELL_M = 0.05
 
 
 def cluttered(seed: int, rows: int = 70, cols: int = 90):
-    """Random walls: passable cells connected to one of them, speeds that fall along walls, a goal of 3 x 3 cells."""
+    """Returns random walls: connected passable cells, speeds that fall along walls, a goal of 3 x 3 cells."""
     rng = np.random.default_rng(seed)
     solid = np.zeros((rows, cols), bool)
     for _ in range(14):
@@ -30,7 +30,7 @@ def cluttered(seed: int, rows: int = 70, cols: int = 90):
 
 
 def steps_over_edges(goal: np.ndarray, passable: np.ndarray) -> np.ndarray:
-    """Number of steps from cell to cell, over edges, to the nearest goal cell; -1 where no path leads."""
+    """Returns the number of steps over cell edges to the nearest goal cell; -1 if there is no path."""
     steps, reached = np.where(goal, 0, -1), goal.copy()
     for number in itertools.count(1):
         grown = reached.copy()
@@ -147,7 +147,7 @@ def test_distances_along_a_single_row_are_exact():
     np.testing.assert_allclose(distances(one_cell((9, 1), 3, 0), row.T, CELL_M)[:, 0], expected_m, rtol=1e-6)
 
 
-def test_a_blocked_source_does_not_count_beside_a_free_one():
+def test_a_blocked_source_does_not_count_next_to_a_free_one():
     passable = np.ones((5, 9), bool)
     passable[2, 2] = False
     both = one_cell((5, 9), 2, 2) | one_cell((5, 9), 2, 7)

@@ -38,7 +38,7 @@ def test_the_start_is_the_centre_of_the_middle_cell():
 
 
 @given(row=st.integers(0, 39), col=st.integers(0, 69), size=st.integers(1, 100), off=st.floats(-0.02, 0.02))
-def test_a_cell_of_a_window_is_the_same_place_in_the_whole(row: int, col: int, size: int, off: float):
+def test_a_cell_of_a_window_is_the_same_place_in_the_whole_map(row: int, col: int, size: int, off: float):
     x, y = (float(c) + off for c in FRAME.centres(row, col))
     window = FRAME.window_at(x, y, size)
     part_row, part_col = window.frame.cell(x, y)
@@ -87,7 +87,7 @@ def test_ahead_goes_along_the_heading():
     np.testing.assert_allclose(Pose(1.0, 2.0, math.pi / 2).ahead(0.5), (1.0, 2.5))
 
 
-def test_a_grid_without_size_is_refused_with_what_was_given():
+def test_a_grid_without_size_is_refused_with_the_given_value():
     with pytest.raises(ConfigError, match=r"cell_m must be > 0 m, got 0"):
         GridFrame(origin_xy_m=(0.0, 0.0), shape=(2, 2), cell_m=0)
     with pytest.raises(ConfigError, match="0 x 2"):

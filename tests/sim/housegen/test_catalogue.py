@@ -64,7 +64,7 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("category", "uses", "told"),
+    ("category", "uses", "message"),
     [
         (
             "chair",
@@ -76,8 +76,8 @@ def test_two_styles_of_one_name_in_a_category_are_refused():
         ("bed", ("double",), "category 'bed' has no uses, but `uses` has 'double'"),
     ],
 )
-def test_uses_by_which_no_room_asks_are_refused_with_those_that_exist(category, uses, told):
-    with pytest.raises(ConfigError, match=told):
+def test_uses_by_which_no_room_asks_are_refused_with_those_that_exist(category, uses, message):
+    with pytest.raises(ConfigError, match=message):
         CATALOGUE.with_styles(Style(category, "block", "train", build_block, uses=uses))
 
 

@@ -70,7 +70,7 @@ def test_doors_are_wide_enough_and_lie_in_the_wall_that_two_rooms_share(kind: Pl
     try:
         openings = cut_openings(np.random.default_rng(seed), plan)
     except PlanError:
-        return  # the generator draws another plan
+        return  # the generator samples another plan
     for hole in openings:
         if hole.kind == "door":
             assert hole.b is not None
@@ -102,8 +102,9 @@ NEW_CASES = [(kind, seed) for kind in NEW_KINDS for seed in range(15)]
 
 
 def has_long_cycle(plan: FloorPlan, length: int) -> bool:
-    """Whether some cycle of the rooms and doors has at least this many rooms: both ends of a door stay connected
-    without it by no path shorter than that.
+    """Returns whether a cycle of rooms and doors has at least this many rooms.
+
+    The ends of some door are then still connected without it, but by no path that is shorter.
     """
     neighbours: dict[int, set[int]] = {i: set() for i in range(len(plan.rooms))}
     for join in plan.joins:
@@ -199,7 +200,7 @@ def test_shared_side_is_symmetric() -> None:
     a, b = Rect(0, 0, 2, 3), Rect(2, 1, 5, 4)
     assert shared_side(a, b) == ("east", (1, 3))
     assert shared_side(b, a) == ("west", (1, 3))
-    assert shared_side(a, Rect(2, 3, 5, 4)) is None  # they meet in a corner only
+    assert shared_side(a, Rect(2, 3, 5, 4)) is None  # they only meet in a corner
 
 
 def test_subtract_returns_the_parts_outside_the_holes() -> None:

@@ -31,7 +31,7 @@ def make(category: str, seed: int, pool: Pool = "wide", **hints) -> Item:
 
 
 def shape_of(item: Item) -> tuple:
-    """What an item looks like without its colours."""
+    """Returns the geometry of an item without its colours."""
     return tuple((g.shape, g.size_m, g.pos_m, g.euler_rad, g.mesh and g.mesh.name) for g in item.geoms)
 
 

@@ -46,7 +46,7 @@ every_style = pytest.mark.parametrize("style", STYLES, ids=lambda s: f"{s.catego
 
 @cache
 def items(style: Style) -> tuple[Item, ...]:
-    """Some items of a style, which need not be in the shipped catalogue."""
+    """Returns some items of a style, which need not be in the shipped catalogue."""
     return tuple(item_of(style, seed) for seed in SEEDS)
 
 
@@ -259,7 +259,7 @@ def test_sink_of_a_counter_is_a_child_only_when_asked_for(pool, use):
         assert ("sink" in {child.item.category for child in item.children}) == wanted
 
 
-def test_the_hint_looks_replaces_drawn_looks():
+def test_the_hint_looks_replaces_sampled_looks():
     red = Look((1.0, 0.0, 0.0, 1.0))
     item = CATALOGUE.make_item("table", np.random.default_rng(0), pool="train", style="farmhouse", looks={"wood": red})
     assert red in {geom.look for geom in item.geoms}

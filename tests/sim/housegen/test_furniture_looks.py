@@ -1,4 +1,4 @@
-"""How furniture looks: visible glass tops, light toilet bowls, leaves that are no discs; sizes."""
+"""Appearance and sizes of furniture: visible glass tops, light toilet bowls, leaves that are not discs."""
 
 from __future__ import annotations
 

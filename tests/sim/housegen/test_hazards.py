@@ -1,4 +1,4 @@
-"""Hazards of generated houses: where they stand, what they leave open, and that a camera does not show them."""
+"""Hazards of generated houses: their positions, the space that they leave open, and that no camera shows them."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ def small_house() -> mujoco.MjSpec:
     return generate_house(11, SMALL).spec
 
 
-def drawn(family: str, seed: int) -> tuple[PlacedHazard, ...]:
+def sampled(family: str, seed: int) -> tuple[PlacedHazard, ...]:
     spec = mujoco.MjSpec.from_string(TWO_ROOMS)
     return draw_hazards(np.random.default_rng(seed), (family,), "train", spec, (DOORWAY,), 2)
 
 
-def test_a_house_with_hazards_passes_the_check_and_its_sites_tell_where_they_are() -> None:
+def test_a_house_with_hazards_passes_the_check_and_has_a_site_for_each() -> None:
     model = small_house().compile()
     hazards = read_hazards(model)
     assert 2 <= len(hazards) <= 4
@@ -61,7 +61,7 @@ def test_a_house_with_hazards_passes_the_check_and_its_sites_tell_where_they_are
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_same_seed_gives_the_same_hazards(family: str) -> None:
-    first, second = ([part.placed for h in drawn(family, 1) for part in h.parts] for _ in range(2))
+    first, second = ([part.placed for h in sampled(family, 1) for part in h.parts] for _ in range(2))
     assert [(p.x_m, p.y_m, p.yaw_rad) for p in first] == [(p.x_m, p.y_m, p.yaw_rad) for p in second]
     assert [p.item.geoms for p in first] == [p.item.geoms for p in second]
 
@@ -80,12 +80,12 @@ def test_glass_and_scan_artifacts_collide_and_are_not_rendered() -> None:
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_each_family_finds_a_place_and_leaves_both_rooms_connected(family: str) -> None:
-    hazards = [hazard for seed in range(3) for hazard in drawn(family, seed)]
+    hazards = [hazard for seed in range(3) for hazard in sampled(family, seed)]
     assert hazards
     assert {hazard.kind for hazard in hazards} == {family}
     floor = two_rooms()
     before = floor.clearance() >= SPARE_M
-    for hazard in drawn(family, 0):
+    for hazard in sampled(family, 0):
         assert floor.try_add(hazard.footprints(), 0.0)
     wide = (floor.clearance() >= SPARE_M).astype(np.uint8)
     _, parts, stats, _ = cv2.connectedComponentsWithStats(wide, connectivity=4)

@@ -1,4 +1,4 @@
-"""Imported models: geometry, labels, splits, what is refused, and houses that they furnish."""
+"""Imported models: geometry, labels, splits, refused models, and houses that contain them."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def import_all(source: Path, out: Path) -> list[Model]:
 
 
 def reasons(folder: Path) -> list[str]:
-    """Why models of a source are left out, at its reading or at their import."""
+    """Returns the reasons why models of a source are left out, when it is read or when they are imported."""
     found = list(read_source(folder))
     left_out = [entry[1] for entry in found if not isinstance(entry, Entry)]
     for entry in found:
@@ -112,12 +112,12 @@ def test_the_colour_of_a_picture_is_that_of_the_places_shown(tmp_path: Path) -> 
     assert shape.parts[0].rgba[:3] == pytest.approx((0.98, 0.04, 0.04), abs=0.03)
 
 
-def test_a_table_collides_as_its_top_and_its_legs_and_carries_things(tmp_path: Path) -> None:
+def test_a_table_collides_as_its_top_and_its_legs_and_carries_objects(tmp_path: Path) -> None:
     _, shape = imported(write_folder(tmp_path), "table")
     assert 3 <= len(shape.boxes_m) <= 12
     middle = [box for box in shape.boxes_m if (box[:2] < 0.1).all() and (box[3:5] > -0.1).all()]
     assert len(middle) == 1
-    assert middle[0][2] > 0.6  # the robot's way between the legs is free
+    assert middle[0][2] > 0.6  # the robot's path between the legs is free
     x0, y0, x1, y1, z = shape.top_m
     assert z == pytest.approx(0.74, abs=0.01)
     assert (x1 - x0, y1 - y0) == pytest.approx((0.8, 1.4), abs=0.06)
@@ -228,7 +228,7 @@ def test_the_list_of_the_repository_decides_for_its_sources(tmp_path: Path) -> N
     assert len(transfer_list()) > 40
 
 
-# ---- what is refused -------------------------------------------------------------------------------------------------
+# ---- refused models --------------------------------------------------------------------------------------------------
 
 
 def test_bad_entries_of_a_catalogue_are_left_out_with_a_reason(tmp_path: Path) -> None:
@@ -251,7 +251,7 @@ def test_bad_entries_of_a_catalogue_are_left_out_with_a_reason(tmp_path: Path) -
     write_catalogue(tmp_path / "test.sh3f", entries, files)
     (tmp_path / "broken.sh3f").write_bytes(b"PK no zip")
     found = reasons(tmp_path)
-    assert len(found) == len(entries)  # the good one is none of them, the broken file is one
+    assert len(found) == len(entries)  # the broken file is among them, the good one is not
     for part in ("leads out of the zip", "has no 'nothing.obj'", "a door", "no category", "format 'doc'", "90", "nan"):
         assert any(part in reason for reason in found), part
 

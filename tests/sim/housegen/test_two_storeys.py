@@ -1,4 +1,4 @@
-"""Generated houses with two storeys: what the check accepts, the stairwell, and what the cameras see of it."""
+"""Generated houses with two storeys: the check, the stairwell, and its images in the cameras."""
 
 from __future__ import annotations
 

@@ -93,8 +93,8 @@ def test_the_oracle_succeeds_and_the_run_reports_removed_elements(
 ) -> None:
     options = ["--house", str(scene[0]), "--labels", str(scene[1]), "--agent", "oracle", "--episodes", "3"]
     assert run.entry([*options, "--out", str(tmp_path / "run")]) == 0
-    told = capsys.readouterr().out
-    assert "House 'flat': 2 visible geoms have no label and became void: Gadget.box, Widget." in told
+    output = capsys.readouterr().out
+    assert "House 'flat': 2 visible geoms have no label and became void: Gadget.box, Widget." in output
     lines = [json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines()]
     assert [line["success"] for line in lines] == [1.0, 1.0, 1.0]
 

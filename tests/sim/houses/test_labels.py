@@ -31,7 +31,7 @@ def test_every_category_but_void_makes_a_label(category):
 @pytest.mark.parametrize(
     "name", ["void_00", "chair", "chair_", "chair_a", "chair_03_leg", "my_chair_03", "Chair_03", ""]
 )
-def test_other_names_are_no_labels(name):
+def test_other_names_are_not_labels(name):
     assert parse_label(name) is None
 
 

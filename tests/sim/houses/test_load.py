@@ -37,7 +37,7 @@ def test_a_floor_is_enough_for_a_house(tmp_path, floor):
     assert house.spec.copy().compile().ngeom == 1
 
 
-def test_textures_are_found_beside_the_file(tmp_path, monkeypatch):
+def test_textures_next_to_the_file_are_found(tmp_path, monkeypatch):
     import cv2
 
     (tmp_path / "textures").mkdir()

@@ -32,7 +32,7 @@ def replicate(count: int, inner: str) -> str:
 
 
 def png(width: int, height: int) -> bytes:
-    """A PNG file of 1 bit per pixel, all 0: 50 KB for 20,000 x 20,000 pixels."""
+    """Returns a PNG file of 1 bit per pixel, all 0: 50 KB for 20,000 x 20,000 pixels."""
 
     def chunk(kind: bytes, content: bytes) -> bytes:
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
@@ -74,12 +74,14 @@ NO_NUMBERS = {
 }
 
 
-@pytest.mark.parametrize(("text", "told"), (TOO_MUCH | NO_NUMBERS).values(), ids=TOO_MUCH | NO_NUMBERS)
-def test_a_file_that_asks_for_too_much_or_has_no_numbers_is_refused_soon(text: str, told: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("text", "message"), (TOO_MUCH | NO_NUMBERS).values(), ids=TOO_MUCH | NO_NUMBERS)
+def test_a_file_that_asks_for_too_much_or_has_no_numbers_is_refused_soon(
+    text: str, message: str, tmp_path: Path
+) -> None:
     (tmp_path / "house.xml").write_text(text)
     (tmp_path / "bomb.png").write_bytes(png(60_000, 60_000))
     began_s = time.process_time()
-    with pytest.raises(HouseError, match=told) as refused:
+    with pytest.raises(HouseError, match=message) as refused:
         load_house(tmp_path / "house.xml")
     assert "house.xml" in str(refused.value)
     assert time.process_time() - began_s < 5.0
@@ -107,10 +109,10 @@ def test_a_label_rule_that_never_ends_is_stopped(tmp_path: Path, monkeypatch: py
 
 
 @pytest.mark.parametrize(
-    ("rule", "told"), [("(" * 900, "not a regular"), ("a{1,99999}" * 150, "1500 letters"), ("[", "not a regular")]
+    ("rule", "message"), [("(" * 900, "not a regular"), ("a{1,99999}" * 150, "1500 letters"), ("[", "not a regular")]
 )
-def test_a_label_rule_that_is_none_or_too_long_is_refused(rule: str, told: str, tmp_path: Path) -> None:
+def test_an_invalid_or_too_long_label_rule_is_refused(rule: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "house.xml").write_text(house(box()))
     (tmp_path / "rules.json").write_text(f'{{"{rule}": "wall"}}')
-    with pytest.raises(HouseError, match=told):
+    with pytest.raises(HouseError, match=message):
         load_house(tmp_path / "house.xml", labels_path=tmp_path / "rules.json")

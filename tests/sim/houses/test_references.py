@@ -1,4 +1,4 @@
-"""A house file reads only files of its own folder, the textures that a split shares, and what `--root` allows."""
+"""A house file reads only files of its own folder, textures that a split shares, and files that `--root` allows."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SOFA = '<mujoco><worldbody><geom name="sofa_00" size="0.2" pos="1 1 0.2"/></worl
 
 
 def write(folder: Path, more: str = "", *, world: str = "") -> Path:
-    """A package's scene: `package/scenes/house.xml`, with the folders `package/common` and `package/textures`."""
+    """Writes the scene of a package, `package/scenes/house.xml`, and its folders `common` and `textures`."""
     for name in ("scenes", "common", "textures", "scenes/parts"):
         (folder / "package" / name).mkdir(parents=True, exist_ok=True)
     (folder / "package" / "common" / "sofa.xml").write_text(SOFA)
@@ -69,7 +69,7 @@ def test_a_file_outside_of_the_folder_of_the_house_is_refused(more: str, tmp_pat
     assert "\n" not in str(refused.value)
 
 
-def test_a_refusal_proposes_the_folder_that_holds_both_files_but_none_for_system_files(tmp_path: Path) -> None:
+def test_a_refusal_proposes_the_folder_that_holds_both_files_except_for_system_files(tmp_path: Path) -> None:
     with pytest.raises(HouseError, match=rf"--root '{tmp_path / 'package'}'\.$"):
         load_house(write(tmp_path, OUTSIDE["an included file beside the folder"]))
     with pytest.raises(HouseError, match=r"those of the folder given with --root\.$"):
@@ -131,7 +131,7 @@ def test_a_robot_reads_no_file_outside_of_its_folder(tmp_path: Path) -> None:
         load_robot(file)
 
 
-def test_a_run_with_a_root_plays_and_one_without_says_what_to_give(
+def test_a_run_with_a_root_works_and_one_without_names_the_missing_option(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     house = ["--house", str(write(tmp_path, '<include file="../common/sofa.xml"/>')), "--agent", "oracle"]

@@ -58,7 +58,7 @@ class Case:
 
     @property
     def floors_m(self) -> list[float]:
-        """Floor height of each storey that has rooms."""
+        """Returns the floor height of each storey that has rooms."""
         heights = sorted(room.floor_z_m for room in self.scene.world.rooms)
         return [z for n, z in enumerate(heights) if n == 0 or z - heights[n - 1] > 1.0]
 

@@ -31,7 +31,7 @@ START = Pose(-2.5, 0.3, 0.2)
 
 
 def furnished(hiding_m: float) -> House:
-    """7 x 4 m with a bed at the east end, a table top on legs, and a cabinet of some height before the bed."""
+    """Returns a room of 7 x 4 m: a bed at the east end, a table top on legs, and a cabinet in front of the bed."""
     house = with_box(room(7, 4), "bed_00", centre_m=(2.4, -0.6, 0.3), half_m=(0.8, 0.9, 0.3))
     house = with_box(house, "table_00", centre_m=(0.3, 1.2, 0.72), half_m=(0.5, 0.4, 0.02))
     for number, (x, y) in enumerate(((-0.15, 0.85), (0.75, 0.85), (-0.15, 1.55), (0.75, 1.55)), start=1):

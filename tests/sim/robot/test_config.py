@@ -47,7 +47,7 @@ def test_impossible_values_are_refused_by_name(build, message):
     assert message in str(error.value)
 
 
-def test_the_whole_tree_can_be_varied_by_replacing():
+def test_a_nested_field_can_be_replaced_without_changing_the_original():
     config = RobotConfig()
     slower = replace(config, drive=replace(config.drive, speed_m_s=0.25))
     assert slower.drive.speed_m_s == 0.25

@@ -100,11 +100,11 @@ def test_a_third_party_robot_collides_with_its_own_shape(
     assert world.pose.x_m == pytest.approx(stops_at_m, abs=0.012)  # it backs off by millimetres
 
 
-def test_a_robot_whose_file_faces_another_direction_drives_the_same_way(carrier: Path, tmp_path: Path) -> None:
+def test_a_robot_whose_file_faces_another_direction_drives_in_the_same_direction(carrier: Path, tmp_path: Path) -> None:
     turned = ROBOT.replace('pos="0.4 0.1 0.075">', 'pos="0.4 0.1 0.075" euler="90 0 0">')
     with pytest.raises(ConfigError, match=r"with \+x ahead, or heading_deg in the sidecar"):
         load_robot(write_robot(tmp_path / "as_it_is", robot=turned))
-    config, _ = load_robot(write_robot(tmp_path / "told", robot=turned, heading_deg=90))
+    config, _ = load_robot(write_robot(tmp_path / "given", robot=turned, heading_deg=90))
     ours, _ = load_robot(carrier)
     assert config.body.radius_m == pytest.approx(ours.body.radius_m)
     ends = []

@@ -51,7 +51,7 @@ def test_depth_of_the_floor_follows_the_pinhole_model() -> None:
     camera = CameraModel()
     depth = Eye(room(30, 30)).see(0, 0, 0.3, "depth")["depth"]
     rows = np.arange(camera.height_px)[:, None]
-    below = (rows + 0.5 - camera.height_px / 2) / camera.focal_px  # slope of the ray through the pixel's middle
+    below = (rows + 0.5 - camera.height_px / 2) / camera.focal_px  # slope of the ray through the centre of the pixel
     floor_m = camera.height_m / np.maximum(below, 1e-9)
     lower = np.broadcast_to((floor_m > 0.5) & (floor_m < 4.9), depth.shape)
     assert np.abs(depth - floor_m)[lower].max() < 0.02  # half a pixel of slope at 4.9 m

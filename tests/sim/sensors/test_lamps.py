@@ -21,7 +21,7 @@ FORWARD = np.array([1.0, 0.0, 0.0])
 
 
 def two_rooms() -> House:
-    """A wall with a doorway at y < -1 between two halves of a room; a lamp in each half, the left one first."""
+    """Returns a wall with a doorway at y < -1 between two halves of a room; a lamp in each half, the left one first."""
     house = with_box(room(8, 5), "wall_10", centre_m=(0, 0.75, 1.25), half_m=(0.05, 1.75, 1.25))
     spec = house.spec
     for light in list(spec.lights):
@@ -32,7 +32,7 @@ def two_rooms() -> House:
 
 
 class Eye:
-    """A camera in a house, and the lamps that it chooses."""
+    """Returns a camera in a house and the lamps that it chooses."""
 
     def __init__(self, house: House, *, profile: str = "fast", cull: bool = True) -> None:
         self.model, self.labels, _ = compile_world(house, RobotConfig())
@@ -54,7 +54,7 @@ class Eye:
         return image
 
 
-def test_the_lamp_behind_a_wall_is_off_and_through_the_doorway_it_is_on() -> None:
+def test_a_lamp_behind_a_wall_is_off_and_one_behind_a_doorway_is_on() -> None:
     eye = Eye(two_rooms())
     assert eye.choose(-3.0, 1.0) == [0]
     assert eye.choose(3.0, 1.0) == [1]

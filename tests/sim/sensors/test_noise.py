@@ -1,4 +1,4 @@
-"""Noise has the statistics of its configuration, and is the same again with the same seed."""
+"""Noise has the statistics of its configuration and is reproducible with the same seed."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_a_slanted_floor_has_no_edges() -> None:
     np.testing.assert_array_equal(sensed(DepthNoise(edge_dropout=0.5, edge_flying=0.5), depth_m), depth_m)
 
 
-def test_a_surface_beside_pixels_without_return_has_no_flying_pixels() -> None:
+def test_a_surface_next_to_pixels_without_return_has_no_flying_pixels() -> None:
     depth_m = sensed(DepthNoise(edge_flying=1.0), step_of(0.0, 3.0))
     assert set(np.unique(depth_m)) == {0.0, 3.0}
 
@@ -228,7 +228,7 @@ def test_dark_and_bright_saturate() -> None:
 
 
 def readings(config: PoseNoise, *, episodes: int, actions: int) -> tuple[np.ndarray, np.ndarray]:
-    """Errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
+    """Returns errors of gps (episodes, actions + 1, 2) and compass (episodes, actions + 1) at (1, -2) m and 3.1 rad."""
     noisy, rng = NoisyPose(config), np.random.default_rng(0)
     true = {"gps": np.array([1.0, -2.0], np.float32), "compass": np.array([3.1], np.float32)}
     seen = []
@@ -249,7 +249,7 @@ def test_gps_and_compass_have_the_configured_white_noise() -> None:
     assert abs(np.corrcoef(gps[0, 1:, 0], gps[0, :-1, 0])[0, 1]) < 0.1
 
 
-def test_drift_grows_with_the_square_root_of_actions_and_starts_at_none() -> None:
+def test_drift_starts_at_zero_and_grows_with_the_square_root_of_actions() -> None:
     gps, compass = readings(PoseNoise(gps_walk_m=0.01, compass_walk_rad=0.004), episodes=1500, actions=64)
     np.testing.assert_allclose(gps[:, 0], 0.0, atol=1e-6)
     for actions in (4, 16, 64):
@@ -257,7 +257,7 @@ def test_drift_grows_with_the_square_root_of_actions_and_starts_at_none() -> Non
         assert compass[:, actions].std() == pytest.approx(0.004 * math.sqrt(actions), rel=0.05)
 
 
-def test_conditions_are_drawn_from_their_ranges() -> None:
+def test_conditions_are_sampled_from_their_ranges() -> None:
     noise, rng = ActuationNoise(floor_friction_scale=(0.1, 1.0), motor_gain_scale=(0.8, 1.2)), np.random.default_rng(0)
     drawn = [noise.draw(rng) for _ in range(4000)]
     friction = np.log10([each.floor_friction_scale for each in drawn])
@@ -324,7 +324,7 @@ def noisy(house: Path) -> Iterator[ObjectNavEnv]:
     env.close()
 
 
-def play(env: ObjectNavEnv, seed: int, steps: int = 4) -> list[dict[str, np.ndarray]]:
+def observations_of(env: ObjectNavEnv, seed: int, steps: int = 4) -> list[dict[str, np.ndarray]]:
     seen = [env.reset(seed=seed)[0]]
     return seen + [env.step(Action.MOVE_FORWARD)[0] for _ in range(steps)]
 
@@ -336,9 +336,9 @@ def same(one: list[dict[str, np.ndarray]], other: list[dict[str, np.ndarray]], *
 
 
 def test_the_same_seed_gives_the_same_noise_after_any_other_episode(noisy: ObjectNavEnv) -> None:
-    first = play(noisy, 7)
-    other = play(noisy, 8)
-    assert same(first, play(noisy, 7))
+    first = observations_of(noisy, 7)
+    other = observations_of(noisy, 8)
+    assert same(first, observations_of(noisy, 7))
     for name in ("rgb", "depth", "gps", "compass"):
         assert not same(first, other, name), name
 
@@ -353,7 +353,7 @@ def test_depth_does_not_depend_on_the_other_sensors(noisy: ObjectNavEnv, house: 
     lone = ObjectNavEnv(
         house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.3), camera=SMALL, noise="harsh", sensors=("depth",)
     )
-    assert same(play(lone, 7), play(noisy, 7), "depth", "gps", "compass")
+    assert same(observations_of(lone, 7), observations_of(noisy, 7), "depth", "gps", "compass")
     lone.close()
 
 
@@ -368,12 +368,12 @@ def test_noise_none_changes_nothing_and_needs_no_image(house: Path) -> None:
         ObjectNavEnv(house=house, goal="sofa", start=Pose(-1.0, 0.5, 0.3), camera=SMALL, **options)
         for options in options_of_each
     )
-    assert same(play(default, 0), play(named, 3))
+    assert same(observations_of(default, 0), observations_of(named, 3))
     default.close()
     named.close()
 
 
-def test_noise_draws_the_same_episodes_as_none(house: Path) -> None:
+def test_noise_does_not_change_the_sampled_episodes(house: Path) -> None:
     starts = []
     for noise in ("none", "realsense"):
         env = ObjectNavEnv(house=house, camera=SMALL, noise=noise)
@@ -424,7 +424,7 @@ def test_the_true_readings_are_not_changed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("config", "values", "told"),
+    ("config", "values", "message"),
     [
         (DepthNoise, {"axial_m": -0.1}, "axial_m"),
         (DepthNoise, {"lateral_px": math.nan}, "lateral_px"),
@@ -443,8 +443,8 @@ def test_the_true_readings_are_not_changed() -> None:
         (Conditions, {"motor_gain_scale": (1.0, math.nan)}, "motor_gain_scale"),
     ],
 )
-def test_a_value_out_of_range_is_refused(config: type, values: Mapping[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_a_value_out_of_range_is_refused(config: type, values: Mapping[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         config(**values)
 
 
@@ -461,7 +461,7 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "message"),
     [
         ("loud", "none, realsense, harsh"),
         ({"preset": "loud"}, "none, realsense, harsh"),
@@ -474,6 +474,6 @@ def test_a_file_may_name_a_preset_and_change_some_of_it() -> None:
         (7, "7"),
     ],
 )
-def test_an_invalid_noise_file_is_refused_with_what_is_allowed(given: Any, told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_an_invalid_noise_file_is_refused_with_the_allowed_values(given: Any, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         noise_from_dict(given)

@@ -1,4 +1,4 @@
-"""A sensor and a noise model of a user: each defined as in a file of one's own, and used through the environment."""
+"""A sensor and a noise model of a user, defined outside of the project and used through the environment."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class MissingContacts:
         self._miss_rate = miss_rate
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Nothing is kept between episodes."""
+        """Does nothing: no state is kept between episodes."""
 
     def apply(
         self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
@@ -101,7 +101,7 @@ class Fog:
         return self
 
     def begin(self, gloss: NDArray[np.float32]) -> None:
-        """Nothing is kept between episodes."""
+        """Does nothing: no state is kept between episodes."""
 
     def apply(
         self, readings: Mapping[str, NDArray], images: Mapping[str, NDArray], rng: np.random.Generator
@@ -194,7 +194,7 @@ def test_a_sensor_gets_the_images_that_it_declares_and_no_others(house: Path) ->
         observations(house, [], sensors=(Peeking(),))
 
 
-def test_a_text_is_no_tuple_of_names() -> None:
+def test_a_string_is_not_a_tuple_of_names() -> None:
     with pytest.raises(ConfigError, match=r"sensors must be a tuple .*got 'depth'"):
         resolve_sensors("depth")
     with pytest.raises(ConfigError, match="images must be a tuple of names, got 'depth'"):

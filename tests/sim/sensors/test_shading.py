@@ -52,7 +52,7 @@ def test_the_headlight_is_at_the_eye_and_shines_forward(yaw_rad: float) -> None:
     assert image[200:240, 300:340].mean() > 0.75 * 255
 
 
-def test_the_floor_is_darker_beside_a_box_and_the_wall_far_behind_it_is_not() -> None:
+def test_the_floor_is_darker_next_to_a_box_and_the_wall_far_behind_it_is_not() -> None:
     house = with_box(dark(room(12, 12)), "cabinet_00", centre_m=(2.2, 0, 0.5), half_m=(0.3, 0.3, 0.5))
     pose = Pose(0.0, 0.0, 0.0, 0.0)
     share = picture(house, pose, replace(FAST, shadows=0.0)) / np.maximum(picture(house, pose, PLAIN), 1.0)
@@ -62,7 +62,7 @@ def test_the_floor_is_darker_beside_a_box_and_the_wall_far_behind_it_is_not() ->
     assert share[215, 150:490].min() > 0.97  # the wall 4 m behind, left and right of the box and above it
 
 
-def test_a_lamp_casts_a_soft_shadow_and_none_of_its_own_shade() -> None:
+def test_a_lamp_casts_a_soft_shadow_and_its_own_shade_casts_no_shadow() -> None:
     house = dark(room(8, 8), headlight=0.1)
     house.spec.worldbody.add_light(pos=(2.0, 0.0, 2.3), dir=(0, 0, -1), diffuse=[0.7] * 3, cutoff=80, castshadow=True)
     shaded = with_box(house, "lighting_00", centre_m=(2.0, 0, 2.1), half_m=(0.3, 0.3, 0.02))
@@ -99,7 +99,7 @@ def test_colours_do_not_depend_on_the_other_images() -> None:
     np.testing.assert_array_equal(picture(house, pose), picture(house, pose, FAST, ("rgb", "depth", "semantic")))
 
 
-def test_what_emits_light_keeps_its_colour() -> None:
+def test_an_emissive_material_keeps_its_colour() -> None:
     house = dark(room(8, 8))
     glow = house.spec.add_material(name="glow", rgba=(1, 1, 1, 1), emission=1.0)
     body = house.spec.worldbody.add_body(name="window_00", pos=(3.9, 0, 1.0))

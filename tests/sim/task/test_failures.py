@@ -30,7 +30,7 @@ def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = 
     share = np.full(n + 1, UNSEEN, np.float32)
     if seen_at is not None:
         share[seen_at] = SEEN
-    told = {"distance_m": np.full(n + 1, 9.0, np.float32), "nearest_instance_m": 9.0, "goal_on_storey": True} | known
+    values = {"distance_m": np.full(n + 1, 9.0, np.float32), "nearest_instance_m": 9.0, "goal_on_storey": True} | known
     return Trajectory(
         poses=poses,
         actions=np.ones(n, np.uint8),
@@ -41,7 +41,7 @@ def walk(places_m: np.ndarray, *, end: str = "max_steps", seen_at: int | None = 
         contacts=np.zeros((0, 3), np.float32),
         success=False,
         end_reason=end,
-        **told,  # pyright: ignore[reportArgumentType]
+        **values,  # pyright: ignore[reportArgumentType]
     )
 
 
@@ -50,7 +50,7 @@ def line(steps: int, speed_m: float = 0.2) -> np.ndarray:
 
 
 def shuttle(steps: int, length_m: float = 3.0, speed_m: float = 0.2) -> np.ndarray:
-    """Returns positions to and fro on one line."""
+    """Returns positions that go back and forth on one line."""
     along = np.abs((speed_m * np.arange(steps + 1) + length_m) % (2 * length_m) - length_m)
     return np.c_[along, np.zeros(steps + 1)]
 
@@ -100,7 +100,7 @@ def test_a_frame_that_was_not_rendered_does_not_count_among_those_faced() -> Non
     assert cause_of_failure(replace(episode, goal_share=share)) == "stopped_short"
 
 
-def test_a_stop_beside_an_instance_behind_a_wall_that_was_never_seen_is_a_false_detection() -> None:
+def test_a_stop_near_an_unseen_instance_behind_a_wall_is_a_false_detection() -> None:
     assert cause_of_failure(walk(line(30), end="stop", nearest_instance_m=0.4)) == "false_detection"
 
 
@@ -172,13 +172,13 @@ def test_the_first_problem_counts_between_trap_and_missed_goal() -> None:
     assert cause_of_failure(walk(held_at_300, seen_at=400)) == "trapped"
 
 
-def test_a_robot_that_drives_to_and_fro_is_in_a_loop() -> None:
+def test_a_robot_that_drives_back_and_forth_is_in_a_loop() -> None:
     assert cause_of_failure(walk(shuttle(500))) == "loop"
     assert cause_of_failure(walk(shuttle(500), seen_at=2)) == "loop"
 
 
 def test_the_second_round_of_a_circle_is_a_loop_and_the_first_is_not() -> None:
-    angle = 0.04 * np.arange(501)  # 5 m from the middle, 157 steps a round
+    angle = 0.04 * np.arange(501)  # 5 m from the centre, 157 steps per round
     circle = 5.0 * np.c_[np.cos(angle), np.sin(angle)]
     begin = first_looping_step(walk(circle))
     assert begin is not None
@@ -197,18 +197,18 @@ def test_a_robot_that_turns_on_the_spot_is_trapped_and_not_in_a_loop() -> None:
     assert first_looping_step(spot) is None
 
 
-def test_a_robot_that_hardly_drives_is_in_no_loop() -> None:
+def test_a_robot_that_hardly_drives_is_not_in_a_loop() -> None:
     assert first_looping_step(walk(shuttle(500, length_m=2.5, speed_m=0.06))) is None  # 9 m in 150 steps
     assert first_looping_step(walk(shuttle(500, length_m=2.5, speed_m=0.07))) is not None
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3, 1.1])
-def test_new_ground_does_not_depend_on_the_direction_and_old_ground_is_not_new_beside_the_old_path(yaw: float) -> None:
+def test_new_ground_does_not_depend_on_the_direction_and_ground_next_to_the_old_path_is_not_new(yaw: float) -> None:
     turn = np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
     there = line(100) @ turn.T
     beside = (line(100) + np.array([0.0, 0.4])) @ turn.T
     new = on_new_ground(np.concatenate([there, beside[::-1]]))
-    assert new[:101].sum() == 1 + 25  # 20 m, one each fourth step of 0.2 m
+    assert new[:101].sum() == 1 + 25  # 20 m, one in every fourth step of 0.2 m
     assert new[101:].sum() <= 1
 
 

@@ -1,4 +1,4 @@
-"""Laws of the metrics."""
+"""Invariants of the metrics."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ FORWARD, LEFT, STOP = Action.MOVE_FORWARD, Action.TURN_LEFT, Action.STOP
 
 
 def bed_room() -> World:
-    """8 x 4 m; a bed whose near edge is at x = 2."""
+    """Returns a room of 8 x 4 m with a bed whose near edge is at x = 2."""
     return World(with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25)))
 
 
@@ -64,7 +64,7 @@ def test_a_stop_one_step_too_early_fails_with_the_distance_that_was_left():
     assert result["soft_spl"] == pytest.approx(1.75 / 2.0, abs=0.02)
 
 
-def test_a_robot_at_the_goal_without_stop_is_no_success():
+def test_a_robot_at_the_goal_without_stop_is_not_a_success():
     world = bed_room()
     task = begin(world, "bed", Pose(1.2, 0.0, 0.0))
     result = act(world, task, LEFT)
@@ -161,12 +161,12 @@ def test_a_goal_that_was_pushed_counts_where_it_was_pushed_to():
         ("sofa", "House 'room' has no 'sofa'. It has: bed."),
     ],
 )
-def test_a_goal_that_cannot_be_is_refused_with_what_there_is(goal, message):
+def test_an_impossible_goal_is_refused_with_the_goals_that_exist(goal, message):
     with pytest.raises(EpisodeError, match=message):
         begin(bed_room(), goal, Pose(-1.0, 0.0, 0.0))
 
 
-def test_a_goal_without_a_way_to_it_is_refused():
+def test_a_goal_without_a_path_to_it_is_refused():
     house = with_box(room(8, 4), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "wall_10", centre_m=(0, 0, 1.25), half_m=(0.05, 2.0, 1.25))
     with pytest.raises(EpisodeError, match="no path from"):
@@ -186,7 +186,7 @@ def test_a_goal_on_another_storey_can_be_asked_for_and_fails_by_stairs():
     assert (result["success"], result["spl"], result["soft_spl"]) == (0.0, 0.0, 0.0)
 
 
-def test_a_stop_right_under_the_goal_is_no_success():
+def test_a_stop_right_under_the_goal_is_not_a_success():
     world = World(two_storeys())
     result = act(world, begin(world, "sofa", Pose(1.5, 1.4, 0.0)), STOP)
     assert (result["success"], result["failure"]) == (0.0, "false_detection")
@@ -207,7 +207,7 @@ def test_a_goal_on_the_other_storey_is_not_found():
     assert (result["success"], result["failure"]) == (0.0, "stairs")
 
 
-def test_an_episode_is_never_drawn_with_its_goal_on_another_storey():
+def test_no_sampled_episode_has_its_goal_on_another_storey():
     with_sofa = World(two_storeys())
     with pytest.raises(EpisodeError, match="on another storey only"):
         draw_start(Task(with_sofa), "sofa", np.random.default_rng(0))
@@ -268,7 +268,7 @@ def test_an_episode_needs_a_step():
         TaskConfig(max_steps=0)
 
 
-def test_what_the_camera_never_shows_is_no_goal():
+def test_an_object_that_no_camera_can_see_is_not_a_goal():
     house = with_box(room(8, 4), "bed_00", centre_m=(2.5, 0, 0.25), half_m=(0.5, 1.0, 0.25))
     house = with_box(house, "sofa_00", centre_m=(-1.5, 1.0, 0.2), half_m=(0.2, 0.2, 0.2), group=3)
     assert GroundTruth(World(house)).goals() == ("bed",)

@@ -1,4 +1,4 @@
-"""The floor area seen and the time to first sight, in houses whose answer is known."""
+"""The floor area seen and the time to first sight, in houses with known values."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ SIDE = math.tan(0.5 * CAMERA.hfov_rad)
 LEFT, FORWARD = Action.TURN_LEFT, Action.MOVE_FORWARD
 
 
-def play(tmp_path, house: House, goal: str, start: Pose, *actions: Action, **options) -> dict:
-    """Plays a few actions in a real environment and returns the last info."""
+def info_after(tmp_path, house: House, goal: str, start: Pose, *actions: Action, **options) -> dict:
+    """Runs a few actions in a real environment and returns the last info."""
     file = tmp_path / "house.xml"
     file.write_text(house.spec.to_xml())
     env = ObjectNavEnv(house=file, sensors=("depth",), **options)
@@ -38,14 +38,14 @@ def play(tmp_path, house: House, goal: str, start: Pose, *actions: Action, **opt
 
 
 def far_room() -> House:
-    """20 x 8 m; a bed at the east end."""
+    """Returns a room of 20 x 8 m with a bed at the east end."""
     return with_box(room(20, 8), "bed_00", centre_m=(9.0, 0, 0.25), half_m=(0.9, 0.9, 0.25))
 
 
 def test_the_first_frame_shows_the_floor_of_the_view_within_the_depth_range(tmp_path):
-    info = play(tmp_path, far_room(), "bed", Pose(-6.0, 0.0, math.pi / 2 - 0.2), max_steps=9)
+    info = info_after(tmp_path, far_room(), "bed", Pose(-6.0, 0.0, math.pi / 2 - 0.2), max_steps=9)
     # y < 4 cuts the view: the wall is 4 m ahead, so look along x, where 5 m are free.
-    ahead = play(tmp_path, far_room(), "bed", Pose(-6.0, 0.0, 0.0), max_steps=9)
+    ahead = info_after(tmp_path, far_room(), "bed", Pose(-6.0, 0.0, 0.0), max_steps=9)
     trapezium_m2 = SIDE * (CAMERA.max_depth_m**2 - NEAR_M**2)
     side_walls_m2 = SIDE * (CAMERA.max_depth_m - 4.0 / SIDE) ** 2
     assert ahead["area_seen_m2"] == pytest.approx(trapezium_m2 - side_walls_m2, rel=0.02)
@@ -55,9 +55,9 @@ def test_the_first_frame_shows_the_floor_of_the_view_within_the_depth_range(tmp_
 
 def test_floor_that_was_seen_before_does_not_count_again_and_new_floor_does(tmp_path):
     start = Pose(-6.0, 0.0, 0.0)
-    once = play(tmp_path, far_room(), "bed", start)
-    turned = play(tmp_path, far_room(), "bed", start, *[LEFT] * 12)
-    twice = play(tmp_path, far_room(), "bed", start, *[LEFT] * 24)
+    once = info_after(tmp_path, far_room(), "bed", start)
+    turned = info_after(tmp_path, far_room(), "bed", start, *[LEFT] * 12)
+    twice = info_after(tmp_path, far_room(), "bed", start, *[LEFT] * 24)
     assert turned["area_seen_m2"] > 2.0 * once["area_seen_m2"]
     assert twice["area_seen_m2"] == pytest.approx(turned["area_seen_m2"], rel=0.02)
     # A full turn shows the ring between the nearest floor and the depth range, cut by the walls 4 m to each side.
@@ -66,16 +66,16 @@ def test_floor_that_was_seen_before_does_not_count_again_and_new_floor_does(tmp_
     most_m2 = np.count_nonzero((reach_m > NEAR_M) & (reach_m < CAMERA.max_depth_m / math.cos(CAMERA.hfov_rad / 2)))
     least_m2 = np.count_nonzero((reach_m > NEAR_M / math.cos(CAMERA.hfov_rad / 2)) & (reach_m < CAMERA.max_depth_m))
     assert 0.0004 * least_m2 < turned["area_seen_m2"] < 0.0004 * most_m2
-    driven = play(tmp_path, far_room(), "bed", start, FORWARD, FORWARD)
+    driven = info_after(tmp_path, far_room(), "bed", start, FORWARD, FORWARD)
     assert driven["area_seen_m2"] == pytest.approx(once["area_seen_m2"] + 0.5 * 8.0, abs=0.6)
     assert driven["area_per_metre"] == pytest.approx(driven["area_seen_m2"] / driven["path_length"])
 
 
 def test_floor_behind_a_wall_or_on_another_storey_is_not_seen(tmp_path):
     house = with_box(far_room(), "wall_10", centre_m=(-3.0, 0, 1.25), half_m=(0.05, 3.0, 1.25))
-    info = play(tmp_path, house, "bed", Pose(-6.0, 0.0, 0.0))
+    info = info_after(tmp_path, house, "bed", Pose(-6.0, 0.0, 0.0))
     assert info["area_seen_m2"] == pytest.approx(SIDE * (2.95**2 - NEAR_M**2), rel=0.03)
-    above = play(tmp_path, two_storeys(), "sofa", Pose(-2.5, 0.0, 0.0, 3.0))
+    above = info_after(tmp_path, two_storeys(), "sofa", Pose(-2.5, 0.0, 0.0, 3.0))
     assert 5.0 < above["area_seen_m2"] < 24.0
 
 
@@ -112,20 +112,20 @@ def test_each_half_of_the_image_shows_the_floor_on_its_side(yaw_rad):
 
 def test_the_first_sight_is_the_number_of_actions_before_the_frame_that_shows_the_goal(tmp_path):
     near = with_box(room(8, 8), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.9, 0.9, 0.25))
-    at_once = play(tmp_path, near, "bed", Pose(0.0, 0.0, 0.0), LEFT, max_steps=50)
+    at_once = info_after(tmp_path, near, "bed", Pose(0.0, 0.0, 0.0), LEFT, max_steps=50)
     assert (at_once["first_seen_step"], at_once["steps_to_first_sight"]) == (0, 0)
     # 180 deg away the bed's near edge is 90 to 105 deg from the axis after 3 turns, in view after 4 or 5.
-    behind = play(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), *[LEFT] * 6, max_steps=50)
+    behind = info_after(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), *[LEFT] * 6, max_steps=50)
     assert behind["first_seen_step"] in (4, 5)
     assert behind["steps_to_first_sight"] == behind["first_seen_step"]
     assert behind["gt_explored"] is True
-    earlier = play(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), *[LEFT] * (behind["first_seen_step"] - 1))
+    earlier = info_after(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), *[LEFT] * (behind["first_seen_step"] - 1))
     assert earlier["gt_explored"] is False
 
 
 def test_a_goal_that_was_never_seen_has_the_step_limit_as_its_time(tmp_path):
     near = with_box(room(8, 8), "bed_00", centre_m=(3.0, 0, 0.25), half_m=(0.9, 0.9, 0.25))
-    info = play(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), Action.STOP, max_steps=50)
+    info = info_after(tmp_path, near, "bed", Pose(0.0, 0.0, math.pi), Action.STOP, max_steps=50)
     assert "first_seen_step" not in info
     assert info["steps_to_first_sight"] == 50
     assert info["gt_explored"] is False

@@ -39,7 +39,7 @@ def region_in(model, data, labels, goal: str, *, floor_z_m: float = 0.0, camera=
 
 
 def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5, group: int = 0) -> House:
-    """6 x 4 m, cut along x = 0 by a wall from `low_m` to `high_m`; a bed against it on the right side."""
+    """Returns a room of 6 x 4 m with a wall at x = 0 from `low_m` to `high_m` and a bed at its right side."""
     half = 0.5 * (high_m - low_m)
     house = with_box(room(6, 4), wall, centre_m=(0, 0, low_m + half), half_m=(0.05, 2.0, half), group=group)
     return with_box(house, "bed_00", centre_m=(0.55, 0, 0.25), half_m=(0.5, 0.5, 0.25))

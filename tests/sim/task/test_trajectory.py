@@ -21,7 +21,7 @@ STOPPED = Contact("chair_00", "leg", (1.0, 2.0, 0.3), (-1.0, 0.0, 0.0), 0.2, sto
 
 
 def walked(steps: int) -> Trajectory:
-    """A random walk with a collision each third action."""
+    """Returns a random walk with a collision in every third action."""
     rng = np.random.default_rng(steps)
     recorder = Recorder(Pose(0.0, 0.0, 0.0), distance_m=8.0, goal_on_storey=True)
     recorder.look(0.0)
@@ -145,7 +145,7 @@ def _pickled(file: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("harm", "told"),
+    ("harm", "message"),
     [
         (lambda file: file.unlink(), "--record"),
         (lambda file: file.write_text("no archive"), "is not a trajectory"),
@@ -157,10 +157,10 @@ def _pickled(file: Path) -> None:
         (_place_of_one_number, "stop_target_xy_m"),
     ],
 )
-def test_a_file_that_is_no_trajectory_is_named(harm, told: str, tmp_path: Path) -> None:
+def test_a_file_that_is_no_trajectory_is_named(harm, message: str, tmp_path: Path) -> None:
     file = tmp_path / "e.npz"
     write_trajectory(file, walked(5), {})
     harm(file)
-    with pytest.raises(ConfigError, match=told) as complaint:
+    with pytest.raises(ConfigError, match=message) as refusal:
         read_trajectory(file)
-    assert "e.npz" in str(complaint.value)
+    assert "e.npz" in str(refusal.value)

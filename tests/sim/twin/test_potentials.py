@@ -40,7 +40,7 @@ TWO_PARTS = """
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    """Two rooms behind each other, with a bed in the second one."""
+    """Returns the plan of two rooms in a row, with a bed in the second one."""
     (exported,) = export_plans(bed_behind_a_wall(), {})
     return exported
 
@@ -209,7 +209,7 @@ def test_choices_compare_the_best_predicted_frontier_with_the_best_one():
     )
     area, objects = Choices(), Choices()
     add_choices(batch, guess, area, objects)
-    assert (area.count, objects.count) == (1, 1)  # of the other categories every frontier is as good
+    assert (area.count, objects.count) == (1, 1)  # for the other categories all frontiers are equal
     assert area.hits == {"predicted": 0.0, "random": pytest.approx(1 / 3), "nearest": 0.0}
     assert objects.hits == {"predicted": 1.0, "random": pytest.approx(1 / 3), "nearest": 0.0}
     assert objects.shares()["random_potential"] == pytest.approx((0.4 + 0.8) / 3 / 0.8)

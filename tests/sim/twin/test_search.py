@@ -18,7 +18,7 @@ from tests.helpers.worlds import bed_behind_a_wall
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    """Two rooms behind each other, with a bed in a corner of the second one."""
+    """Returns the plan of two rooms in a row, with a bed in a corner of the second one."""
     (exported,) = export_plans(bed_behind_a_wall(-0.7), {})
     return exported
 
@@ -36,7 +36,7 @@ def test_a_search_ends_with_a_stop_in_reach_of_the_goal(plan: Plan, yaw_rad: flo
 
 
 def test_it_does_not_know_where_the_goal_is(plan: Plan, monkeypatch: pytest.MonkeyPatch):
-    """Until a goal is in view, the search for it and a search in which nothing ever comes into view are the same."""
+    """Until a goal is in view, the search equals one in which no goal ever comes into view."""
     start = Pose(-3.5, 1.0, 2.0)
     camera = PlanCamera(plan)
     poses, actions = search(camera, "bed", start, np.random.default_rng(0))
@@ -49,7 +49,7 @@ def test_it_does_not_know_where_the_goal_is(plan: Plan, monkeypatch: pytest.Monk
     blind = search(PlanCamera(plan), "bed", start, np.random.default_rng(0))[1]
     assert blind[:in_view] == actions[:in_view]
     assert blind[: len(actions)] != actions
-    monkeypatch.setattr("sim.twin.walks.EXPLORED_SHARE", -1.0)  # it would know at once
+    monkeypatch.setattr("sim.twin.walks.EXPLORED_SHARE", -1.0)  # it would see the goal at once
     assert search(PlanCamera(plan), "bed", start, np.random.default_rng(0))[1][:in_view] != actions[:in_view]
 
 

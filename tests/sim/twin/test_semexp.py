@@ -1,4 +1,4 @@
-"""The twin for training the global policy of semexp, and what it shares with the explorer in play."""
+"""The twin for training the global policy of semexp, and the code that it shares with the explorer in episodes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.helpers.worlds import bed_behind_a_wall, with_box
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory) -> Path:
-    """A folder with the plan of two rooms behind each other, with a bed in the second one and a sofa in the first."""
+    """Returns a folder with the plan of two rooms in a row, with a bed in the second one and a sofa in the first."""
     folder = tmp_path_factory.mktemp("plans")
     house = with_box(bed_behind_a_wall(), "sofa_00", centre_m=(-2.0, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
     (plan,) = export_plans(house, {})
@@ -69,8 +69,8 @@ def test_the_reward_of_an_episode_is_the_path_to_the_target_and_the_floor_seen(p
     assert plain.step(cell)[1] == pytest.approx(0.1 * (before - plain.episode.distance_m()))
 
 
-def test_the_policy_is_given_the_same_in_training_and_in_play(plans: Path):
-    """The agent plays the first goal of a policy that the environment is then given; both then see the same map."""
+def test_the_policy_gets_the_same_input_in_training_and_in_episodes(plans: Path):
+    """The agent follows the first goal of a policy, then the environment gets the same goal; both see the same map."""
     given: list[PolicyInput] = []
 
     def policy(seen: PolicyInput) -> np.ndarray:

@@ -29,7 +29,7 @@ from tests.helpers.worlds import bed_behind_a_wall, room, with_box
 
 @pytest.fixture(scope="module")
 def plans(tmp_path_factory) -> Path:
-    """A folder with the plan of two rooms behind each other, with a bed in the second one."""
+    """Returns a folder with the plan of two rooms in a row, with a bed in the second one."""
     folder = tmp_path_factory.mktemp("plans")
     (plan,) = export_plans(bed_behind_a_wall(), {})
     write_plan(folder / "flat.npz", plan)
@@ -118,7 +118,7 @@ def test_a_goal_that_the_last_frame_shows_first_ends_the_episode_at_sight(plans)
     assert (whole["end_reason"], whole["first_seen_step"]) == ("max_steps", seen_step)
 
 
-def test_a_start_is_drawn_for_the_goal_and_a_goal_for_the_start(tmp_path):
+def test_a_start_is_sampled_for_the_goal_and_a_goal_for_the_start(tmp_path):
     house = with_box(room(9, 5), "bed_00", centre_m=(3.4, 1.2, 0.3), half_m=(0.9, 0.9, 0.3))
     house = with_box(house, "sofa_00", centre_m=(-3.4, -1.8, 0.3), half_m=(0.9, 0.4, 0.3))
     (plan,) = export_plans(house, {})
@@ -149,7 +149,7 @@ def test_a_start_is_drawn_for_the_goal_and_a_goal_for_the_start(tmp_path):
         env.reset(options={"start": Pose(90.0, 0.0, 0.0), "goal": "bed"})
 
 
-def test_what_reset_makes_is_refused_before_it(plans):
+def test_properties_that_reset_creates_are_refused_before_reset(plans):
     env = TwinEnv(plans)
     for name in ("episode", "navmap", "window"):
         with pytest.raises(gymnasium.error.ResetNeeded, match="Call reset"):
@@ -162,7 +162,7 @@ def test_what_reset_makes_is_refused_before_it(plans):
         env.reset(options={"plan": 1})
 
 
-def test_errors_say_what_there_is(plans):
+def test_errors_list_the_names_that_exist(plans):
     with pytest.raises(ConfigError, match="No plan in"):
         TwinEnv(plans / "nowhere")
     with pytest.raises(EpisodeError, match=r"has no goal 'sofa'\. It has: bed"):

@@ -20,7 +20,7 @@ from sim.geometry.pose import Pose
 from sim.interface import MPCAT40_ID, Action, CameraModel, ConfigError
 from sim.viewers import live, rerun_log, selection
 from sim.viewers.viewer import VIEWER_IMAGES, Viewer
-from tests.helpers.players import Script
+from tests.helpers.runners import Script
 from tests.helpers.worlds import sofa_room, with_box, with_movable
 
 SMALL = CameraModel(width_px=160, height_px=120)
@@ -39,13 +39,13 @@ def env(tmp_path: Path) -> Iterator[ObjectNavEnv]:
     env.close()
 
 
-def played(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
+def line_of(env: ObjectNavEnv, *viewers: Viewer) -> dict[str, Any]:
     line = play_episode(env, Script(ACTIONS), EPISODE, seed=0, viewers=viewers)
     return {key: value for key, value in line.items() if key not in TIMES}
 
 
 class Handle:
-    """What `launch_passive` gives, without a window."""
+    """A replacement of the result of `launch_passive`, without a window."""
 
     def __init__(self, model: Any, data: Any) -> None:
         self.model, self.data, self.cam, self.open = model, data, SimpleNamespace(), True
@@ -84,9 +84,9 @@ def windows(monkeypatch: pytest.MonkeyPatch) -> list[Handle]:
 def test_the_viewer_shows_each_action_glide_to_where_it_led_and_changes_no_line(
     env: ObjectNavEnv, windows: list[Handle]
 ) -> None:
-    plain = played(env)
+    plain = line_of(env)
     view = live.LiveView()
-    assert played(env, view) == plain
+    assert line_of(env, view) == plain
     (window,) = windows
     assert len(window.shown) > 3 * len(ACTIONS)
     assert np.array_equal(window.shown[-1], env.scene.world.data.qpos)
@@ -124,19 +124,19 @@ def test_each_house_has_its_window_but_one_that_was_closed_stays_closed_and_the_
         monkeypatch.setattr(env, "_scenes", SceneCache(env._scenes._make))
 
     view = live.LiveView()
-    plain = played(env, view)
-    played(env, view)
+    plain = line_of(env, view)
+    line_of(env, view)
     assert len(windows) == 1
     next_house()
-    played(env, view)
+    line_of(env, view)
     assert [window.open for window in windows] == [False, True]
     windows[1].close()
     next_house()
-    assert played(env, view) == plain
+    assert line_of(env, view) == plain
     assert len(windows) == 2
 
 
-def test_without_a_display_view_is_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_view_without_a_display_gives_one_clear_line(monkeypatch: pytest.MonkeyPatch) -> None:
     import glfw
 
     monkeypatch.setattr(glfw, "init", lambda: False)
@@ -151,25 +151,25 @@ def options(**given: Any) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "message"),
     [
         ({"view": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "workers": 2}, "--workers 1"),
         ({"rerun": True, "rerun_save": True}, "only one of them"),
     ],
 )
-def test_what_does_not_go_together_is_told(given: dict[str, Any], told: str) -> None:
-    with pytest.raises(ConfigError, match=told):
+def test_options_that_exclude_each_other_are_reported(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
         selection.check(options(**given))
 
 
-def test_rerun_that_is_not_installed_is_told_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_rerun_the_message_names_the_package_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ConfigError, match=r"pip install .*\[rerun\]"):
         selection.check(options(rerun_save=True))
 
 
-def test_rerun_without_a_screen_or_a_viewer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rerun_without_a_screen_or_a_viewer_gives_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rerun_log.importlib.util, "find_spec", lambda name: object())
     monkeypatch.setattr(rerun_log, "_viewer_listens", lambda: False)
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
@@ -193,8 +193,8 @@ def test_points_lie_on_the_walls_they_were_seen_on(env: ObjectNavEnv) -> None:
 
 def test_a_recording_holds_poses_images_points_and_map_and_changes_no_line(env: ObjectNavEnv, tmp_path: Path) -> None:
     pytest.importorskip("rerun", reason="the extra `rerun` (170 MB) is not installed")
-    plain = played(env)
-    assert played(env, rerun_log.RerunLog(tmp_path)) == plain
+    plain = line_of(env)
+    assert line_of(env, rerun_log.RerunLog(tmp_path)) == plain
     (file,) = (tmp_path / "rerun").iterdir()
     assert file == rerun_log.rerun_file(tmp_path, EPISODE.episode_id)
     content = file.read_bytes()

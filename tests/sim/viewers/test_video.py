@@ -1,4 +1,4 @@
-"""Videos of episodes: whole, readable, and without a trace in the results."""
+"""Videos of episodes: complete, readable, and without influence on the results."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ from sim.viewers.viewer import VIEWER_IMAGES, Moment
 from sim.world.world import World
 from stubborn.drawing.map_painter import AgentMapPainter
 from tests.helpers import browser
-from tests.helpers.players import Script
 from tests.helpers.results import lines_of
+from tests.helpers.runners import Script
 from tests.helpers.worlds import room, sofa_room, with_box
 
 WHOLE_END_FRAMES = video.END_FRAMES
@@ -63,7 +63,7 @@ def env(house: Path) -> Iterator[ObjectNavEnv]:
 
 @pytest.fixture(autouse=True)
 def short_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A short end in this process: encoding takes most of the time."""
+    """Uses a short end of the video in this process, because encoding takes most of the time."""
     monkeypatch.setattr(video, "END_FRAMES", 2)
 
 
@@ -85,8 +85,8 @@ def test_filming_changes_no_result_line_with_noise_of_any_sensor(house: Path, tm
     assert len(frames_of(video_file(tmp_path / "filmed", line["episode_id"]))) == line["num_steps"] + video.END_FRAMES
 
 
-def test_a_run_that_goes_on_with_two_workers_films_what_is_left(house: Path, tmp_path: Path) -> None:
-    options = ["--agent", "tests.helpers.players:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+def test_a_run_resumed_with_two_workers_records_the_remaining_episodes(house: Path, tmp_path: Path) -> None:
+    options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
     assert entry([*options, "--episodes", "1"]) == 0
     assert not (tmp_path / "videos").exists()
     assert entry([*options, "--episodes", "3", "--video", "--workers", "2"]) == 0
@@ -112,7 +112,7 @@ def test_a_video_is_h264_in_an_mp4_of_1280_pixels_and_its_name_holds_any_episode
     frames = frames_of(file)
     assert {frame.shape for frame in frames} == {(720, 1280, 3)}
     stop, outcome = (frames[i][: overlay.HEIGHT_PX // 15, 600:].astype(int) for i in (-video.END_FRAMES - 1, -1))
-    assert np.abs(stop - outcome).mean() > 3.0  # the outcome stands where the step stood
+    assert np.abs(stop - outcome).mean() > 3.0  # the outcome is shown in place of the step
 
 
 def test_a_video_plays_in_a_browser_to_its_end_and_can_be_searched(env: ObjectNavEnv, tmp_path: Path) -> None:
@@ -167,7 +167,7 @@ def test_an_episode_that_is_not_ended_leaves_nothing(env: ObjectNavEnv, tmp_path
     assert list((tmp_path / "videos").iterdir()) == []
 
 
-def test_what_a_killed_process_left_behind_goes_when_its_episode_is_filmed_again(
+def test_partial_files_of_a_killed_process_are_removed_when_the_episode_is_recorded_again(
     env: ObjectNavEnv, tmp_path: Path
 ) -> None:
     (tmp_path / "videos").mkdir()
@@ -177,7 +177,7 @@ def test_what_a_killed_process_left_behind_goes_when_its_episode_is_filmed_again
     assert list((tmp_path / "videos").iterdir()) == [video_file(tmp_path, EPISODE.episode_id)]
 
 
-def test_a_folder_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
+def test_an_unwritable_folder_gives_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "videos").write_text("a file where the folder should be")
     with pytest.raises(ConfigError, match="Cannot write the video"):
         VideoWriter(video_file(tmp_path, "e"), size_px=(64, 48))
@@ -188,7 +188,7 @@ Box = tuple[int, int, int, int]
 
 @pytest.fixture
 def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
-    """Every text that is written into a frame, and where."""
+    """Records every text that is written into a frame, and its position."""
     boxes: list[tuple[str, Box]] = []
     real = cv2.putText
 
@@ -203,7 +203,7 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Box]]:
 
 
 def crowded_moment() -> Moment:
-    """All categories in sight at once."""
+    """Returns a moment with all categories in view."""
     semantic = np.repeat(np.arange(len(MPCAT40), dtype=np.uint8), 20)[None].repeat(615, axis=0)
     images = {
         "semantic": semantic,
@@ -294,7 +294,7 @@ def test_the_robot_stands_in_the_middle_of_the_chase_view_and_a_wall_behind_it_d
     assert before_a_wall > 0.4  # without the cut, the wall at x = -3 m would cover it
 
 
-def test_what_the_agent_saw_is_shown_and_the_truth_where_it_saw_nothing() -> None:
+def test_an_observed_image_is_shown_and_the_true_one_if_it_was_not_observed() -> None:
     truth = {"rgb": np.zeros((2, 2, 3), np.uint8), "depth": np.ones((2, 2), np.float32)}
     noisy = np.full((2, 2), 2.0, np.float32)
     moment = Moment(step=1, observation={"depth": noisy}, images=truth, action=Action.STOP)
@@ -309,7 +309,7 @@ def test_no_return_is_black_and_near_is_brighter_than_far() -> None:
     assert near.sum() > far.sum() > 0
 
 
-def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(env: ObjectNavEnv) -> None:
+def test_the_floor_plan_shows_goal_robot_path_and_the_free_space_of_the_task(env: ObjectNavEnv) -> None:
     env.reset(options={"episode": EPISODE})
     view = TopView(env)
     before = view.paint(300)
@@ -319,7 +319,7 @@ def test_the_floor_plan_shows_goal_robot_and_way_and_what_the_task_calls_free(en
         env.step(Action.MOVE_FORWARD)
     assert (32, 84, 190) in {tuple(colour) for colour in view.paint(300).reshape(-1, 3).tolist()}
     sofa = np.argwhere((before == (56, 158, 80)).all(axis=2)).mean(axis=0)
-    assert sofa[1] > 200  # in the east, which is right
+    assert sofa[1] > 200  # in the east, which is on the right
     assert sofa[0] == pytest.approx(150, abs=8)
 
 
@@ -362,7 +362,7 @@ def test_a_video_that_the_disk_cannot_hold_is_an_error_and_no_file(tmp_path: Pat
 
 
 @pytest.mark.parametrize("failure", [av.error.ExternalError(1, "It broke"), MemoryError(), av.error.BugError(2, "A")])
-def test_each_error_of_the_encoder_is_told_and_leaves_no_file(
+def test_each_error_of_the_encoder_is_reported_and_leaves_no_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: Exception
 ) -> None:
     def fail(*_: object, **__: object) -> None:
@@ -425,7 +425,7 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
         ({"end_reason": "fallen", "failure": "stairs"}, 3.0, True, "drove over an edge"),
     ],
 )
-def test_the_end_is_explained_by_what_happened(
+def test_the_explanation_of_the_end_names_its_cause(
     line: dict, nearest_m: float | None, detects: bool, expected: str
 ) -> None:
     whole = {"success": 0.0, "spl": 0.5, "num_steps": 9, "path_length": 3.0, "shortest_path": 2.0} | line
@@ -435,7 +435,7 @@ def test_the_end_is_explained_by_what_happened(
 
 
 @pytest.mark.parametrize("semantics", ["gt", "noisy"])
-def test_what_the_agent_perceives_can_be_asked_for_again_without_a_change(house: Path, semantics: str) -> None:
+def test_reading_the_agents_perception_twice_changes_nothing(house: Path, semantics: str) -> None:
     truth = (*VIEWER_IMAGES, "geom")
     env = ObjectNavEnv(house=house, sensors=(), truth=truth, camera=CameraModel(width_px=64, height_px=48))
     segmenter = make_segmenter(semantics, env)

@@ -1,4 +1,4 @@
-"""The controls of the page: who drives, when an action is due, and what is refused."""
+"""The controls of the page: the driver, the time of an action, and refused messages."""
 
 from __future__ import annotations
 
@@ -97,6 +97,6 @@ def test_a_new_wish_an_end_or_a_closing_server_interrupts_the_episode(end) -> No
         {"do": ["pause"]},
     ],
 )
-def test_anything_else_is_refused(message: dict) -> None:
+def test_other_messages_are_refused(message: dict) -> None:
     with pytest.raises(ConfigError):
         Controls().obey(message)

@@ -1,4 +1,4 @@
-"""The agent of the page: it states the place of its own STOP and none of a person's."""
+"""The agent of the page: it states a place for its own STOP, and no place for the STOP of a person."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Stops:
 
 
 class StopsThere(Stops):
-    """It also states for which place."""
+    """It also states the place for which it stops."""
 
     def stop_target_xy_m(self) -> tuple[float, float]:
         return 1.0, 2.0

@@ -1,4 +1,4 @@
-"""`python -m sim.web` as its users meet it: in headless Chromium, with a second client, and with hostile requests."""
+"""`python -m sim.web` as users run it: in headless Chromium, with a second client, and with hostile requests."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def frame_of(socket: Any) -> tuple[dict[str, Any], bytes]:
     return json.loads(message[4 : 4 + length]), message[4 + length :]
 
 
-# ---- what is refused
+# ---- refused requests
 
 
 def test_other_hosts_other_origins_and_sockets_of_other_pages_are_refused(server: Server) -> None:
@@ -173,7 +173,7 @@ def test_only_the_page_and_files_of_runs_are_served(server: Server) -> None:
         json.dumps({"do": "start", **WISH, "agent": "oracle", "semantics": ["gt"]}),
     ],
 )
-def test_what_does_not_ship_with_the_package_cannot_be_started(server: Server, message: str) -> None:
+def test_commands_that_are_not_in_the_package_cannot_be_started(server: Server, message: str) -> None:
     with server.connect() as socket:
         socket.send(message)
         answers = (json.loads(socket.recv(timeout=10)) for _ in range(5))
@@ -212,7 +212,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
     browser.click("#close-outcome")
     assert browser.run(closing)
     assert browser.run("return document.getElementById('doing').textContent").startswith("The STOP counts")
-    with server.connect():  # another page tells this one the same end again
+    with server.connect():  # another page sends this page the same end again
         wait_for(lambda: "2 pages" in browser.run("return document.getElementById('link').textContent"))
         assert browser.run(closing)
     drawn = browser.run("""
@@ -223,7 +223,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
         }).map((figure) => figure.dataset.name);
     """)
     assert {"camera", "chase", "plan", "semantic", "depth"} <= set(drawn)
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
     assert all(address.startswith((server.address, "blob:", "data:")) for address in browser.requests())
 
 
@@ -258,9 +258,10 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
         assert browser.run("return document.querySelector('#driver').textContent") == "stubborn"
         browser.click('[data-action="0"]')
         ended = state_of(second, "ended")
-    told = ended["outcome"]["sentence"]  # a person's STOP is no false detection; the agent may have driven near the bed
-    assert "came too early" in told or "The STOP counts" in told
-    assert browser.complaints() == []
+    # The STOP of a person is not a false detection. The agent may have driven near the bed.
+    sentence = ended["outcome"]["sentence"]
+    assert "came too early" in sentence or "The STOP counts" in sentence
+    assert browser.console_errors() == []
 
 
 def frame_now(browser: Browser) -> int:
@@ -293,7 +294,7 @@ def test_a_page_that_was_left_is_not_counted_and_the_back_button_brings_it_back(
     browser.open(tmp_path / "other.html")
     browser.visit(f"{server.address}/#again")
     wait_for(lambda: browser.run(link).startswith("connected"))
-    time.sleep(0.3)  # a page that were counted would be told at once
+    time.sleep(0.3)  # a counted page would get the state at once
     assert browser.run(link) == "connected"
     browser.run("history.go(-2)")
     wait_for(lambda: browser.run("return location.hash") == "")
@@ -344,7 +345,7 @@ def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Bro
     assert [("Video" in row) for row in rows] == [True, False, False]
     assert "error" in rows[2]
     assert "misc" not in rows[2]
-    assert browser.complaints() == []
+    assert browser.console_errors() == []
 
 
 def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser) -> None:
@@ -364,7 +365,7 @@ def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser
         wait_for(lambda: browser.run(large))
         browser.run("const film = document.querySelector('video'); film.preload = 'auto'; film.load();")
         wait_for(lambda: browser.run("return document.querySelector('video').readyState"))
-        assert browser.complaints() == []
+        assert browser.console_errors() == []
     finally:
         server.kill()
 
@@ -393,7 +394,7 @@ def test_the_page_comes_back_when_the_server_is_killed_and_started_again(
     assert browser.run("return document.body.dataset.phase") == "idle"
 
 
-def test_a_port_in_use_is_told_in_a_sentence(server: Server) -> None:
+def test_a_port_in_use_gives_one_sentence(server: Server) -> None:
     command = [sys.executable, "-m", "sim.web", "--port", str(server.port)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")

@@ -13,13 +13,13 @@ def table(house: House, *, x_m: float = 0.0, z_m: float = 0.4, name: str = "tabl
 
 
 def plant_behind_a_bed() -> House:
-    """The robot comes within 0.78 m of the plant: the bed's front is at x = 2.1 m and the plant begins at 2.7 m."""
+    """Returns a room in which the robot gets within 0.78 m of a plant (from x = 2.7 m) behind a bed (from 2.1 m)."""
     house = with_box(room(6, 4), "bed_00", centre_m=(2.3, 0.0, 0.5), half_m=(0.2, 2.0, 0.5))
     return with_box(house, "plant_00", centre_m=(2.8, 0.0, 0.2), half_m=(0.1, 0.1, 0.2))
 
 
 def room_with_a_passage(width_m: float) -> House:
-    """A room of 6 x 4 m divided by two beds with a passage between them."""
+    """Returns a room of 6 x 4 m divided by two beds with a passage between them."""
     house, half_m = room(6, 4), 0.25 * (4.0 - width_m)
     for number, side in enumerate((1.0, -1.0)):
         centre_m = (-0.8, side * (0.5 * width_m + half_m), 0.5)

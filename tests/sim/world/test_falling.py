@@ -1,4 +1,4 @@
-"""A robot that drives over an edge falls, one that drives over a threshold does not, and the episode says so."""
+"""A robot falls over an edge but not over a threshold, and the episode records it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_a_robot_that_drives_over_an_edge_has_fallen_when_its_axle_is_past_it(ba
 
 
 @pytest.mark.parametrize("drop_m", [0.025, 0.04])
-def test_a_threshold_is_no_edge(drop_m):
+def test_a_threshold_is_not_an_edge(drop_m):
     assert not any(falls(World(ledge(drop_m)), Pose(-0.7, 0.0, 0.0), 5))
 
 

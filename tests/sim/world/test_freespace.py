@@ -187,7 +187,7 @@ OPEN_SPACE = free_space(room(6, 4))
 OPEN_DISTANCE = OPEN_SPACE.geodesic(point(OPEN_SPACE, 0.001, 0.001))
 
 
-def test_a_position_just_inside_an_obstacle_has_a_distance_and_one_deep_inside_has_none():
+def test_a_position_just_inside_an_obstacle_has_a_distance_and_one_deep_inside_does_not():
     space = free_space(with_box(room(6, 4), "bed_00", centre_m=(1.5, 0, 0.3), half_m=(1.0, 1.0, 0.3)))
     distance = space.geodesic(point(space, -1.0, 0.0))
     assert space.distance_at(distance, 0.5 - 0.12, 0.0) == pytest.approx(1.38, abs=0.03)
@@ -254,7 +254,7 @@ def test_nothing_is_free_over_a_hole_nor_where_the_disc_overhangs_its_edge():
         assert space.is_free(x_m, 0.0) == free
 
 
-def test_a_seam_between_two_floors_is_no_edge():
+def test_a_seam_between_two_floors_is_not_an_edge():
     house = House("seam", mujoco.MjSpec())
     for number, x in enumerate((-1.01, 1.01)):
         house = with_box(house, f"floor_{number:02d}", centre_m=(x, 0, -0.05), half_m=(1, 1, 0.05))

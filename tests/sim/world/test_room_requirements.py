@@ -1,4 +1,4 @@
-"""Rooms must have the furniture of their kind, and the docs say which."""
+"""Rooms must have the furniture of their kind, which the docs list."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DOCS = Path(__file__).parents[3] / "docs" / "houses.md"
 
 
 def kitchen(pieces: Mapping[str, tuple[float, float]], *, storey_m: float = 0.0) -> House:
-    """A room of 6 x 4 m with a site of kind kitchen `storey_m` up, and boxes: name to x and longest side."""
+    """Returns a kitchen of 6 x 4 m at height `storey_m` with these boxes (name: x and longest side)."""
     house = room(6, 4)
     site = house.spec.site("room_living_00")
     site.name, site.pos = "room_kitchen_00", (0.0, 0.0, storey_m + 1.25)
@@ -43,7 +43,7 @@ def test_a_missing_piece_is_reported(piece: str, fault: str) -> None:
     assert faults(kitchen(rest)) == [f"room_kitchen_00 {fault}"]
 
 
-def test_a_toaster_is_no_large_appliance() -> None:
+def test_a_toaster_is_not_a_large_appliance() -> None:
     (fault,) = faults(kitchen(WHOLE | {"appliances_01": (1.0, 0.25)}))
     assert "has 1 of 2 large appliances" in fault
 

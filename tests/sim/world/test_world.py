@@ -178,7 +178,7 @@ def test_a_platform_is_a_level_whatever_the_rule_says_of_storeys():
         assert world.pose.floor_z_m == 0.5
 
 
-def test_a_rug_is_no_storey():
+def test_a_rug_is_not_a_storey():
     world = World(with_box(open_floor(), "floor_01", centre_m=(0, 0, 0.005), half_m=(0.5, 0.5, 0.005)))
     world.reset(ORIGIN)
     assert world.pose.floor_z_m == 0.0

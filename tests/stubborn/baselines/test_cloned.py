@@ -1,4 +1,4 @@
-"""The cloned policy: its input, its memory, the streams it learns from, and the agent."""
+"""The cloned policy: its input, its memory, the streams of its training, and the agent."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ BED = GOAL_CATEGORIES.index("bed")
 
 
 def shown(n: int, *, seed: int = 0) -> LabelledSteps:
-    """A demonstration of n random steps."""
+    """Returns a demonstration of n random steps."""
     rng = np.random.default_rng(seed)
     actions = rng.integers(1, 4, n).astype(np.uint8)
     actions[-1] = Action.STOP
@@ -43,7 +43,7 @@ def shown(n: int, *, seed: int = 0) -> LabelledSteps:
 
 
 def logits_of(net: ClonedNet, steps: Steps, parts: int = 1) -> np.ndarray:
-    """The logits of one demonstration that is given in some parts, one after the other."""
+    """Returns the logits of one demonstration that is given in several consecutive parts."""
     state, found = None, []
     arrays = (steps.depth, steps.categories, steps.motion, steps.before)
     for pieces in zip(*(np.array_split(array, parts) for array in arrays), strict=True):
@@ -79,11 +79,11 @@ def test_the_small_image_shows_the_middles_of_its_blocks():
 def test_motion_is_measured_in_commanded_motions():
     start = Pose(1.0, 0.0, math.radians(90.0))
     moved = motion_of(Pose(1.0, 0.125, math.radians(120.0)), start, 50)
-    told = dict(zip(MOTION, moved.tolist(), strict=True))
-    assert told["moved ahead"] == pytest.approx(0.5)
-    assert told["moved left"] == pytest.approx(0.0, abs=1e-6)
-    assert told["turned"] == pytest.approx(1.0)
-    assert (told["ahead"], told["left"], told["steps done"]) == pytest.approx((0.1, 0.0125, 0.1))
+    inputs = dict(zip(MOTION, moved.tolist(), strict=True))
+    assert inputs["moved ahead"] == pytest.approx(0.5)
+    assert inputs["moved left"] == pytest.approx(0.0, abs=1e-6)
+    assert inputs["turned"] == pytest.approx(1.0)
+    assert (inputs["ahead"], inputs["left"], inputs["steps done"]) == pytest.approx((0.1, 0.0125, 0.1))
     np.testing.assert_allclose(motion_of(Pose(0.0, 0.0, 0.0), None, 0), [0, 0, 1, 0, 0, 0, 0, 0])
 
 
@@ -169,10 +169,10 @@ def test_the_agent_repeats_itself_with_the_same_seed_and_forgets_between_episode
     first, second = actions_of(agent, 1), actions_of(agent, 2)
     assert first != second
     assert actions_of(agent, 1) == first
-    assert set(first) == set(Action)  # the untrained policy does everything
+    assert set(first) == set(Action)  # the untrained policy samples all actions
 
 
-def test_the_stop_can_be_bound_to_its_probability(net: ClonedNet, tmp_path: Path):
+def test_a_stop_can_require_a_probability(net: ClonedNet, tmp_path: Path):
     assert Action.STOP not in actions_of(agent_with(net, tmp_path, stop_above=0.99), 0)
     assert set(actions_of(agent_with(net, tmp_path, stop_above=0.01), 0)) == {Action.STOP}
     with pytest.raises(ConfigError, match="stop_above"):

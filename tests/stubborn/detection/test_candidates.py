@@ -1,4 +1,4 @@
-"""What becomes of a rejected object when its outline changes, and what is too small to be an object."""
+"""Rejected objects whose outline changes, and groups of cells that are too small to be an object."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.stubborn.detection.test_seeker import EXACT, RefuseAll
 
 
 class ByMean:
-    """A verifier that accepts what was seen with a mean score above 0.7."""
+    """A verifier that accepts objects with a mean score above 0.7."""
 
     may_refuse = True
 
@@ -89,14 +89,14 @@ def test_a_real_object_that_touches_a_rejected_fragment_is_judged_by_its_own_cel
     assert seek.judge(navmap, (30, 55)) is True
 
 
-def test_where_there_is_no_candidate_nothing_is_accepted():
+def test_without_a_candidate_nothing_is_accepted():
     navmap, refuse = room(), RefuseAll()
     assert seeker(refuse).judge(navmap, (30, 30)) is False
     assert refuse.asked == []
     assert not navmap.rejected.any()
 
 
-def test_a_few_cells_are_no_object():
+def test_a_few_cells_are_not_an_object():
     navmap = room()
     show(navmap, slice(30, 31), slice(40, 43), 0.9)
     sighting = Sighting(np.array([30]), np.array([41]), np.array([0.5], np.float32))
@@ -107,7 +107,7 @@ def test_a_few_cells_are_no_object():
         assert seek.judge(navmap, (30, 41)) is counts
 
 
-def test_what_is_found_late_beside_a_rejected_object_is_verified():
+def test_a_candidate_found_late_next_to_a_rejected_object_is_verified():
     navmap, refuse = room(), RefuseAll()
     seek = seeker(refuse)
     show(navmap, slice(20, 25), slice(40, 50), 0.4)

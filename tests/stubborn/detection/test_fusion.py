@@ -1,4 +1,4 @@
-"""The fusion of views: what competes, what the distance is worth, its files, and the fit of its parameters."""
+"""The fusion of views: competing categories, the weight of the distance, its files, and the fit of its parameters."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_a_track_without_views_has_no_nan():
     assert p.sum() == pytest.approx(1.0, abs=1e-5)
 
 
-def test_many_views_that_tell_nothing_give_no_nan():
+def test_many_uninformative_views_give_no_nan():
     uniform = np.full((1, 48, CLASSES), 1.0 / CLASSES, np.float32)
     p = Fusion(growth=1.0, sharpness=1.5).probabilities(uniform, np.ones((1, 48), np.float32))
     assert np.isfinite(p).all()
@@ -87,7 +87,7 @@ def test_wrong_parameters_are_refused(wrong: dict):
         Fusion(**wrong)
 
 
-def test_every_kind_of_segmentation_that_errs_has_its_file_and_exact_ones_need_none():
+def test_every_imperfect_segmentation_has_a_file_and_exact_ones_need_no_file():
     assert fusion_for(SegmenterSpec(needs_verification=False)) == Fusion()
     for kind in ("rednet", "noisy"):
         assert fusion_for(SegmenterSpec(kind=kind)) == read_fusion(FOLDER / f"{kind}.json")
@@ -115,7 +115,7 @@ def test_a_wrong_file_is_refused_by_its_field(tmp_path: Path, change: dict, mess
         fusion_for(SegmenterSpec(), tmp_path / "nowhere.json")
 
 
-def test_a_track_is_what_a_quarter_of_its_pixels_are():
+def test_a_track_has_the_category_of_a_quarter_of_its_pixels():
     counts = np.zeros(len(MPCAT40), np.int64)
     counts[MPCAT40.index("wall")], counts[MPCAT40.index("chair")], counts[0] = 60, 30, 10
     assert true_category(counts) == CHAIR
@@ -123,7 +123,7 @@ def test_a_track_is_what_a_quarter_of_its_pixels_are():
     assert true_category(counts) == -1
 
 
-def drawn(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
+def sampled(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) -> list[Sample]:
     """Returns tracks of chairs and tables whose network takes some chairs for tables, or is wrong from far away."""
     rng = np.random.default_rng(0)
     result = []
@@ -141,7 +141,7 @@ def drawn(n: int, *, chairs_called_tables: float = 0.0, far_lies: bool = False) 
 
 
 def test_the_fit_finds_how_often_a_category_is_missed():
-    samples = drawn(400, chairs_called_tables=0.4)
+    samples = sampled(400, chairs_called_tables=0.4)
     fusion = fit(samples)
     assert fusion.offsets["chair"] - fusion.offsets["table"] > 0.3
     p = probabilities(fusion, [each for each in samples if each.mean[0].argmax() == TABLE])
@@ -152,11 +152,11 @@ def test_the_fit_finds_how_often_a_category_is_missed():
 
 
 def test_the_fit_finds_that_far_views_are_worth_less():
-    assert fit(drawn(400, far_lies=True)).ring_weights[3] < 0.3 < fit(drawn(400)).ring_weights[3]
+    assert fit(sampled(400, far_lies=True)).ring_weights[3] < 0.3 < fit(sampled(400)).ring_weights[3]
 
 
-def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
-    samples = drawn(200, far_lies=True)
+def test_the_fit_maximises_the_likelihood_that_the_agent_computes():
+    samples = sampled(200, far_lies=True)
     fusion = fit(samples)
     free = {
         "rings": torch.tensor(np.log(fusion.ring_weights)),
@@ -172,12 +172,12 @@ def test_the_fit_maximises_the_likelihood_of_what_the_agent_computes():
 
 def test_too_few_tracks_are_refused():
     with pytest.raises(ConfigError, match="100 are needed"):
-        fit(drawn(50))
+        fit(sampled(50))
 
 
 def test_each_track_enters_whole_and_in_parts():
     counts = np.zeros((3, len(MPCAT40)), np.int32)
-    counts[:2, MPCAT40.index("chair")] = 50  # the third one was seen by no pixel
+    counts[:2, MPCAT40.index("chair")] = 50  # no pixel shows the third one
     views = np.stack([posterior(chair=0.9)] * 4)
     episode = {
         "house": "a",

@@ -24,7 +24,7 @@ TRACK = 1
 
 
 def evidence(*bearings_rad: float) -> Evidence:
-    """Returns the evidence of a track that was seen well from some directions."""
+    """Returns the evidence of a track that was clearly seen from some directions."""
     result = Evidence(EvidenceConfig(), Fusion(), 2)
     for bearing_rad in bearings_rad:
         at = np.array([2.0 * math.cos(bearing_rad)]), np.array([2.0 * math.sin(bearing_rad)])
@@ -33,7 +33,7 @@ def evidence(*bearings_rad: float) -> Evidence:
 
 
 class Judged:
-    """A track and what is decided on it, step by step."""
+    """A track and the decisions about it, step by step."""
 
     def __init__(
         self, *, exact: bool = False, looks: int = 0, distance_m: float = 2.0, max_steps: int = MAX_STEPS
@@ -58,11 +58,11 @@ class Judged:
 @pytest.mark.parametrize(
     ("p", "bearings_rad", "expected"),
     [
-        (0.95, (), "accepted"),  # the probability knows how often it was seen, and from where
+        (0.95, (), "accepted"),  # the probability depends on the number of views and their directions
         (0.65, (0.0,), "doubtful"),
         (0.65, (0.0, 0.5), "doubtful"),  # 30 deg apart are one view
         (0.65, (0.0, 1.1), "rejected"),
-        (0.65, (3.0, -3.0), "doubtful"),  # as near to each other around the back
+        (0.65, (3.0, -3.0), "doubtful"),  # also near to each other, across +-180 deg
         (0.1, (0.0,), "none"),
     ],
 )
@@ -103,7 +103,7 @@ def test_a_near_object_that_was_never_seen_whole_gets_a_look_before_it_is_accept
     assert Judged(distance_m=near, exact=True).at(0.95) == "accepted"
 
 
-def test_what_cannot_be_reached_any_more_is_not_accepted():
+def test_a_candidate_that_became_unreachable_is_not_accepted():
     assert Judged(distance_m=15.0).at(0.95, MAX_STEPS - 100) == "accepted"
     assert Judged(distance_m=18.0).at(0.95, MAX_STEPS - 100) == "doubtful"
 
@@ -139,7 +139,7 @@ def test_wrong_values_are_refused(wrong: dict):
 
 
 def looks_from(*seen_from_rad: float) -> Route:
-    """Returns the route to the places to look from at a cell in the middle of a room, for a robot to its left."""
+    """Returns the route to the viewpoints of a cell in the middle of a room, for a robot to its left."""
     navmap, _ = map_of("\n".join("." * 140 for _ in range(140)))
     navmap.frames_in_view[:] = 1
     target = np.zeros(navmap.frame.shape, np.bool_)

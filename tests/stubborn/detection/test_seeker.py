@@ -23,7 +23,7 @@ EXACT, INEXACT = SegmenterSpec(exact_outlines=True), SegmenterSpec(exact_outline
 
 
 class RefuseAll:
-    """A verifier that keeps what it was asked."""
+    """A verifier that records its calls."""
 
     may_refuse = True
 
@@ -39,7 +39,7 @@ class RefuseAll:
 
 
 class Doubtful:
-    """A verifier that accepts what was seen with a mean score above 0.7."""
+    """A verifier that accepts objects with a mean score above 0.7."""
 
     may_refuse = True
 
@@ -79,7 +79,7 @@ def routed(
 
 
 def known(text: str) -> tuple[NavMap, Pose]:
-    """A drawn map on which everything has been in view once."""
+    """Returns a map drawn with letters on which every cell has been in view once."""
     navmap, pose = map_of(text)
     navmap.frames_in_view[:] = 1
     navmap.grow_known(*(slice(0, n) for n in navmap.frame.shape))
@@ -87,7 +87,7 @@ def known(text: str) -> tuple[NavMap, Pose]:
 
 
 def room(width: int = 80, height: int = 60, **places: tuple[int, int]) -> list[list[str]]:
-    """A walled room with letters at (row from below, column)."""
+    """Returns a walled room with letters at (row from below, column)."""
     rows = [["#" if c in (0, width - 1) else "." for c in range(width)] for _ in range(height)]
     rows[0] = rows[-1] = ["#"] * width
     for letter, (row, col) in places.items():
@@ -132,7 +132,7 @@ def test_with_inexact_outlines_the_agent_goes_nearer():
         assert (careful.in_reach(navmap, sighting) is not None) == near_enough
 
 
-def test_where_there_is_no_nearer_viewpoint_the_usual_one_will_do():
+def test_without_a_nearer_viewpoint_the_usual_one_is_used():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in range(48, 60):
@@ -172,7 +172,7 @@ def test_a_margin_as_large_as_the_distance_is_refused():
 
 
 def doubtful_one_first() -> tuple[NavMap, Pose]:
-    """A candidate nearby that was mostly scored low, and a plain one farther away."""
+    """Returns a map with a nearby candidate of mostly low scores and a clear candidate farther away."""
     navmap, pose = known(text_of(room(R=(30, 10), T=(30, 60))))
     navmap.score_max[30, 35] = 0.6
     navmap.score_sum[30, 35], navmap.score_sum[30, 60] = 3.0, 9.0
@@ -208,7 +208,7 @@ def test_an_acceptable_candidate_without_a_viewpoint_does_not_hold_up_the_others
 
 
 class Wavering(Doubtful):
-    """It would accept now the one and then the other."""
+    """Otherwise it would alternate between the two."""
 
     def __init__(self) -> None:
         self.asked = 0
@@ -218,7 +218,7 @@ class Wavering(Doubtful):
         return self.asked % 4 in (0, 1)
 
 
-def test_what_is_pursued_as_acceptable_is_pursued_to_the_end():
+def test_an_acceptable_candidate_is_pursued_to_the_end():
     navmap, pose = doubtful_one_first()
     wavering = seeker(Wavering())
     approaches = [wavering.approach(navmap, whole(navmap), pose, step) for step in range(6)]
@@ -261,7 +261,7 @@ def test_no_viewpoint_lies_behind_a_wall_however_near():
     assert cols.min() > 39
 
 
-def test_no_viewpoint_lies_on_unseen_ground_behind_what_hangs_on_a_wall():
+def test_no_viewpoint_lies_on_unseen_ground_behind_an_object_that_hangs_on_a_wall():
     """The wall behind a picture is hidden by it, and the ground behind that wall was never in view."""
     rows = room(R=(30, 10), T=(30, 40))
     for row in range(20, 40):
@@ -315,14 +315,14 @@ def test_each_time_a_candidate_cannot_be_reached_it_waits_twice_as_long():
     navmap, pose = enclosed_target()
     seek, tried = seeker(retry_after_steps=10), []
     for step in range(80):
-        navmap.set_aside[0, 0] = True  # gone when all that was set aside is tried again
+        navmap.set_aside[0, 0] = True  # removed when all deferred candidates are tried again
         assert seek.approach(navmap, whole(navmap), pose, step) is None
         if not navmap.set_aside[0, 0]:
             tried.append(step)
     assert tried == [0, 10, 30, 70]
 
 
-def test_late_in_the_episode_the_nearest_reachable_place_will_do():
+def test_late_in_the_episode_the_nearest_reachable_place_is_used():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in range(35, 79):
@@ -337,7 +337,7 @@ def test_late_in_the_episode_the_nearest_reachable_place_will_do():
 
 
 def far_target() -> tuple[NavMap, Pose]:
-    """A candidate in the middle of a large piece of furniture, 1.35 m from where a robot fits."""
+    """Returns a map with a candidate in a large piece of furniture, 1.35 m from the nearest free place."""
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(6, 54):
         for col in range(36, 79):
@@ -366,7 +366,7 @@ def test_a_candidate_that_cannot_be_got_near_is_verified_from_the_nearest_reacha
     assert seek.approach(navmap, whole(navmap), there, 2) is None
 
 
-def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
+def test_a_candidate_accepted_from_too_far_away_waits_and_is_near_enough_late_in_the_episode():
     navmap, pose = far_target()
     seek = seeker(RefuseAll(), last_resort_step=100, retry_after_steps=10)
     approach = approached(seek, navmap, pose, 5)
@@ -379,7 +379,7 @@ def test_what_is_accepted_from_too_far_away_waits_and_late_it_is_near_enough():
     assert late.near_enough
 
 
-def test_where_pessimistic_marks_close_the_path_to_a_target_the_optimistic_ones_count():
+def test_optimistic_marks_count_when_pessimistic_ones_close_the_path_to_a_target():
     rows = room(R=(30, 10), T=(30, 60))
     for row in range(1, 59):
         for col in (30, 31, 32):
@@ -452,7 +452,7 @@ def test_a_candidate_first_found_after_step_200_is_not_verified():
     assert seeker(refuse).judge(navmap, (22, 44)) is False
 
 
-def test_reset_forgets_what_was_set_aside_and_how_long_it_would_have_waited():
+def test_reset_forgets_deferred_candidates_and_their_waiting_times():
     navmap, pose = enclosed_target()
     seek = seeker(retry_after_steps=10)
     for step in (0, 10, 30):
@@ -506,20 +506,20 @@ def test_the_known_window_holds_all_that_was_seen_and_a_margin():
 
 
 class Rated(Doubtful):
-    """A verifier that also tells a probability."""
+    """A verifier that also states a probability."""
 
     def probability(self, goal: str, features: Features) -> float:
         return 0.9 if self.accepts(goal, features) else 0.2
 
 
 def test_the_confidence_is_the_verifiers_probability_of_what_it_accepted_last_else_the_highest_score():
-    for verifier, told in ((Rated(), 0.9), (AcceptAll(), 0.8), (RefuseAll(), None)):
+    for verifier, confidence in ((Rated(), 0.9), (AcceptAll(), 0.8), (RefuseAll(), None)):
         navmap, _ = known(text_of(room(R=(30, 10), T=(30, 60))))
         navmap.score_sum[30, 60], navmap.score_max[30, 60] = 0.8, 0.8
         seek = seeker(verifier)
         assert seek.confidence is None
-        assert seek.judge(navmap, (30, 60)) == (told is not None)
-        assert seek.confidence == (None if told is None else pytest.approx(told))
+        assert seek.judge(navmap, (30, 60)) == (confidence is not None)
+        assert seek.confidence == (None if confidence is None else pytest.approx(confidence))
         seek.reset("bed")
         assert seek.confidence is None
 

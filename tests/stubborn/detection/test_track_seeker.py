@@ -129,7 +129,7 @@ def test_a_sure_object_is_driven_to():
     assert seeker.accepted_cell is None
 
 
-def test_before_a_stop_that_would_be_short_it_goes_one_forward_nearer_where_nothing_is_in_the_way():
+def test_before_a_stop_that_would_be_short_it_moves_one_step_nearer_when_the_path_is_free():
     agent, seeker = agent_with(0.97)
     here = Pose(0.0, 0.0, 0.0)
 
@@ -158,7 +158,7 @@ def test_an_object_that_is_pursued_on_one_spot_is_set_aside_and_driving_begins_t
         return seeker.approach(agent.navmap, window, Pose(x_m, 0.0, 0.0), step) is not None
 
     assert all(pursues(0.0, step) for step in range(100, 109))
-    assert all(pursues(1.1, step) for step in range(109, 119))  # it got somewhere
+    assert all(pursues(1.1, step) for step in range(109, 119))  # it made progress
     assert not pursues(1.1, 119)
     assert aside == [119]
 
@@ -214,7 +214,7 @@ def test_a_track_above_the_bar_that_cannot_be_looked_at_counts_as_looked_at(monk
     assert seeker.verdicts.looks == {track: 1}
 
 
-def test_a_look_that_something_hid_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):
+def test_a_look_that_was_blocked_is_not_repeated_from_the_same_side(monkeypatch: pytest.MonkeyPatch):
     agent, seeker, tracks, track = tracked()
     x_m, y_m = tracks.track(track).middle_xy_m
     seen = tracks.evidence.near_sectors(track)
@@ -244,7 +244,7 @@ def test_the_nearest_of_equally_good_tracks_is_approached_and_a_much_better_one_
     assert seeker._best_accepted(agent.pose) == [one]
 
 
-def test_tracks_beside_an_accepted_one_that_may_be_parts_of_it_are_approached_too():
+def test_tracks_next_to_an_accepted_one_that_may_be_parts_of_it_are_approached_too():
     _, seeker, tracks, number = tracked()
     part, far = tracks._begin(), tracks._begin()
     tracks._low[part] = tracks._high[part] = tracks._high[number] + (2, 0, 0)
@@ -280,7 +280,7 @@ def test_wrong_settings_are_refused(wrong: dict):
         TrackSeekerConfig(**wrong)
 
 
-def test_of_a_track_that_holds_a_part_of_something_else_only_the_core_is_driven_to():
+def test_the_robot_drives_to_the_core_of_a_track_that_holds_a_part_of_another_object():
     agent, seeker = agent_with(0.97)
     run_episode(GridWorld(ROOM, START, camera=SMALL_CAMERA), agent, "bed", max_steps=30)
     assert seeker.tracks is not None
@@ -309,7 +309,7 @@ def behind_glass() -> GridWorld:
     return GridWorld([*ROOM, Box(x, y, (0.0, 0.4), "objects", seen=False)], START, camera=SMALL_CAMERA)
 
 
-def test_where_something_keeps_the_robot_from_every_viewpoint_it_stops_within_the_success_distance():
+def test_a_robot_that_can_reach_no_viewpoint_stops_within_the_success_distance():
     agent, _ = agent_with(0.97)
     world = behind_glass()
     trace = run_episode(world, agent, "bed", max_steps=200)

@@ -1,4 +1,4 @@
-"""Tracks in a world of boxes: identity from frame to frame, confusers that compete, evidence only where visible."""
+"""Tracks in a world of boxes: identity from frame to frame, competing categories, evidence only where visible."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def look(
 
 
 def of(tracks: Tracks, category: str) -> list:
-    """Returns the tracks that are surely of a category; slivers of a side just seen are not."""
+    """Returns the tracks that surely have a category; thin parts of a newly seen side do not."""
     found = [tracks.track(i) for i in range(1, tracks.count + 1) if tracks.sizes(np.array([i]))[0] >= 12]
     return [track for track in found if track.category == category and track.probability.max() > 0.5]
 
@@ -74,7 +74,7 @@ def test_objects_side_by_side_are_two_tracks():
     assert [len(of(tracks, name)) for name in ("table", "chair")] == [1, 1]
 
 
-def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
+def test_a_wrong_category_in_one_view_is_outvoted_by_the_others():
     tracks = tracked()
     look(tracks, VIEWS[0], TABLE, goal="cabinet", taken_for="cabinet")
     assert tracks.probabilities("cabinet").max() > 0.5
@@ -84,8 +84,8 @@ def test_what_was_taken_for_the_goal_in_one_view_is_what_it_mostly_looks_like():
     assert len(of(tracks, "table")) == 1
 
 
-def test_a_part_that_may_be_the_goal_stays_one_track_though_another_heading_shows_it_as_the_whole():
-    """Otherwise each heading would end it or begin it again, and no look at it would ever count."""
+def test_a_possible_part_of_the_goal_stays_one_track_when_another_heading_shows_the_whole():
+    """Otherwise each heading would end the track or start it again, and no look at it would count."""
     tracks = tracked()
     table, cushion = (MPCAT40_ID[name] - 1 for name in ("table", "cushion"))
     look(tracks, VIEWS[0], TABLE, goal="cushion")
@@ -102,7 +102,7 @@ def test_a_part_that_may_be_the_goal_stays_one_track_though_another_heading_show
     assert tracks.count <= 4  # the wall and the table's sides may add one or two
 
 
-def test_what_is_hidden_is_not_judged():
+def test_hidden_tracks_are_not_judged():
     tracks = tracked()
     look(tracks, VIEWS[0], TABLE)
     before = tracks.probabilities("table").max()

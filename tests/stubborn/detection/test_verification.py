@@ -19,7 +19,7 @@ TRUE = SegmenterSpec(needs_verification=False)
 
 
 def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Random candidates: true ones were seen in more frames and with lower scores of other categories."""
+    """Returns random candidates; true ones were seen in more frames and with lower scores of other categories."""
     rng = np.random.default_rng(seed)
     truth = rng.random(count) < true_share
     views = rng.gamma(3.0, 8.0, count) + 5.0 * truth + shift
@@ -30,7 +30,7 @@ def examples(count: int, true_share: float, seed: int, shift: float = 0.0) -> tu
 
 
 def log_of(by_goal: dict[str, tuple[np.ndarray, np.ndarray]]) -> list[dict]:
-    """Lines of the tool's log, one candidate per episode, ten episodes per house."""
+    """Returns lines of the tool's log, one candidate per episode, ten episodes per house."""
     lines = [
         {"goal": goal, "steps": 30, "candidates": [[*map(float, row), float(true), 0.0, 0.0]]}
         for goal, (features, truth) in by_goal.items()
@@ -75,7 +75,7 @@ def test_the_other_methods_are_logistic_regressions_and_threshold_uses_the_mean_
     np.testing.assert_allclose(ours, expected, atol=1e-3)
 
 
-def test_a_category_shifts_the_logistic_regression_by_what_its_candidates_warrant(tmp_path: Path):
+def test_a_category_shifts_the_logistic_regression_as_its_candidates_warrant(tmp_path: Path):
     chairs, (features, truth) = examples(400, 0.5, seed=11), examples(200, 0.5, seed=12)
     false = features[~truth]
     few, many = false[:4], false[:80]
@@ -90,7 +90,7 @@ def test_a_category_shifts_the_logistic_regression_by_what_its_candidates_warran
 
 
 def episode(number: int, *candidates: tuple[float, bool]) -> dict:
-    """A line with candidates of a mean score, far from each other."""
+    """Returns a line with candidates of a mean score, far from each other."""
     met = [[10.0, 10.0 * score, score, 0.3, float(true), 5.0 * i, 0.0] for i, (score, true) in enumerate(candidates)]
     return {"goal": "bed", "house": f"house_{number}", "steps": 200, "candidates": met}
 
@@ -106,14 +106,14 @@ def test_the_expected_success_is_that_of_stops_at_the_first_candidate_above_the_
 
 @pytest.mark.parametrize(("next_one_is_true", "low"), [(0.95, False), (0.0, True)])
 def test_the_bar_is_higher_where_waiting_pays(tmp_path: Path, next_one_is_true: float, low: bool):
-    """Of the first, doubtful candidates 45 % are true; a sure one follows in most episodes or in none."""
+    """45 % of the first, doubtful candidates are true. A sure one follows in most episodes or in no episode."""
     rng = np.random.default_rng(0)
     lines = []
     for number in range(300):
         doubtful = (float(rng.uniform(0.45, 0.55)), bool(rng.random() < 0.45))
         sure = [(float(rng.uniform(0.9, 0.99)), True)] * bool(rng.random() < next_one_is_true)
         lines.append(episode(number, doubtful, *sure))
-    if low:  # so that there are true and false ones to tell apart
+    if low:  # so that there are both true and false ones
         lines += [episode(300 + number, (0.1, False)) for number in range(100)]
     content = fit(lines, 20)
     bar = content["methods"]["threshold"]["least_probability"]
@@ -206,7 +206,9 @@ def test_a_candidate_near_an_earlier_one_of_the_same_truth_does_not_count_again(
     content = fit([line, line], 2)
     assert content["candidates"]["bed"] == {"false": 2, "true": 4}
     np.testing.assert_allclose(content["methods"]["naive-bayes"]["pooled"]["mean"], [weak, strong])
-    assert content["methods"]["threshold"]["least_probability"] == 0.5  # one house: nothing was left out to judge by
+    assert (
+        content["methods"]["threshold"]["least_probability"] == 0.5
+    )  # one house: no house is held out for the evaluation
 
 
 def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: Path):

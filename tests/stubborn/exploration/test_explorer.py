@@ -1,4 +1,4 @@
-"""The interface of explorers, and an explorer of one's own in thirty lines."""
+"""The interface of explorers, and an explorer of a user in thirty lines."""
 
 from dataclasses import dataclass
 

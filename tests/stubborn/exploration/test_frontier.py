@@ -22,7 +22,7 @@ def explorer(**options: float) -> FrontierExplorer:
 
 
 def square(half_m: float) -> NavMap:
-    """Ground seen in a square around the start, the robot in its middle."""
+    """Returns ground seen in a square around the start, the robot in its middle."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     see(navmap, (-half_m, half_m), (-half_m, half_m))
     navmap.trail[navmap.frame.cell(0.0, 0.0)] = True
@@ -57,7 +57,7 @@ def test_frontier_cells_are_known_free_ones_next_to_open_unknown():
 
 
 def closed_but(navmap: NavMap, half_m: float, doors: list[tuple[str, float]]) -> None:
-    """Walls around the square, with doors of 1 m at the side `n`, `s`, `e` or `w` and a place along it."""
+    """Returns walls around the square, with doors of 1 m at a side `n`, `s`, `e` or `w` and a place along it."""
     for side in "nsew":
         at = half_m if side in "ne" else -half_m
         along = [-half_m, *sorted(v for s, place in doors if s == side for v in (place - 0.5, place + 0.5)), half_m]
@@ -120,7 +120,7 @@ def test_a_short_frontier_is_left_for_last():
     assert last == pytest.approx((3.1, 0.0), abs=0.3)
 
 
-def test_where_nothing_is_unknown_it_goes_where_it_was_least():
+def test_without_unknown_ground_it_goes_to_the_least_visited_ground():
     navmap = square(3.0)
     closed_but(navmap, 3.0, [])
     route = route_of(explorer(), ground(navmap, HERE, window(navmap)))

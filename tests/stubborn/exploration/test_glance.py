@@ -19,7 +19,7 @@ def glancer(**options: float) -> Glancer:
 
 
 def corridor() -> NavMap:
-    """Seen ground along x between two walls; a door in the left one, at x = 0, behind which nothing was seen."""
+    """Returns seen ground along x between two walls; behind a door in the left one, at x = 0, nothing was seen."""
     navmap = NavMap.empty(FRAME)
     (right, _), (left, middle) = FRAME.cell(0.0, -0.7), FRAME.cell(0.0, 0.7)
     navmap.frames_in_view[right : left + 1] = 1
@@ -34,7 +34,7 @@ def turned(pose: Pose, action: Action) -> Pose:
 
 
 def look_in(navmap: NavMap, pose: Pose) -> None:
-    """Mark what a camera that sees through walls would show."""
+    """Marks the cells that a camera would show without walls."""
     x_m, y_m = FRAME.mesh()
     bearing_rad = np.arctan2(y_m - pose.y_m, x_m - pose.x_m)
     off_rad = np.abs(np.arctan2(np.sin(bearing_rad - pose.yaw_rad), np.cos(bearing_rad - pose.yaw_rad)))
@@ -71,7 +71,7 @@ def test_hidden_ground_is_measured_in_square_metres():
 
 
 def test_it_does_not_look_twice_from_the_same_place():
-    """Not even where the look showed nothing, as behind glass."""
+    """This holds even if the look showed nothing, as behind glass."""
     navmap, glance, pose = corridor(), glancer(), START
     turns = 0
     while (action := glance.next_turn(navmap, pose)) is not None:

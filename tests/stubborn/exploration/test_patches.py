@@ -1,5 +1,7 @@
 """The map as an input of networks, and the goal categories in it."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 

@@ -34,7 +34,7 @@ VIEW = ViewConfig()
 
 
 def open_map() -> NavMap:
-    """Ground in view from x = -6 to 6 m, a bed ahead of the start and a wall left of it."""
+    """Returns ground in view from x = -6 to 6 m, a bed ahead of the start and a wall left of it."""
     navmap = NavMap.empty(GridFrame.around_start(400, 0.05))
     for name, x_m, y_m, value in (
         ("frames_in_view", (-6.0, 6.0), (-6.0, 6.0), 256),  # its lowest byte is 0
@@ -81,7 +81,7 @@ def test_the_input_is_the_patch_around_the_robot(at: tuple[float, float, float])
     np.testing.assert_allclose(given.heading, (math.cos(at[2]), math.sin(at[2])), atol=1e-6)
 
 
-def test_a_map_of_which_nothing_is_known_or_whose_edge_is_no_multiple_of_the_blocks_can_be_observed():
+def test_an_unknown_map_and_a_map_that_is_not_a_multiple_of_the_blocks_can_be_observed():
     empty = observe(NavMap.empty(GridFrame.around_start(401, 0.05)), Pose(0.0, 0.0, 0.0), "bed", VIEW)
     assert not empty.near.geometry.any()
     navmap = NavMap.empty(GridFrame.around_start(401, 0.05))
@@ -152,17 +152,17 @@ def test_without_semantics_the_policy_sees_the_geometry_only():
 
 
 def test_the_wrong_goal_is_another_one_of_the_episode_and_never_the_true_one():
-    policy, navmap, told = Always(), open_map(), []
+    policy, navmap, goals = Always(), open_map(), []
     explore = explorer(policy, goal="wrong")
     for seed in range(30):
         explore.reset(seed)
         for step in range(2):
             explore.place_xy_m = None
             route_of(explore, ground(navmap, goal="sink"))
-            told.append(policy.given[-1].goal)
-            assert told[-1] == told[-1 - step]
-    assert SINK not in told
-    assert len(set(told)) > 8
+            goals.append(policy.given[-1].goal)
+            assert goals[-1] == goals[-1 - step]
+    assert SINK not in goals
+    assert len(set(goals)) > 8
 
 
 def test_draws_follow_the_policy_and_the_seed():

@@ -86,7 +86,7 @@ def test_potentials_put_the_frontier_first_behind_which_the_goal_is(goal: str, w
 
 def test_paths_on_blocks_are_about_as_long_as_on_cells():
     navmap = corridor()
-    see(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a way around a wall
+    see(navmap, (0.5, 0.6), (-1.1, 0.2), wall=True)  # a path around a wall
     window = navmap.frame.window_at(0.0, 0.0, 300)
     known = Frontiers.of(ground(navmap, Pose(0.0, 0.0, 0.0), window), own_known_m=1.0, margin_cells=20)
     start = known.free.frame.cell(0.0, -0.5)
@@ -127,7 +127,7 @@ def test_ground_seen_from_afar_is_not_inspected_by_coming_near_without_looking()
 
 
 def enclosed() -> NavMap:
-    """The corridor with walls at its ends, and large marks across it at x = 3 m: nothing is left to see."""
+    """Returns the corridor with walls at its ends and large marks across it at x = 3 m: nothing is left to see."""
     navmap = corridor()
     for x_m in ((-4.1, -4.0), (4.0, 4.1)):
         see(navmap, x_m, (-1.1, 1.1), wall=True)
@@ -136,14 +136,14 @@ def enclosed() -> NavMap:
     return navmap
 
 
-def test_where_nothing_is_left_to_see_the_robot_stays_on_its_side_of_the_marks():
+def test_with_nothing_left_to_see_the_robot_stays_on_its_side_of_the_marks():
     navmap, explore = enclosed(), explorer(near_m=0.0)
     navmap.trail[navmap.frame.cell(-1.0, 0.0)] = True  # the ground behind the marks is farthest from the trail
     for _ in range(3):
         assert goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0)) < 3.0
 
 
-def test_a_robot_between_large_marks_leaves_over_the_next_layer_when_nothing_is_left_to_see():
+def test_a_robot_between_large_marks_uses_the_next_layer_when_nothing_is_left_to_see():
     navmap, explore = enclosed(), explorer(near_m=0.0)
     (row_0, col_0), (row_1, col_1) = navmap.frame.cell(-0.3, -0.3), navmap.frame.cell(0.3, 0.3)
     navmap.pessimistic_marks[row_0 : row_1 + 1, [col_0, col_1]] = True
@@ -161,7 +161,7 @@ def test_steps_that_cross_no_mark_do_not_count_as_crossing():
     see(navmap, (4.0, 4.1), (-1.1, 1.1), wall=True)
     for _ in range(10):
         goal_x_m(explore, navmap, Pose(0.0, 0.0, 0.0))
-    assert explore._unmarked_steps <= crossed + 2  # until it is done with the stop
+    assert explore._unmarked_steps <= crossed + 2  # until the stop is finished
 
 
 def test_a_stop_is_kept_for_some_steps_and_reset_forgets_it():
@@ -216,7 +216,7 @@ def test_options_that_make_no_sense_are_refused():
 
 
 @pytest.mark.parametrize("layers", [1, 2])
-def test_marks_that_close_the_way_to_all_that_is_left_do_not_count_for_some_steps(layers: int):
+def test_marks_that_close_the_path_to_all_remaining_ground_do_not_count_for_some_steps(layers: int):
     navmap, explore = corridor(), explorer(near_m=0.0, keep_steps=1, unmarked_steps=5)
     see(navmap, (-4.1, -4.0), (-1.1, 1.1), wall=True)
     row_0, col = navmap.frame.cell(3.0, -1.1)

@@ -63,7 +63,7 @@ def test_the_pessimistic_mark_holds_the_optimistic_one():
     assert navmap.pessimistic_marks.sum() > navmap.optimistic_marks.sum()
 
 
-def test_the_visited_path_frees_marks_and_what_comes_later_does_not_close_it():
+def test_the_visited_path_clears_marks_and_later_marks_do_not_close_it():
     navmap, planner = NavMap.empty(FRAME), Planner(PlanningConfig(), visited_ground)
     mark_collision(navmap, Pose(0.0, 0.0, 0.0), BOTH, CONFIG)
     assert planner.obstacles(navmap, CollisionLayer.PESSIMISTIC)[30, 30 + 5]
@@ -74,7 +74,7 @@ def test_the_visited_path_frees_marks_and_what_comes_later_does_not_close_it():
     assert not planner.obstacles(navmap, CollisionLayer.OPTIMISTIC)[30, 30 + 5]
 
 
-def test_without_trust_the_visited_path_frees_nothing():
+def test_without_trust_the_visited_path_clears_no_marks():
     navmap, planner = NavMap.empty(FRAME), Planner(PlanningConfig(), no_ground)
     mark_collision(navmap, Pose(0.0, 0.0, 0.0), BOTH, CONFIG)
     mark_visited(navmap, Pose(0.0, 0.0, 0.0), Pose(0.25, 0.0, 0.0), 0.18, CONFIG)

@@ -51,7 +51,7 @@ def test_the_floor_is_missing_from_the_edge_on_and_not_before_it(drop_m):
     assert x_m.min() >= 1.95
 
 
-def test_a_whole_floor_a_rug_and_a_threshold_are_no_drops():
+def test_a_whole_floor_a_rug_and_a_threshold_are_not_drops():
     for drop_m in (0.0, 0.025, 0.05):
         assert not mapped((floor_with_edge(2.0, drop_m), START)).drop_evidence.any()
 

@@ -17,7 +17,7 @@ SKEW = math.radians(37.0)
 
 
 def wall_ahead(distance_m: float, yaw_rad: float = 0.0) -> np.ndarray:
-    """The exact depth image of a wall across the view."""
+    """Returns the exact depth image of a wall across the view."""
     world = GridWorld([Box((distance_m, distance_m + 0.1), (-9.0, 9.0))], (0.0, 0.0, yaw_rad), camera=CAMERA)
     return world.render()[0]
 
@@ -29,7 +29,7 @@ def mapped(depth: np.ndarray, pose: Pose, config: MappingConfig = EVERY_PIXEL) -
 
 
 def brute_force(depth: np.ndarray, pose: Pose, low_m: float, high_m: float) -> np.ndarray:
-    """Cells hit by pixels of a height band, one pixel after the other."""
+    """Returns the cells hit by pixels of a height band, computed pixel by pixel."""
     layer = np.zeros(FRAME.shape, bool)
     for v in range(0, CAMERA.height_px, 3):
         for u in range(0, CAMERA.width_px, 3):
@@ -54,7 +54,7 @@ def test_a_wall_lands_within_a_cell_of_where_it_is(distance_m: float, yaw_rad: f
 
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
-def test_the_obstacle_layer_is_what_brute_force_projection_of_pixels_gives(distance_m: float):
+def test_the_obstacle_layer_equals_a_brute_force_projection_of_pixels(distance_m: float):
     depth, pose = wall_ahead(distance_m, SKEW), Pose(0.21, -0.4, SKEW)
     fast, slow = mapped(depth, pose).seen_obstacle, brute_force(depth, pose, 0.10, 0.88)
     grown = np.zeros_like(fast)
@@ -156,7 +156,7 @@ def test_a_cell_takes_the_highest_score_of_its_pixels():
 
 
 @pytest.mark.parametrize("fraction", [2, 4, 8])
-def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction: int):
+def test_scores_at_a_whole_fraction_of_the_image_are_projected_to_the_same_place(fraction: int):
     picture = Box((1.97, 2.0), (-0.4, 0.2), (0.7, 1.1), "picture")
     depth, semantic = GridWorld([picture], (0.0, 0.0, 0.0), camera=CAMERA).render()
     target = (semantic == PICTURE_ID).astype(np.float32)
@@ -171,7 +171,7 @@ def test_scores_at_a_whole_fraction_of_the_image_land_in_the_same_place(fraction
 
 @pytest.mark.parametrize(("fraction", "stride_px"), [(1, 4), (2, 4), (4, 8)])
 def test_a_score_is_put_at_the_depth_of_its_own_pixel(fraction: int, stride_px: int):
-    """Else the rim of a near target would lie on the wall behind it."""
+    """Otherwise the rim of a near target would lie on the wall behind it."""
     picture, wall = Box((1.5, 1.6), (-0.41, 0.33), (0.2, 1.5), "picture"), Box((4.5, 4.6), (-9.0, 9.0))
     depth, semantic = GridWorld([picture, wall], (0.0, 0.0, 0.0), camera=CAMERA).render()
     middle = slice(fraction // 2, None, fraction)

@@ -22,7 +22,7 @@ POSES = (Pose(0.0, 0.0, 0.0), Pose(0.13, -0.27, math.radians(37.0)))
 
 
 def frame_at(pose: Pose, distance_m: float, camera: CameraModel = CAMERA) -> np.ndarray:
-    """Depth of a wall across the view at x = `distance_m` that is higher than the range of the layers."""
+    """Returns the depth of a wall across the view at x = `distance_m` that exceeds the height range of the layers."""
     world = GridWorld(
         [Box((distance_m, distance_m + 0.1), (-9.0, 9.0), (0.0, 3.0))],
         (pose.x_m, pose.y_m, pose.yaw_rad),
@@ -38,7 +38,7 @@ def random_scores(seed: int) -> Scores:
 
 
 def brute_force(depth: np.ndarray, scores: Scores, pose: Pose) -> dict[tuple[int, int], tuple[float, float]]:
-    """Highest target score of each cell in view, and the highest other score where it is that."""
+    """Returns the highest target score of each cell in view, and the other score of the same pixel."""
     found: dict[tuple[int, int], tuple[float, float]] = {}
     for v in range(CAMERA.height_px):
         for u in range(CAMERA.width_px):
@@ -66,7 +66,7 @@ def layers_by_brute_force(frames: list) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("distance_m", [1.0, 2.5, 4.8])
-def test_the_four_layers_are_what_projecting_every_pixel_gives(distance_m: float):
+def test_the_four_layers_equal_a_projection_of_every_pixel(distance_m: float):
     frames = [(frame_at(pose, distance_m), random_scores(i), pose) for i, pose in enumerate(POSES)]
     navmap = NavMap.empty(FRAME)
     config = MappingConfig(score_stride_px=1, occupancy=OccupancyConfig(neighbours=0))  # lone pixels count
@@ -123,7 +123,7 @@ def test_one_frames_score_takes_the_place_of_the_layers_where_it_looks():
     assert navmap.found_step[left] == 3
 
 
-def test_a_frame_without_a_trace_of_the_target_clears_what_it_looks_at():
+def test_a_frame_without_the_target_clears_the_cells_in_view():
     pose = POSES[0]
     depth = frame_at(pose, 2.0)
     ones, zeros = np.ones_like(depth), np.zeros_like(depth)

@@ -34,7 +34,7 @@ def noisy(depth: np.ndarray, preset: str, rng: np.random.Generator) -> np.ndarra
 def look_around(
     boxes: list[Box], preset: str, frames: int = 20, poses: list[tuple[float, float]] | None = None
 ) -> tuple[NavMap, np.ndarray]:
-    """The map after frames from some places, turning by 30 degrees each; and each cell's distance to the surfaces."""
+    """Returns the map after turns by 30 degrees at some places, and each cell's distance to the surfaces."""
     mapper, navmap, rng = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), np.random.default_rng(0)
     for i in range(frames):
         x_m, y_m = (poses or [(0.0, 0.0)])[i % len(poses or [0])]
@@ -102,7 +102,7 @@ def test_exact_depth_never_takes_an_obstacle_away_again():
     assert (seen & ~navmap.seen_obstacle).sum() <= 0.01 * seen.sum()
 
 
-def test_what_was_moved_away_is_forgotten_when_the_place_is_seen_through():
+def test_a_removed_object_is_forgotten_when_its_place_is_seen_to_be_empty():
     chair = Box((1.8, 2.2), (-0.2, 0.2), (0.0, 0.8), "chair")
     mapper, navmap, pose = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME), Pose(0.0, 0.0, 0.0)
     for boxes, frames, there in (([*ROOM, chair], 8, True), (ROOM, 10, False)):
@@ -112,7 +112,7 @@ def test_what_was_moved_away_is_forgotten_when_the_place_is_seen_through():
 
 
 @pytest.mark.parametrize("z", [(0.0, 0.14), (0.70, 0.75)])
-def test_what_is_seen_over_or_under_is_not_seen_through(z: tuple[float, float]):
+def test_an_object_that_rays_pass_above_or_below_is_not_cleared(z: tuple[float, float]):
     """A slab and a table top: rays pass above or below them, yet the band is not empty there."""
     slab = Box((1.8, 2.4), (-0.5, 0.5), z)
     mapper, navmap = Mapper(CAMERA, RobotModel(), MappingConfig()), NavMap.empty(FRAME)

@@ -32,7 +32,7 @@ def planned(
 
 
 def drive(planner: Planner, navmap: NavMap, goal: np.ndarray, pose: Pose, steps: int) -> list[Pose]:
-    """Follow the planner's actions without a world: every move succeeds."""
+    """Follows the planner's actions without a world: every move succeeds."""
     poses = [pose]
     for _ in range(steps):
         free = planner.free_space(navmap, pose, CollisionLayer.PESSIMISTIC)
@@ -141,7 +141,7 @@ def test_the_visited_trail_opens_the_path_through_marks():
 
 
 def wall_between(gap_cells: int) -> str:
-    """Robot left of a one-cell wall, goal right of it; the path around the wall's top end is long."""
+    """Returns a map with robot and goal on opposite sides of a one-cell wall; the path around its top is long."""
     rows = [["."] * 40 for _ in range(60)]
     for r in range(60 - gap_cells):
         rows[59 - r][20] = "#"

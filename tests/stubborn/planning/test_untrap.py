@@ -11,8 +11,8 @@ def fail(untrap: Untrap, times: int) -> None:
         untrap.observe(F, True)
 
 
-def dictated(untrap: Untrap, steps: int) -> list[Action | None]:
-    """Actions of a robot that never gets free."""
+def actions_of(untrap: Untrap, steps: int) -> list[Action | None]:
+    """Returns the actions of a robot that never gets free."""
     actions = []
     for _ in range(steps):
         action = untrap.next_action()
@@ -49,7 +49,7 @@ def test_turns_between_do_not_reset_the_count_but_a_forward_that_moves_does():
 def test_it_turns_and_pushes_until_a_forward_moves():
     untrap = Untrap(UntrapConfig().failed_forwards)
     fail(untrap, 10)
-    assert dictated(untrap, 7) == [L, F, L, F, L, F, L]
+    assert actions_of(untrap, 7) == [L, F, L, F, L, F, L]
     assert untrap.next_action() is F
     untrap.observe(F, False)
     assert untrap.next_action() is None
@@ -59,14 +59,14 @@ def test_the_side_alternates_from_entry_to_entry_and_a_new_episode_begins_left()
     untrap = Untrap(UntrapConfig().failed_forwards)
     for side in (L, R, L):
         fail(untrap, 10)
-        assert dictated(untrap, 4) == [side, F, side, F]
+        assert actions_of(untrap, 4) == [side, F, side, F]
         untrap.observe(F, False)
     fail(untrap, 5)
     untrap.reset()
     fail(untrap, 9)
     assert not untrap.active
     fail(untrap, 1)
-    assert dictated(untrap, 2) == [L, F]
+    assert actions_of(untrap, 2) == [L, F]
 
 
 def test_a_count_below_one_is_refused():

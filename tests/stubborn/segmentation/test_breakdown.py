@@ -13,7 +13,7 @@ SOFA, WALL = MPCAT40_ID["sofa"], MPCAT40_ID["wall"]
 
 @pytest.fixture
 def two_sofas() -> Breakdown:
-    """A sofa of 8 x 8 pixels at 1.5 m that is found, and one of 3 x 3 at 3.5 m of which a third is right."""
+    """Returns a found sofa of 8 x 8 pixels at 1.5 m and one of 3 x 3 at 3.5 m of which a third is correct."""
     semantic = np.full((24, 32), WALL, np.uint8)
     semantic[2:10, 2:10] = semantic[15:18, 20:23] = SOFA
     depth_m = np.full((24, 32), 0.0, np.float32)
@@ -39,7 +39,7 @@ def test_pixels_are_counted_at_their_distance_and_those_without_depth_nowhere(tw
     assert int(two_sofas.by_distance.sum()) == 64 + 9
 
 
-def test_void_and_specks_are_no_objects() -> None:
+def test_void_and_specks_are_not_objects() -> None:
     semantic = np.zeros((24, 32), np.uint8)
     semantic[3, 4:7] = SOFA
     breakdown = Breakdown()

@@ -1,4 +1,4 @@
-"""Files of weights: which load, and how others are refused."""
+"""Files of weights: valid files load, and others are refused with a message."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TINY = RedNetConfig(width=4, encoder_blocks=(1, 1, 1, 1), bottleneck=False, deco
 
 @pytest.fixture(scope="module")
 def published_state() -> dict[str, torch.Tensor]:
-    """An invented checkpoint of the published network: every tensor is filled with a number by its index."""
+    """Returns an invented checkpoint of the published network: every tensor is filled with a number by its index."""
     with torch.device("meta"):
         shapes = {name: (tensor.shape, tensor.dtype) for name, tensor in RedNet().state_dict().items()}
     values = ((name, shape, dtype, i) for i, (name, (shape, dtype)) in enumerate(shapes.items()))
@@ -125,7 +125,7 @@ def test_weights_without_meaning_are_refused_by_name(value: float, half: bool, t
 
 
 @pytest.mark.parametrize(
-    ("header", "told"),
+    ("header", "message"),
     [
         ({"rednet_config": {"width": 4096}}, "of another network: 'conv1.weight' is"),
         ({"rednet_config": {"width": 10**9}}, "a size of 1000000000, at most 4096"),
@@ -141,12 +141,12 @@ def test_weights_without_meaning_are_refused_by_name(value: float, half: bool, t
     ],
 )
 def test_a_header_that_is_wrong_or_asks_for_too_much_is_refused(
-    header: dict[str, object], told: str, tmp_path: Path
+    header: dict[str, object], message: str, tmp_path: Path
 ) -> None:
     safetensors.torch.save_file(
         {"conv1.weight": torch.zeros(1)},
         tmp_path / "net.safetensors",
         metadata={key: json.dumps(value) for key, value in header.items()},
     )
-    with pytest.raises(ConfigError, match=re.escape(told)):
+    with pytest.raises(ConfigError, match=re.escape(message)):
         load_network(tmp_path / "net.safetensors")

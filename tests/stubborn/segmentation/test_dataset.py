@@ -28,7 +28,7 @@ from stubborn.segmentation.dataset import (
 
 
 def write_tar(file: Path, keys: list[str], *, leave_out: str = "", category: int = 3) -> None:
-    """Views of 8 x 6 pixels whose depth is their number in metres."""
+    """Writes views of 8 x 6 pixels whose depth in metres is their number."""
     with tarfile.open(file, "w") as archive:
         for i, key in enumerate(keys):
             parts = {

@@ -78,7 +78,7 @@ def test_scores_and_posteriors_of_one_frame_take_one_pass_of_the_network(
 
 
 def test_padding_keeps_every_pixel_in_its_place(model: RedNet) -> None:
-    """240 rows are padded to 256 and cut out again."""
+    """240 rows are padded to 256 and cropped again."""
     rgb = np.random.default_rng(1).integers(0, 256, (240, 320, 3), dtype=np.uint8)
     pad = padding(240, 320)
     assert pad == (8, 8, 0, 0)

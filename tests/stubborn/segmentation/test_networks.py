@@ -71,7 +71,7 @@ def test_folding_batch_normalisation_keeps_the_output(kind: str) -> None:
     model = build_network(SMALL[kind])
     rgb, second = torch.randn(2, 3, 64, 64), torch.randn(2, 6, 64, 64)
     for _ in range(3):
-        model(rgb, second)  # statistics that are not those of the start
+        model(rgb, second)  # statistics that differ from the initial ones
     model.eval()
     with torch.inference_mode():
         torch.testing.assert_close(folded(model)(rgb, second), model(rgb, second), rtol=1e-3, atol=1e-4)

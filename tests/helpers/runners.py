@@ -1,4 +1,4 @@
-"""Runners and agents for tests: they need no physics."""
+"""Runners and agents for tests, without physics."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Job:
 
 
 class JobRunner:
-    """A runner whose line says its process and how often it had to change houses."""
+    """A runner whose result line holds its process id and how often it changed houses."""
 
     def __init__(self) -> None:
         self.house: str | None = None
@@ -59,25 +59,25 @@ class JobRunner:
 
 
 def make_runner(config: None) -> JobRunner:
-    """Entry point `tests.helpers.players:make_runner`."""
+    """Entry point `tests.helpers.runners:make_runner`."""
     return JobRunner()
 
 
 def slow_double(milliseconds: int) -> int:
-    """Returns twice the number, after this time."""
+    """Returns twice the number after that number of milliseconds."""
     time.sleep(milliseconds / 1000)
     return 2 * milliseconds
 
 
 def die_the_first_time(marker: Path) -> str:
-    """Kills the process and leaves the file `marker`; where the file exists, returns its name."""
+    """Creates the file `marker` and kills the process; returns the file's name if it already exists."""
     if not marker.exists():
         die(marker.touch())
     return marker.name
 
 
-def tell_and_sleep(marker: Path) -> None:
-    """Writes the number of this process to a file, and sleeps longer than any test."""
+def write_pid_and_sleep(marker: Path) -> None:
+    """Writes the id of this process to a file, and sleeps longer than any test."""
     marker.write_text(str(os.getpid()))
     time.sleep(300)
 
@@ -88,11 +88,11 @@ def die(item: object) -> None:
 
 
 class Faulty(Exception):
-    """The error of an agent of a user."""
+    """An error in an agent of a user."""
 
 
 class FaultyAgent:
-    """An `Agent` that breaks at its second action while the file `STUBBORN_TEST_FAULT` names exists, and then stops."""
+    """An `Agent` that raises at its second action if the file `$STUBBORN_TEST_FAULT` exists, and stops at its third."""
 
     def reset(self, goal: str, seed: int) -> None:
         self.step = 0
@@ -105,7 +105,7 @@ class FaultyAgent:
 
 
 def make_faulty(**options: object) -> FaultyAgent:
-    """Entry point `tests.helpers.players:make_faulty`."""
+    """Entry point `tests.helpers.runners:make_faulty`."""
     return FaultyAgent()
 
 
@@ -120,5 +120,5 @@ class Quitter:
 
 
 def make_quitter(**options: object) -> Quitter:
-    """Entry point `tests.helpers.players:make_quitter`."""
+    """Entry point `tests.helpers.runners:make_quitter`."""
     return Quitter()
