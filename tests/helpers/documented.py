@@ -16,7 +16,7 @@ from sim.commands.main import COMMANDS, split
 
 ROOT = Path(__file__).resolve().parents[2]
 PYTHON = ".venv/bin/python"
-OLD_NAMES_ARE_ERRORS = False
+OLD_NAMES_ARE_ERRORS = True
 """To be set to True when no page names a command by its old path, such as tools/gallery.py."""
 MOVED = {
     "generate_houses": "houses generate",
