@@ -122,7 +122,7 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
         ConfigError: the file is not a tar file or truncated, or a view in it is incomplete.
     """
     for key, parts in _members(file):
-        yield _decoded(file, key, parts)
+        yield decode_view(file, key, parts)
 
 
 def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
@@ -147,6 +147,31 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
                     parts[suffix.split(".")[0]] = b"" if content is None else content.read()
             if number >= 0:
                 yield key, parts
+    except (tarfile.TarError, OSError, EOFError, ValueError) as error:
+        if isinstance(error, ConfigError):
+            raise
+        raise ConfigError(f"Shard '{file}' is broken: {error}. tools/generate_views.py makes it again.") from None
+
+
+def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]:
+    """Yields the key of each view of a shard with offset and size in bytes of its members, without reading them.
+
+    Raises:
+        ConfigError: the file is not a tar file or truncated.
+    """
+    key, places = "", {}
+    try:
+        with tarfile.open(file, mode="r:") as archive:
+            for member in archive:
+                _require_small_file(file, member)
+                name, _, suffix = member.name.partition(".")
+                if name != key and places:
+                    yield key, places
+                    places = {}
+                key = name
+                places[suffix.split(".")[0]] = member.offset_data, member.size
+            if places:
+                yield key, places
     except (tarfile.TarError, OSError, EOFError, ValueError) as error:
         if isinstance(error, ConfigError):
             raise
@@ -325,8 +350,23 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
         views = sum(1 for _ in _members(shard, frozenset()))
         share = min(math.ceil((count - len(picked)) / (len(shards) - number)), views)
         wanted = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
-        picked += [_decoded(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
+        picked += [decode_view(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
     return picked
+
+
+def root_class_weights(pixels: Float64[np.ndarray, " 41"], *, most: float = 10.0) -> Float32[torch.Tensor, " classes"]:
+    """Returns class weights that are larger for rare categories: share^-0.5, at most `most` times the smallest.
+
+    Args:
+        pixels: pixels of each mpcat40 category, with void.
+        most: largest ratio of two weights.
+    """
+    counts = np.asarray(pixels, np.float64)[1:]
+    weights = np.where(counts > 0, 1.0 / np.sqrt(np.maximum(counts, 1.0)), 0.0)
+    if (counts > 0).any():
+        weights = np.minimum(weights, most * weights[counts > 0].min())
+        weights = weights / weights[counts > 0].mean()
+    return torch.tensor(weights, dtype=torch.float32)
 
 
 def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10) -> Float32[torch.Tensor, " classes"]:
@@ -344,8 +384,12 @@ def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10)
     return torch.tensor(weights / weights[counts > 0].mean() if (counts > 0).any() else weights, dtype=torch.float32)
 
 
-def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
-    """Returns the view with these members; raises ConfigError where one is missing or broken."""
+def decode_view(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
+    """Returns the view of a shard with these members.
+
+    Raises:
+        ConfigError: a member is missing or broken.
+    """
     missing = [part for part in _PARTS if part not in parts]
     if missing:
         raise ConfigError(f"Shard '{file}': view '{key}' has no '{missing[0]}'.")
