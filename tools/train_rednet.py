@@ -47,6 +47,7 @@ from stubborn.segmentation.dataset import (
     views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
+from stubborn.segmentation.network import computes_bf16
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
@@ -445,9 +446,7 @@ def _precision(name: str, device: torch.device) -> str:
     """Returns bf16 or fp32; `auto` is bf16 on a GPU and on a processor with instructions for it."""
     if name != "auto":
         return name
-    capabilities = torch.cpu.get_capabilities()
-    native = device.type == "cuda" or capabilities.get("avx512_bf16") or capabilities.get("amx_bf16")
-    return "bf16" if native else "fp32"
+    return "bf16" if device.type == "cuda" or computes_bf16() else "fp32"
 
 
 def _device(name: str) -> torch.device:
