@@ -69,7 +69,7 @@ class Args:
     mirror: bool = False
     """Average the logits of each view and of its mirror image, as `NetworkSegmenter(mirrored=True)` does."""
     slivers: bool = True
-    """Count regions that the image's edge cuts to less than 24 of 640 pixels; --no-slivers leaves them out."""
+    """Count regions that the image's edge cuts to less than 24 of 640 pixels; False leaves them out."""
     threads: cli.Count = 1
     """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
 
