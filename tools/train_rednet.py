@@ -41,7 +41,6 @@ from stubborn.segmentation.dataset import (
     class_weights,
     list_shards,
     pixel_counts,
-    root_class_weights,
     spread_views,
     stored_block_px,
     views_with,
@@ -51,7 +50,13 @@ from stubborn.segmentation.network import computes_bf16
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
+from stubborn.segmentation.training import (
+    exponential_average,
+    learning_rate,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
 from stubborn.segmentation.unet import MobileEncoder, UNet
 from tools.training_files import append_row, cut_rows, load_state, options_of, require_options, save_state
 

@@ -354,21 +354,6 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
     return picked
 
 
-def root_class_weights(pixels: Float64[np.ndarray, " 41"], *, most: float = 10.0) -> Float32[torch.Tensor, " classes"]:
-    """Returns class weights that are larger for rare categories: share^-0.5, at most `most` times the smallest.
-
-    Args:
-        pixels: pixels of each mpcat40 category, with void.
-        most: largest ratio of two weights.
-    """
-    counts = np.asarray(pixels, np.float64)[1:]
-    weights = np.where(counts > 0, 1.0 / np.sqrt(np.maximum(counts, 1.0)), 0.0)
-    if (counts > 0).any():
-        weights = np.minimum(weights, most * weights[counts > 0].min())
-        weights = weights / weights[counts > 0].mean()
-    return torch.tensor(weights, dtype=torch.float32)
-
-
 def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10) -> Float32[torch.Tensor, " classes"]:
     """Returns class weights that are larger for rare categories: 1 / ln(smallest + share) (Paszke et al. 2016, ENet).
 

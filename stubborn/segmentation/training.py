@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
+import numpy as np
 import torch
-from jaxtyping import Float, Float32, Int64
+from jaxtyping import Float, Float32, Float64, Int64
 from torch import Tensor, nn
 
 from stubborn.segmentation.samples import IGNORED
@@ -44,6 +45,21 @@ def pyramid_loss(
             loss = (each * own).sum() / (counted * own).sum()
         total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
     return total
+
+
+def root_class_weights(pixels: Float64[np.ndarray, " 41"], *, most: float = 10.0) -> Float32[torch.Tensor, " classes"]:
+    """Returns class weights that are larger for rare categories: share^-0.5, at most `most` times the smallest.
+
+    Args:
+        pixels: pixels of each mpcat40 category, with void.
+        most: largest ratio of two weights.
+    """
+    counts = np.asarray(pixels, np.float64)[1:]
+    weights = np.where(counts > 0, 1.0 / np.sqrt(np.maximum(counts, 1.0)), 0.0)
+    if (counts > 0).any():
+        weights = np.minimum(weights, most * weights[counts > 0].min())
+        weights = weights / weights[counts > 0].mean()
+    return torch.tensor(weights, dtype=torch.float32)
 
 
 def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Tensor], Tensor | int], None]:

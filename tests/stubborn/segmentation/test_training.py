@@ -13,7 +13,13 @@ from sim.interface import CameraModel
 from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.samples import IGNORED, Sampler
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
+from stubborn.segmentation.training import (
+    exponential_average,
+    learning_rate,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
 from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -70,6 +76,16 @@ def test_pixel_weights_count_pixels_more_often() -> None:
     assert float(pyramid_loss([out], target, weights, pixels=twice)) == pytest.approx(float(expected), rel=1e-5)
     even = pyramid_loss([out], target, weights, pixels=torch.ones(1, 32, 32))
     assert float(even) == pytest.approx(float(pyramid_loss([out], target, weights)), rel=1e-5)
+
+
+def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> None:
+    pixels = np.zeros(41)
+    pixels[:5] = (1e6, 4e4, 1e4, 1.0, 0.0)  # void has no weight
+    weights = root_class_weights(pixels, most=5.0)
+    assert float(weights[1] / weights[0]) == pytest.approx(2.0)
+    assert float(weights[2] / weights[0]) == pytest.approx(5.0)
+    assert float(weights[3]) == 0.0
+    assert float(weights[:3].mean()) == pytest.approx(1.0)
 
 
 def test_the_learning_rate_rises_to_its_peak_and_falls_like_a_cosine() -> None:
