@@ -6,7 +6,8 @@ python tools/train_rednet.py --size published --init rednet_semmap_mp3d_40.pth -
     --val-views runs/views_val --out runs/finetuned --steps 20000
 
 The same command continues a killed run: `state.pt` holds weights, their average, optimiser and step. `train.csv` and
-`val.csv` hold the curves; `rednet.safetensors` is the averaged network with the best calibrated mIoU so far.
+`val.csv` hold the curves; `rednet.safetensors` is the averaged network with the best calibrated mIoU so far,
+`last.safetensors` that of the last evaluation.
 """
 
 from __future__ import annotations
@@ -322,6 +323,7 @@ class Trainer:
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
         append_row(self.args.out / "val.csv", row | iou.by_category)
         print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, calibrated {calibrated.goals:.3f}", flush=True)
+        save_network(self.args.out / "last.safetensors", averaged, self._card(iou, calibrated))
         if calibrated.goals > self.best:
             self.best = calibrated.goals
             save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou, calibrated))

@@ -97,6 +97,7 @@ def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     assert float(printed[1]) == pytest.approx(loss, abs=1e-3)
     assert main(options(tmp_path, views=folders, steps=6)) == 0
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
+    assert load_network(tmp_path / "out/last.safetensors")[1]["step"] == 6
 
 
 def test_the_recipe_with_balanced_objects_trains_continues_and_says_what_it_draws_from(
