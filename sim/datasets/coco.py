@@ -22,16 +22,19 @@ CATEGORIES: tuple[dict[str, Any], ...] = tuple(
 """The categories of COCO files; their ids are those of mpcat40."""
 
 
-def annotate(instance_ids: NDArray[np.uint16], instances: Sequence[Instance]) -> list[dict[str, Any]]:
+def annotate(
+    instance_ids: NDArray[np.uint16], instances: Sequence[Instance], styles: Mapping[str, str] | None = None
+) -> list[dict[str, Any]]:
     """Returns an annotation for each visible object of a view, without the id of the image.
 
     Args:
         instance_ids: (h, w) number of the instance of each pixel, from 1; 0: none.
         instances: the instances of the house; number `n` is `instances[n - 1]`.
+        styles: style of each instance by its name; None: they are not known.
 
     Returns:
         For each object `id` (its number), `name`, `category_id` (mpcat40), `bbox` (x, y, width and height in pixels),
-        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask.
+        `area` (visible pixels), `iscrowd` 0 and `segmentation`, a run-length encoded mask; `style` where it is known.
     """
     found = []
     for number in np.unique(instance_ids[instance_ids > 0]).tolist():
@@ -49,6 +52,7 @@ def annotate(instance_ids: NDArray[np.uint16], instances: Sequence[Instance]) ->
                 "iscrowd": 0,
                 "segmentation": encode_mask(mask),
             }
+            | ({"style": styles[instance.name]} if styles and instance.name in styles else {})
         )
     return found
 

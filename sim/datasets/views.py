@@ -8,7 +8,7 @@ path, in their order. `EXTRAS` are members that a view has only where they are a
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -16,6 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.datasets.aimed import AIMS, aimed_poses, shows
 from sim.datasets.coco import annotate
 from sim.datasets.normals import encode_normals, surface_normals
 from sim.datasets.poses import MAX_TRIES, any_pose, mixed_poses, sequence_poses
@@ -66,6 +67,8 @@ def sample_views(
     block_px: int = 1,
     extras: Collection[str] = (),
     sequence: int | None = None,
+    aim: str | None = None,
+    styles: Mapping[str, str] | None = None,
 ) -> Iterator[View]:
     """Yields views of one house; the same generator state gives the same views.
 
@@ -78,9 +81,12 @@ def sample_views(
         block_px: factor by which views are reduced: colour is averaged, all else takes the middle pixel.
         extras: names of `EXTRAS`.
         sequence: number of views of a sequence along one path; bare walls in it are not rejected. None: no sequences.
+        aim: name of `AIMS`: the camera is aimed at objects that are rare in other views. None: it is not.
+        styles: style of each instance of the house by its name, for the annotations; None: they are not known.
 
     Raises:
-        HouseError: the house has no free position, shows only bare walls, or has no path of that many views.
+        HouseError: the house has no free position, shows only bare walls, has no path of that many views, or no object
+            to aim at.
     """
     space = scene.task.truth.space(0.0)
     cells = np.argwhere(space.largest_part())
@@ -88,19 +94,27 @@ def sample_views(
     if len(cells) == 0:
         raise HouseError(f"House '{name}': the robot fits nowhere, so there is no view of it.")
     _start_world(scene, space, cells, rng)
-    poses = mixed_poses(space, cells, rng) if sequence is None else sequence_poses(space, cells, rng, sequence, name)
-    labels = ("depth", "semantic", *(("geom",) if {"instances", "normals"} & set(extras) else ()))
+    if aim is not None:
+        poses = aimed_poses(scene.world, space, cells, rng, AIMS[aim])
+    elif sequence is not None:
+        poses = sequence_poses(space, cells, rng, sequence, name)
+    else:
+        poses = mixed_poses(space, cells, rng)
+    labels = ("depth", "semantic", *(("geom",) if aim or {"instances", "normals"} & set(extras) else ()))
     taken = tries = 0
     while taken < count:
         if tries >= MAX_TRIES * count:
-            raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows only bare walls.")
+            raise HouseError(f"House '{name}': {taken} of {count} views after {tries} tries; it shows too little.")
         tries += 1
         pose, how = next(poses)
         images = scene.camera.render(scene.world.data, pose, labels)
         if sequence is None and is_bare(images["semantic"], images["depth"]):
             continue
+        camera = scene.camera.camera
+        if aim is not None and not shows(images["geom"], scene.world.labels, how["aim"]["instance"], camera):
+            continue
         images |= scene.camera.render(scene.world.data, pose, ("rgb",))
-        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras)
+        yield _view(f"{stem}_{taken:05d}", images, pose, scene, block_px, record | how, extras, styles)
         taken += 1
 
 
@@ -166,6 +180,7 @@ def _view(
     block_px: int,
     record: dict[str, Any],
     extras: Collection[str],
+    styles: Mapping[str, str] | None,
 ) -> View:
     camera = scene.camera.camera
     depth_mm = np.rint(reduce_image(images["depth"], block_px) * 1000.0).astype(np.uint16)
@@ -186,7 +201,7 @@ def _view(
     if "instances" in extras:
         labels = scene.world.labels
         ids = _instance_ids(_middle_pixels(images["geom"], block_px), labels)
-        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances))
+        view = replace(view, instances=ids, annotations=annotate(ids, labels.instances, styles))
     return view
 
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import copy
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -119,6 +119,8 @@ class GeneratedHouse:
     tries: int
     rejects: tuple[str, ...]
     """The reason why each earlier try was rejected."""
+    styles: Mapping[str, str] = field(default_factory=dict)
+    """Name of the style of each piece of furniture, by the label of its instance (`chair_03`)."""
 
 
 def generate(
@@ -174,14 +176,16 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         except (PlanError, FurnishError) as error:
             rejects.append(str(error))
             continue
-        spec = _build_within_limit(draft, config)
+        built = _build_within_limit(draft, config)
+        spec = built.spec if built is not None else None
         faults = (
             check_house(spec, furnished=True)
             if spec is not None
             else [f"its file is larger than {draft.max_bytes / 1000:.0f} KB"]
         )
-        if spec is not None and not faults:
-            return GeneratedHouse(spec, draft.plan, len(spec.geoms), attempt + 1, tuple(rejects))
+        if built is not None and not faults:
+            geoms = len(built.spec.geoms)
+            return GeneratedHouse(built.spec, draft.plan, geoms, attempt + 1, tuple(rejects), built.styles)
         rejects.append("; ".join(faults))
     raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {' | '.join(rejects)}")
 
@@ -234,7 +238,7 @@ def _draw_house(rng: np.random.Generator, config: HouseConfig, catalogue: Catalo
         draft = replace(draft, upper=draw_upper_storey(rng, stairs, config.pool, source, looks))
     if not config.hazards:
         return draft
-    bare = _build(draft, config, BYTES_PER_GEOM[0])
+    bare = _build(draft, config, BYTES_PER_GEOM[0]).spec
     hazards = draw_hazards(rng, config.hazards, config.pool, bare, openings, config.hazard_count)
     return replace(draft, hazards=hazards)
 
@@ -284,8 +288,8 @@ def max_bytes(area_m2: float) -> int:
     return round(MAX_BYTES + BYTES_PER_M2 * max(0.0, area_m2 - USUAL_M2))
 
 
-def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | None:
-    """Returns the specification of a drawn home, its parts joined as much as the size of the file allows.
+def _build_within_limit(draft: _Draft, config: HouseConfig) -> HouseBuilder | None:
+    """Returns a drawn home, built, its parts joined as much as the size of the file allows.
 
     Returns None where the file is too large anyway. Homes of the pool `wide` are in no split and may have any size.
     """
@@ -297,10 +301,10 @@ def _build_within_limit(draft: _Draft, config: HouseConfig) -> mujoco.MjSpec | N
     for share in THINNED_SHARES:
         thinned = draft if share == 1.0 else _thinned(draft, share)
         while level <= last:
-            spec = _build(thinned, config, BYTES_PER_GEOM[level], assembler)
-            excess = len(house_text(spec)) - limit
+            built = _build(thinned, config, BYTES_PER_GEOM[level], assembler)
+            excess = len(house_text(built.spec)) - limit
             if excess <= 0:
-                return spec
+                return built
             if level == last and excess > (MAX_EXCESS - 1.0) * limit:
                 return None
             if level == last:
@@ -352,10 +356,8 @@ def _thinned_layouts(of_rooms: list[RoomLayout], share: float) -> list[RoomLayou
     return layouts
 
 
-def _build(
-    draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: Assembler | None = None
-) -> mujoco.MjSpec:
-    """Returns the specification of a drawn home."""
+def _build(draft: _Draft, config: HouseConfig, bytes_per_geom: int, assembler: Assembler | None = None) -> HouseBuilder:
+    """Returns the builder of a drawn home, which has its specification and the styles of its items."""
     builder = HouseBuilder(config.name, bytes_per_geom=bytes_per_geom, assembler=assembler)
     builder.add_ground(draft.plan.bounds.grown(OUTER_WALL_M))
     for room in draft.plan.rooms:
@@ -380,7 +382,7 @@ def _build(
     builder.set_ambient(DAYLIGHT[draft.time].ambient)
     for lamp in [*draft.lamps, *(draft.upper.lamps if draft.upper else ())]:
         builder.add_lamp(lamp)
-    return builder.spec
+    return builder
 
 
 def _draw_size(rng: np.random.Generator, config: HouseConfig) -> tuple[float, PlanKind]:

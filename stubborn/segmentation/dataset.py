@@ -122,7 +122,7 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
         ConfigError: the file is not a tar file or truncated, or a view in it is incomplete.
     """
     for key, parts in _members(file):
-        yield _decoded(file, key, parts)
+        yield decode_view(file, key, parts)
 
 
 def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
@@ -150,6 +150,31 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
                     parts[suffix.split(".")[0]] = b"" if content is None else content.read()
             if number >= 0:
                 yield key, parts
+    except (tarfile.TarError, OSError, EOFError, ValueError) as error:
+        if isinstance(error, ConfigError):
+            raise
+        raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
+
+
+def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]:
+    """Yields the key of each view of a shard with offset and size in bytes of its members, without reading them.
+
+    Raises:
+        ConfigError: the file is not a tar file or truncated.
+    """
+    key, places = "", {}
+    try:
+        with tarfile.open(file, mode="r:") as archive:
+            for member in archive:
+                _require_small_file(file, member)
+                name, _, suffix = member.name.partition(".")
+                if name != key and places:
+                    yield key, places
+                    places = {}
+                key = name
+                places[suffix.split(".")[0]] = member.offset_data, member.size
+            if places:
+                yield key, places
     except (tarfile.TarError, OSError, EOFError, ValueError) as error:
         if isinstance(error, ConfigError):
             raise
@@ -326,7 +351,7 @@ def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
         views = sum(1 for _ in _members(shard, frozenset()))
         share = min(math.ceil((count - len(picked)) / (len(shards) - number)), views)
         wanted = frozenset(np.linspace(0, views - 1, share).round().astype(int).tolist())
-        picked += [_decoded(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
+        picked += [decode_view(shard, key, parts) for key, parts in _members(shard, wanted) if parts]
     return picked
 
 
@@ -345,8 +370,12 @@ def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10)
     return torch.tensor(weights / weights[counts > 0].mean() if (counts > 0).any() else weights, dtype=torch.float32)
 
 
-def _decoded(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
-    """Returns the view with these members; raises ConfigError where one is missing or broken."""
+def decode_view(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
+    """Returns the view of a shard with these members.
+
+    Raises:
+        ConfigError: a member is missing or broken.
+    """
     missing = [part for part in _PARTS if part not in parts]
     if missing:
         raise ConfigError(f"Shard '{file}': view '{key}' has no '{missing[0]}'.")

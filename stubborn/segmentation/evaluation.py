@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -12,6 +13,7 @@ from jaxtyping import Float32, Float64, Int64
 from torch import Tensor
 
 from sim.interface import GOAL_CATEGORIES, MPCAT40, MPCAT40_ID
+from stubborn.segmentation.calibration import fit_calibration
 from stubborn.segmentation.networks import Network
 from stubborn.segmentation.rednet import CLASSES
 
@@ -102,21 +104,35 @@ class Reliability:
         return float(sum(n * abs(score - right) for n, score, right in self.rows()) / total)
 
 
+class Evaluation(NamedTuple):
+    """Results of a network on some views."""
+
+    iou: Iou
+    """Of the network's own logits."""
+    reliability: Reliability
+    """Of the network's own scores."""
+    calibrated: Iou
+    """Of logits calibrated as the agent uses them: each half of the views by a calibration fitted to the other half.
+    It uses every second pixel in each direction."""
+
+
 def evaluate(
     model: Network,
     batches: Iterable[tuple[Tensor, Tensor, Tensor]],
     *,
     device: torch.device,
-) -> tuple[Iou, Reliability]:
+) -> Evaluation:
     """Returns the intersection over union and the reliability of a network over batches of samples.
 
     Args:
         model: the network.
-        batches: samples without augmentation; see `stubborn.segmentation.samples.Sample`.
+        batches: samples without augmentation; see `stubborn.segmentation.samples.Sample`. Views of one house follow one
+            another, so that the two halves of the views show different houses.
         device: device of the model.
     """
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
     reliability = Reliability.empty()
+    thinned: list[tuple[Tensor, Tensor]] = []
     model.eval()
     with torch.inference_mode():
         for rgb, depth, target in batches:
@@ -128,4 +144,27 @@ def evaluate(
             flat = some.permute(1, 0, 2, 3).reshape(CLASSES, -1).numpy()
             counts = kept.reshape(-1) >= 0
             reliability.add(flat[:, counts], kept.reshape(-1)[counts])
-    return Iou.of(matrix), reliability
+            thinned += zip(logits[:, :, 1::2, 1::2].half(), target[:, 1::2, 1::2], strict=True)
+    iou = Iou.of(matrix)
+    return Evaluation(iou, reliability, calibrated_iou(thinned) if len(thinned) > 1 else iou)
+
+
+def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
+    """Returns the intersection over union of calibrated logits: each half by a calibration fitted to the other half.
+
+    Args:
+        views: logits (classes, h, w) and true channels (h, w) of each view, at least two.
+    """
+    matrix = np.zeros((CLASSES, CLASSES), np.int64)
+    middle = len(views) // 2
+    for fitted, judged in ((views[:middle], views[middle:]), (views[middle:], views[:middle])):
+        pairs = [
+            (logits[:, ::4, ::4].reshape(CLASSES, -1).t(), truth[::4, ::4].reshape(-1)) for logits, truth in fitted
+        ]
+        logits, truth = torch.cat([pair[0] for pair in pairs]).float(), torch.cat([pair[1] for pair in pairs])
+        if not (truth >= 0).any():
+            continue
+        calibration = fit_calibration(logits[truth >= 0].clone(), truth[truth >= 0].clone())
+        for each, target in judged:
+            matrix += confusion(calibration.applied(each.float()).argmax(dim=0).numpy(), target.numpy())
+    return Iou.of(matrix)

@@ -36,6 +36,7 @@ class NetworkSegmenter:
         score_block_px: edge of the image block of one score; None: 4, or the network's own if it is larger.
         calibration: applied to the logits before the softmax; None changes nothing.
         threads: number of PyTorch's threads in this process; None does not change it.
+        mirrored: the logits are the mean of those of the image and of its mirror image, computed as one batch.
 
     Raises:
         ConfigError: `score_block_px` is not a multiple of the block of one logit of the network.
@@ -52,6 +53,7 @@ class NetworkSegmenter:
         score_block_px: int | None = None,
         calibration: Calibration | None = None,
         threads: int | None = None,
+        mirrored: bool = False,
     ) -> None:
         finest_px = block_px * model.stride_px
         score_block_px = score_block_px or max(4, finest_px)
@@ -68,6 +70,8 @@ class NetworkSegmenter:
         self.model.to(memory_format=torch.channels_last)  # pyright: ignore[reportCallIssue] - its stub lacks it
         self.camera = camera or CameraModel()
         self.block_px = block_px
+        self.mirrored = mirrored
+        self.bf16 = mirrored and computes_bf16()
         self.calibration = calibration or Calibration.of_temperature(1.0)
         every = score_block_px // finest_px
         self._middle = slice(every // 2, None, every)
@@ -147,10 +151,22 @@ class NetworkSegmenter:
         """Returns the logits of one frame; one for each square of `block_px` times the network's stride."""
         small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
         channels = self.second.of(small_depth, self.camera)
-        with torch.inference_mode():
-            colour = torch.from_numpy(normalise_rgb(small_rgb))[None].to(memory_format=torch.channels_last)
-            second = torch.from_numpy(self.second.normalised(channels, self.camera))[None]
+        images, seconds = [small_rgb], [channels]
+        if self.mirrored:
+            images.append(np.ascontiguousarray(small_rgb[:, ::-1]))
+            seconds.append(self.second.mirrored(channels))
+        colour = torch.from_numpy(np.stack([normalise_rgb(image) for image in images]))
+        second = torch.from_numpy(np.stack([self.second.normalised(each, self.camera) for each in seconds]))
+        with torch.inference_mode(), torch.autocast("cpu", torch.bfloat16, enabled=self.bf16):
+            colour = colour.to(memory_format=torch.channels_last)
             second = second.to(memory_format=torch.channels_last)
-            out = self.model.pyramid(colour, second, sides=False)[0][0]  # pyright: ignore[reportCallIssue]
+            out = self.model.pyramid(colour, second, sides=False)[0].float()  # pyright: ignore[reportCallIssue]
         pad = padding(*small_depth.shape)
-        return out[:, *(pad.inner if self.stride_px == 1 else pad.inner_half)]
+        own = out[:, :, *(pad.inner if self.stride_px == 1 else pad.inner_half)]
+        return 0.5 * (own[0] + own[1].flip(-1)) if self.mirrored else own[0]
+
+
+def computes_bf16() -> bool:
+    """Returns whether the processor has instructions for bf16; on others it is slower than fp32."""
+    capabilities = torch.cpu.get_capabilities()
+    return bool(capabilities.get("avx512_bf16") or capabilities.get("amx_bf16"))

@@ -9,20 +9,27 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 import torch
-from jaxtyping import Float32, Int64, Shaped, UInt8
+from jaxtyping import Bool, Float32, Int64, Shaped, UInt8, UInt16
 from torch import Tensor
 from torch.utils.data import Dataset
 
-from sim.interface import MPCAT40, CameraModel, ConfigError
+from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, ConfigError
 from stubborn.segmentation.dataset import GOAL_IDS, LabelledView
 from stubborn.segmentation.inputs import INPUTS, InputKind
-from stubborn.segmentation.preprocess import normalise_rgb, padding, shrink
+from stubborn.segmentation.preprocess import normalise_rgb, pad_edges, padding, shrink
 
 IGNORED = -100
 """Label of pixels that do not count: void and padding."""
 
+SMALL_SHARE, MOST_WEIGHT = 1 / 16, 4.0
+"""Objects with a smaller share of the image than this weigh more per pixel: area^-0.5, at most so much."""
+SURFACES = np.array([MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
+"""Categories whose pixels weigh 1."""
+
 Sample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "c h w"], Int64[Tensor, "h w"]]
 """Normalised colour, the normalised second input, and class channels or `IGNORED`."""
+WeightedSample = tuple[Float32[Tensor, "3 h w"], Float32[Tensor, "c h w"], Int64[Tensor, "h w"], Float32[Tensor, "h w"]]
+"""A sample with the weights of its pixels."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +44,8 @@ class Augmentation:
     saturation: float = 0.6
     hue_rad: float = 0.6
     """Colours are rotated about grey by up to this: furniture has other colours in other houses."""
+    grey: float = 0.1
+    """Share of the samples without colour: shapes are to be learnt."""
     noise_rgb: float = 4.0
     """Largest standard deviation of Gaussian noise, of 255."""
     depth_noise: float = 0.0012
@@ -51,6 +60,7 @@ NONE = Augmentation(
     contrast=0.0,
     saturation=0.0,
     hue_rad=0.0,
+    grey=0.0,
     noise_rgb=0.0,
     depth_noise=0.0,
     holes=0,
@@ -76,27 +86,39 @@ class Sampler:
     used_block_px: int | None = None
     """Factor by which views are shrunk where the network is used: the windows' distances are those at which objects are
     as large in such images. None: as `block_px`."""
+    area_weights: bool = False
+    """Samples have weights of their pixels, larger for small objects (`pixel_weights`)."""
 
-    def __call__(self, view: LabelledView, rng: np.random.Generator) -> Sample:
-        """Returns a sample of a view."""
+    def __call__(
+        self, view: LabelledView, rng: np.random.Generator, *, instance: int | None = None
+    ) -> Sample | WeightedSample:
+        """Returns a sample of a view; a window contains a pixel of the instance with this number, if it is given."""
         augmentation, second = self.augmentation, INPUTS[self.second]
+        weights = pixel_weights(view, self.block_px) if self.area_weights else None
         rgb, semantic = shrink(view.rgb, self.block_px), shrink(view.semantic, self.block_px)
         channels = second.of(jitter_depth(shrink(view.depth_m, self.block_px), augmentation, rng), self.camera)
         if self.window_px is not None:
             height, width = semantic.shape
-            shown = random_goal_pixel(semantic, rng) if rng.random() < self.focus_share else None
+            if instance is not None:
+                shown = random_pixel(shrink(_instances(view), self.block_px) == instance, rng)
+            else:
+                shown = random_goal_pixel(semantic, rng) if rng.random() < self.focus_share else None
             window = random_window(height, width, self.window_px, self.whole_share, rng, shown=shown)
             rgb, semantic = window.colour(rgb), window.labels(semantic)
             cut = channels[window.cut]
-            enlargement = window.width_px / cut.shape[1] * (self.used_block_px or self.block_px) / self.block_px
+            zoom = window.width_px / cut.shape[1]
+            enlargement = zoom * (self.used_block_px or self.block_px) / self.block_px
+            weights = None if weights is None else window.weights(weights)
             channels = second.zoomed(cut, window.width_px, window.height_px, enlargement)
         if augmentation.mirror and rng.random() < 0.5:
             rgb, channels, semantic = _mirrored(rgb), second.mirrored(channels), _mirrored(semantic)
-        return (
+            weights = None if weights is None else _mirrored(weights)
+        sample = (
             torch.from_numpy(normalise_rgb(jitter_colour(rgb, augmentation, rng))),
             torch.from_numpy(second.normalised(channels, self.camera)),
             torch.from_numpy(labels(semantic)),
         )
+        return sample if weights is None else (*sample, torch.from_numpy(pad_edges(weights[None])[0]))
 
 
 class Samples(Dataset):
@@ -108,8 +130,31 @@ class Samples(Dataset):
     def __len__(self) -> int:
         return len(self._views)
 
-    def __getitem__(self, i: int) -> Sample:
+    def __getitem__(self, i: int) -> Sample | WeightedSample:
         return self._sampler(self._views[i], np.random.default_rng(i))
+
+
+def pixel_weights(view: LabelledView, block_px: int) -> Float32[np.ndarray, "h w"]:
+    """Returns the weight of each pixel of a shrunk view: area^-0.5 of its object in the view, from 1 to `MOST_WEIGHT`.
+
+    It depends on the whole object in the view and not on the part of it in a window. Pixels of surfaces weigh 1.
+
+    Raises:
+        ConfigError: the view has no instances.
+    """
+    instances = shrink(_instances(view), block_px)
+    area = np.bincount(instances.reshape(-1)) / instances.size
+    weights = np.clip(np.sqrt(SMALL_SHARE / np.maximum(area, 1e-9)), 1.0, MOST_WEIGHT).astype(np.float32)
+    weights[0] = 1.0
+    return np.where(np.isin(shrink(view.semantic, block_px), SURFACES), np.float32(1.0), weights[instances])
+
+
+def _instances(view: LabelledView) -> UInt16[np.ndarray, "h w"]:
+    if view.instances is None:
+        raise ConfigError(
+            f"View '{view.key}' has no instances; `stubborn views --extras instances` stores them."
+        )
+    return view.instances
 
 
 def _mirrored(image: Shaped[np.ndarray, "h w *channels"]) -> Shaped[np.ndarray, "h w *channels"]:
@@ -139,6 +184,12 @@ class Window:
             np.uint8, copy=False
         )
 
+    def weights(self, weights: Float32[np.ndarray, "h w"]) -> Float32[np.ndarray, "rows cols"]:
+        """Returns the window of an image of weights; each pixel takes one pixel of the view."""
+        return np.asarray(
+            cv2.resize(weights[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST)
+        )
+
     def labels(self, semantic: UInt8[np.ndarray, "h w"]) -> UInt8[np.ndarray, "rows cols"]:
         """Returns the window of an image of labels; each pixel takes one pixel of the view."""
         return cv2.resize(semantic[self.cut], (self.width_px, self.height_px), interpolation=cv2.INTER_NEAREST).astype(
@@ -155,8 +206,15 @@ def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generat
     goals = np.intersect1d(present, GOAL_IDS)
     if goals.size == 0:
         return None
-    pixels = np.flatnonzero(semantic == rng.choice(goals))
-    row, col = divmod(int(rng.choice(pixels)), semantic.shape[1])
+    return random_pixel(semantic == rng.choice(goals), rng)
+
+
+def random_pixel(mask: Bool[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
+    """Returns row and column of a pixel of a mask, each equally often; None where it is empty."""
+    pixels = np.flatnonzero(mask)
+    if pixels.size == 0:
+        return None
+    row, col = divmod(int(rng.choice(pixels)), mask.shape[1])
     return row, col
 
 
@@ -209,7 +267,7 @@ def jitter_colour(
 ) -> UInt8[np.ndarray, "h w 3"]:
     """Returns an image with random brightness, white balance, contrast, saturation, hue and noise."""
     a = augmentation
-    if max(a.brightness, a.contrast, a.saturation, a.hue_rad, a.noise_rgb) == 0.0:
+    if max(a.brightness, a.contrast, a.saturation, a.hue_rad, a.noise_rgb, a.grey) == 0.0:
         return rgb
     image = rgb.astype(np.float32)
     gain = (1.0 + rng.uniform(-a.brightness, a.brightness)) * (1.0 + 0.5 * rng.uniform(-1, 1, 3) * a.brightness)
@@ -218,7 +276,9 @@ def jitter_colour(
     image = mean + (image - mean) * np.float32(1.0 + rng.uniform(-a.contrast, a.contrast))
     grey = image.mean(axis=2, keepdims=True)
     image = grey + (image - grey) * np.float32(1.0 + rng.uniform(-a.saturation, a.saturation))
-    if a.hue_rad > 0.0:
+    if a.grey > 0.0 and rng.random() < a.grey:
+        image = np.broadcast_to(grey, image.shape).copy()
+    elif a.hue_rad > 0.0:
         image = turn_hue(image, rng.uniform(-a.hue_rad, a.hue_rad))
     sigma = rng.uniform(0.0, a.noise_rgb)
     if sigma > 0.0:

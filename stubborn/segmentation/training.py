@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 
+import numpy as np
 import torch
-from jaxtyping import Float, Float32, Int64
+from jaxtyping import Float, Float32, Float64, Int64
 from torch import Tensor, nn
 
 from stubborn.segmentation.samples import IGNORED
@@ -16,6 +17,9 @@ def pyramid_loss(
     outputs: Sequence[Float[Tensor, "n classes _ _"]],
     target: Int64[Tensor, "n h w"],
     weights: Float32[Tensor, " classes"],
+    *,
+    subpixel: tuple[int, int] | None = None,
+    pixels: Float32[Tensor, "n h w"] | None = None,
 ) -> Float[Tensor, ""]:
     """Returns the sum over scales of the weighted cross entropy, with every 2nd, 4th, 8th and 16th label.
 
@@ -23,16 +27,39 @@ def pyramid_loss(
         outputs: logits at full size, and at 1/2, 1/4, ... of it.
         target: class channels, or `IGNORED`.
         weights: of the classes.
+        subpixel: the first logits are those of this pixel of every 2 x 2 block (`RedNet.pyramid`).
+        pixels: weights of the pixels; None: all are 1.
     """
     total = outputs[0].new_zeros(())
-    for out in outputs:
+    for number, out in enumerate(outputs):
         step = target.shape[-1] // out.shape[-1]
-        middle = step // 2
-        small = target[:, middle::step, middle::step].reshape(-1)
-        logits = out.permute(0, 2, 3, 1).reshape(-1, out.shape[1])  # classes last: several times faster on a CPU
-        loss = nn.functional.cross_entropy(logits.float(), small, weight=weights, ignore_index=IGNORED)
+        row, column = subpixel if subpixel is not None and number == 0 else (step // 2, step // 2)
+        small = target[:, row::step, column::step].reshape(-1)
+        logits = out.permute(0, 2, 3, 1).reshape(-1, out.shape[1]).float()  # classes last: faster on a CPU
+        if pixels is None:
+            loss = nn.functional.cross_entropy(logits, small, weight=weights, ignore_index=IGNORED)
+        else:
+            own = pixels[:, row::step, column::step].reshape(-1)
+            each = nn.functional.cross_entropy(logits, small, weight=weights, ignore_index=IGNORED, reduction="none")
+            counted = torch.where(small == IGNORED, 0.0, weights[small.clamp(min=0)])
+            loss = (each * own).sum() / (counted * own).sum()
         total = total + torch.nan_to_num(loss)  # a scale whose labels are all void gives 0 / 0
     return total
+
+
+def root_class_weights(pixels: Float64[np.ndarray, " 41"], *, most: float = 10.0) -> Float32[torch.Tensor, " classes"]:
+    """Returns class weights that are larger for rare categories: share^-0.5, at most `most` times the smallest.
+
+    Args:
+        pixels: pixels of each mpcat40 category, with void.
+        most: largest ratio of two weights.
+    """
+    counts = np.asarray(pixels, np.float64)[1:]
+    weights = np.where(counts > 0, 1.0 / np.sqrt(np.maximum(counts, 1.0)), 0.0)
+    if (counts > 0).any():
+        weights = np.minimum(weights, most * weights[counts > 0].min())
+        weights = weights / weights[counts > 0].mean()
+    return torch.tensor(weights, dtype=torch.float32)
 
 
 def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Tensor], Tensor | int], None]:
@@ -79,9 +106,9 @@ def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]
         raise ValueError("set_normalisation needs at least one batch.")
 
 
-def learning_rate(step: int, total: int, *, peak: float, warmup: int) -> float:
-    """Returns the learning rate of a step: a linear warm-up, then half a cosine down to a hundredth of the peak."""
+def learning_rate(step: int, total: int, *, peak: float, warmup: int, last: float = 0.01) -> float:
+    """Returns the learning rate of a step: a linear warm-up, then half a cosine down to `last` times the peak."""
     if step < warmup:
         return peak * (step + 1) / warmup
     done = min(1.0, (step - warmup) / max(1, total - warmup))
-    return peak * (0.01 + 0.99 * 0.5 * (1.0 + math.cos(math.pi * done)))
+    return peak * (last + (1.0 - last) * 0.5 * (1.0 + math.cos(math.pi * done)))

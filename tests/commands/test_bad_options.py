@@ -138,6 +138,8 @@ BAD: dict[str, list[tuple[str, str]]] = {
         ("--out OUT --profile best", "best"),
         ("--out OUT --shard 3/2", '--shard must be "i/n"'),
         ("--out OUT --executor cloud", "cloud"),
+        ("--out OUT --aim common", "--aim must be rare"),
+        ("--out OUT --withheld only", "--withheld must be without or only, and needs --pool"),
     ],
     "sim.commands.importing.furniture": [("--source nowhere --out OUT", "nowhere")],
     "sim.commands.episodes": [("--split nowhere", "0 houses"), ("--split nowhere --recipe cake", "0 houses|cake")],

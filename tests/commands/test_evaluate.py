@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -11,7 +12,8 @@ import torch
 
 from sim.commands.evaluate import segmentation as evaluate_rednet
 from sim.commands.evaluate.segmentation import Args
-from sim.interface import ConfigError
+from sim.interface import MPCAT40_ID, ConfigError
+from stubborn.segmentation.calibration import Calibration
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.rednet import RedNet, RedNetConfig
 from tests.commands.test_train_segmentation import write_views
@@ -105,3 +107,23 @@ def test_a_calibration_is_not_written_into_a_file_of_another_project(tmp_path: P
     with pytest.raises(ConfigError, match="--calibrate writes into the file of the weights"):
         evaluate_rednet.main(Args(views=(tmp_path,), weights=file, calibrate=True))
     assert file.read_bytes() == b"weights"
+
+
+def test_mirror_images_slivers_and_the_calibration_change_what_is_measured(tmp_path: Path, weights: Path) -> None:
+    for name in ("one", "two"):
+        write_views(tmp_path / name, 4)
+    args = Args(views=(tmp_path / "one", tmp_path / "two"), weights=weights, threads=1)
+    model, metadata = load_network(weights)
+    plain = evaluate_rednet.measure(args, model, metadata)
+    assert (plain.calibrated.goals, plain.calibrated.accuracy) == (plain.iou.goals, plain.iou.accuracy)
+    mirrored = evaluate_rednet.measure(replace(args, mirror=True), model, metadata)
+    assert mirrored.matrix.sum() == plain.matrix.sum()
+    assert (mirrored.matrix != plain.matrix).any()
+    without = evaluate_rednet.measure(replace(args, slivers=False), model, metadata)
+    assert without.matrix.sum() < plain.matrix.sum()  # sofas of 16 columns at the right edge are slivers
+    sofa = torch.zeros(40)
+    sofa[MPCAT40_ID["sofa"] - 1] = 1e4
+    metadata["calibration"] = Calibration(torch.ones(40), sofa).to_metadata()
+    shifted = evaluate_rednet.measure(args, model, metadata)
+    assert (shifted.matrix == plain.matrix).all()
+    assert shifted.calibrated.accuracy == pytest.approx(plain.matrix[MPCAT40_ID["sofa"] - 1].sum() / plain.matrix.sum())

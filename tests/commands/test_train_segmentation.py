@@ -17,6 +17,10 @@ import torch
 from sim.commands.evaluate.network_card import training_stages
 from sim.commands.train import segmentation
 from sim.commands.train.segmentation import Args, Trainer, main
+from sim.datasets.coco import annotate
+from sim.datasets.shards import write_shard
+from sim.datasets.views import View
+from sim.houses.labels import Instance
 from sim.interface import MPCAT40_ID, ConfigError
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.networks import NETWORKS, build_network
@@ -45,6 +49,23 @@ def write_views(folder: Path, count: int, size_px: int = 64, rows_px: int | None
                 archive.addfile(entry, io.BytesIO(content))
 
 
+def write_views_with_objects(folder: Path, count: int) -> None:
+    """Views of a bright sofa in front of a dark wall, with instances and styles."""
+    folder.mkdir()
+    rng = np.random.default_rng(0)
+    views = []
+    for i in range(count):
+        ids = np.ones((64, 64), np.uint16)
+        ids[:, rng.integers(16, 48) :] = 2
+        objects = (Instance("wall_00", "wall", (0,)), Instance("sofa_00", "sofa", (1,)))
+        semantic = np.where(ids == 2, MPCAT40_ID["sofa"], MPCAT40_ID["wall"]).astype(np.uint8)
+        rgb = np.repeat(np.where(ids == 2, 200, 50).astype(np.uint8)[..., None], 3, axis=2)
+        depth = np.where(ids == 2, 1000, 3000).astype(np.uint16)
+        annotations = annotate(ids, objects, {"sofa_00": f"style_{i % 2}"})
+        views.append(View(f"v{i:05d}", rgb, depth, semantic, {"house": "h"}, ids, annotations))
+    write_shard(folder, "views-000000", views, house="h", config={})
+
+
 def rows(file: Path) -> list[dict[str, str]]:
     with file.open(newline="") as stream:
         return list(csv.DictReader(stream))
@@ -69,13 +90,32 @@ def test_training_writes_curves_and_weights_prints_its_loss_and_continues_a_run(
     assert model.config == COMPACT
     assert card["block_px"] == 1
     assert card["options"]["views"] == [str(folder) for folder in folders]
-    assert card["miou_goals"] == pytest.approx(max(float(row["miou_goals"]) for row in first), abs=1e-4)
+    assert card["miou_calibrated"] == pytest.approx(max(float(row["miou_calibrated"]) for row in first), abs=1e-4)
     loss = float(rows(tmp_path / "out/train.csv")[-1]["loss"])
     printed = re.search(r"step 4 of 4: loss (\d+\.\d{3}), ", capsys.readouterr().out)
     assert printed is not None
     assert float(printed[1]) == pytest.approx(loss, abs=1e-3)
     assert main(options(tmp_path, views=folders, steps=6)) == 0
     assert [row["step"] for row in rows(tmp_path / "out/val.csv")] == ["2", "4", "6"]
+    assert load_network(tmp_path / "out/last.safetensors")[1]["step"] == 6
+
+
+def test_the_recipe_with_balanced_objects_trains_continues_and_says_what_it_draws_from(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_views_with_objects(tmp_path / "train", 3)
+    write_views(tmp_path / "val", 2)
+    recipe = {"balance": 0.8, "class_weights": "root", "area_weights": True, "window_px": 32, "warmup_steps": 1}
+    assert main(options(tmp_path, **recipe)) == 0
+    assert "3 views; objects and styles: sofa 3 of 2" in capsys.readouterr().out
+    assert main(options(tmp_path, steps=6, **recipe)) == 0
+    losses = [float(row["loss"]) for row in rows(tmp_path / "out/train.csv")]
+    assert len(losses) == 2
+    assert np.isfinite(losses).all()
+    with pytest.raises(ConfigError, match="with --class-weights = root"):
+        main(options(tmp_path, steps=8, **(recipe | {"class_weights": "log"})))
+    with pytest.raises(ConfigError, match="--balance and --rare-share exclude each other"):
+        main(options(tmp_path, **recipe, rare_share=0.1))
 
 
 def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
@@ -97,7 +137,7 @@ def test_a_killed_run_keeps_its_best_network_and_has_no_row_twice(
         main(options(tmp_path))
     assert [row["step"] for row in rows(out / "train.csv")] == ["1", "2", "3"]
     monkeypatch.setattr(Trainer, "_train_on", train_on)
-    best = float(rows(out / "val.csv")[0]["miou_goals"])
+    best = float(rows(out / "val.csv")[0]["miou_calibrated"])
     assert Trainer(options(tmp_path)).best == pytest.approx(best)
     for _ in range(2):  # the second time there is nothing to do
         assert main(options(tmp_path, evaluate_every=3)) == 0

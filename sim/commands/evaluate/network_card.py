@@ -41,11 +41,14 @@ class Measured:
     """The results of an evaluation."""
 
     iou: Iou
+    """Of the network's own logits."""
+    calibrated: Iou
+    """Of calibrated logits, as the agent uses them; the parts below are of these too, the matrix is not."""
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
     breakdown: Breakdown
     by_folder: dict[str, float]
-    """mIoU over the goal categories of each folder of views."""
+    """Calibrated mIoU over the goal categories of each folder of views."""
     views: int
     before: Reliability
     """On the houses to which the calibration was not fitted, without one."""
@@ -104,12 +107,14 @@ def _about(network: Evaluated) -> Iterable[str]:
 
 
 def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, Any]]) -> Iterable[str]:
-    iou = measured.iou
+    iou, own = measured.calibrated, measured.iou
     yield "| | |\n|---|---|"
-    yield f"| mIoU, goal categories present | {iou.goals:.3f} |"
+    yield f"| mIoU, goal categories present, calibrated as agents use it | {iou.goals:.3f} |"
+    yield f"| mIoU, goal categories present, without calibration | {own.goals:.3f} |"
     yield from (f"| mIoU, views `{name}` | {value:.3f} |" for name, value in measured.by_folder.items())
     yield f"| mIoU, all categories present | {iou.everything:.3f} |"
     yield f"| pixel accuracy | {iou.accuracy:.3f} |"
+    yield f"| pixel accuracy without calibration | {own.accuracy:.3f} |"
     yield f"| number of views | {measured.views} |"
     yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
     yield from (f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages)
@@ -121,11 +126,12 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
 def _categories(measured: Measured) -> Iterable[str]:
     found = measured.breakdown.found_by_category()
     yield "An object is a connected region of a category in a view; it is found if half of its pixels are right.\n"
-    yield "| category | IoU | objects | found |\n|---|--:|--:|--:|"
+    yield "| category | IoU | IoU without calibration | objects | found |\n|---|--:|--:|--:|--:|"
     for name in GOAL_CATEGORIES:
         if name in measured.iou.by_category:
             count, share = found.get(name, (0, float("nan")))
-            yield f"| {name} | {measured.iou.by_category[name]:.3f} | {count} | {100 * share:.0f} % |"
+            calibrated, own = (iou.by_category[name] for iou in (measured.calibrated, measured.iou))
+            yield f"| {name} | {calibrated:.3f} | {own:.3f} | {count} | {100 * share:.0f} % |"
     yield ""
 
 

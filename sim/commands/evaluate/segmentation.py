@@ -12,9 +12,10 @@ learning curves of the trainings that led to the network.
 
 from __future__ import annotations
 
+import itertools
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ from stubborn.segmentation.networks import Network
 from stubborn.segmentation.preprocess import padding, shrink
 from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import NONE, Sampler, Samples
+from stubborn.segmentation.slivers import without_slivers
 
 TIMED_FRAMES = 30
 BATCH = 8
@@ -61,6 +63,10 @@ class Args:
     """With --card: folders of the trainings that led to the network, first one first, for a picture of the curves."""
     block_px: cli.Count | None = None
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
+    mirror: bool = False
+    """Average the logits of each view and of its mirror image, as `NetworkSegmenter(mirrored=True)` does."""
+    slivers: bool = True
+    """Count regions that the image's edge cuts to less than 24 of 640 pixels; False leaves them out."""
     threads: cli.Count = 1
     """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
 
@@ -73,7 +79,9 @@ class Predictions:
     """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
     breakdown: Breakdown
     by_folder: dict[str, float]
-    """mIoU over the goal categories of each folder of views."""
+    """Calibrated mIoU over the goal categories of each folder of views."""
+    calibrated: Int64[np.ndarray, "classes classes"]
+    """The same of calibrated logits, as the agent uses them."""
     samples: dict[str, list[tuple[Tensor, Tensor]]]
     """Logits (k, classes) and true class channels (k,) of labelled pixels, by house."""
     views: int = 0
@@ -114,15 +122,16 @@ def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
         ConfigError: all views are of one house, or they are stored at a lower resolution than the network needs.
     """
     block_px = int(metadata.get("block_px", 1))
-    seen = predict(args.views, model, block_px, args.count)
+    calibration = Calibration.from_metadata(metadata)
+    seen = predict(args, model, block_px, calibration)
     houses = sorted(seen.samples)
     if len(houses) < 2:
         raise ConfigError(
             "--views are of one house only; calibration needs houses to fit and other houses to evaluate."
         )
-    calibration = Calibration.from_metadata(metadata)
     if args.calibrate:
         calibration = fit_calibration(*_joined(seen, houses[::2]))
+        seen = predict(args, model, block_px, calibration)
     logits, truth = _joined(seen, houses[1::2])
     before, after = Reliability.empty(), Reliability.empty()
     for reliability, used in ((before, Calibration.of_temperature(1.0)), (after, calibration)):
@@ -130,6 +139,7 @@ def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
         reliability.add(scores.T.numpy(), truth.numpy())
     return Measured(
         Iou.of(seen.matrix),
+        Iou.of(seen.calibrated),
         seen.matrix,
         seen.breakdown,
         seen.by_folder,
@@ -137,49 +147,70 @@ def measure(args: Args, model: Network, metadata: dict[str, Any]) -> Measured:
         before,
         after,
         calibration,
-        frame_ms(model, block_px),
+        frame_ms(model, block_px, mirrored=args.mirror),
     )
 
 
-def predict(folders: Sequence[Path], model: Network, block_px: int, count: int = 0) -> Predictions:
-    """Returns the predictions of a network on the views of some folders, or on `count` of each; each is computed once.
+def predict(args: Args, model: Network, block_px: int, calibration: Calibration) -> Predictions:
+    """Returns the predictions of a network on the views of the folders of `args`; each is computed once.
 
     Raises:
         ConfigError: views are stored at a lower resolution than the network needs.
     """
-    seen = Predictions(np.zeros((CLASSES, CLASSES), np.int64), Breakdown(), {}, {})
+    empty = np.zeros((CLASSES, CLASSES), np.int64)
+    seen = Predictions(empty, Breakdown(), {}, empty.copy(), {})
     model.eval()
-    for folder in folders:
-        before = seen.matrix.copy()
+    for folder in args.views:
+        before = seen.calibrated.copy()
         shards = list_shards(folder)
         stored_px = stored_block_px(shards)
-        parts = [spread_views(shards, count)] if count else (list(read_shard(shard)) for shard in shards)
-        for views in parts:
-            _add_views(seen, model, views, block_px, stored_px)
-        seen.by_folder[folder.name] = Iou.of(seen.matrix - before).goals
+        parts = [spread_views(shards, args.count)] if args.count else (list(read_shard(shard)) for shard in shards)
+        for part in parts:
+            views = part
+            if not args.slivers:
+                views = [replace(view, semantic=without_slivers(view.semantic, stored_px)) for view in part]
+            for view, logits, truth in _predicted(model, views, block_px, stored_px, args.mirror):
+                _add_view(seen, view, logits, truth, block_px, stored_px, calibration)
+        seen.by_folder[folder.name] = Iou.of(seen.calibrated - before).goals
     return seen
 
 
-def _add_views(seen: Predictions, model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int) -> None:
-    """Adds the predictions on some views."""
+def _predicted(
+    model: Network, views: Sequence[LabelledView], block_px: int, stored_px: int, mirror: bool
+) -> Iterator[tuple[LabelledView, Tensor, Tensor]]:
+    """Yields each view with its logits (classes, h, w) and class channels (h, w), both padded."""
     batches = loader(model, views, block_px, stored_px)
+    turned = (
+        loader(model, [_mirrored(view) for view in views], block_px, stored_px) if mirror else itertools.repeat(None)
+    )
     with torch.inference_mode():
-        for number, (rgb, second, target) in enumerate(batches):
+        for number, ((rgb, second, target), other) in enumerate(zip(batches, turned, strict=False)):
             logits = model(rgb, second)
-            for view, of_view, truth in zip(views[number * BATCH :], logits, target, strict=False):
-                _add_view(seen, view, of_view, truth, block_px, stored_px)
+            if other is not None:
+                logits = 0.5 * (logits + model(other[0], other[1]).flip(-1))
+            yield from zip(views[number * BATCH :], logits, target, strict=False)
+
+
+def _mirrored(view: LabelledView) -> LabelledView:
+    """Returns the images of a view mirrored left to right."""
+    return replace(
+        view, rgb=view.rgb[:, ::-1].copy(), depth_m=view.depth_m[:, ::-1].copy(), semantic=view.semantic[:, ::-1].copy()
+    )
 
 
 def _add_view(
-    seen: Predictions, view: LabelledView, logits: Tensor, truth: Tensor, block_px: int, stored_px: int
-) -> None:
+    seen: Predictions, view: LabelledView, logits: Tensor, truth: Tensor, block_px: int, stored_px: int,
+    calibration: Calibration,
+) -> None:  # fmt: skip
     """Adds the prediction on one view: its logits (classes, h, w) and class channels (h, w), both padded."""
     predicted = logits.argmax(dim=0).numpy()
     seen.matrix += confusion(predicted, truth.numpy())
+    calibrated = calibration.applied(logits).argmax(dim=0).numpy()
+    seen.calibrated += confusion(calibrated, truth.numpy())
     semantic = shrink(view.semantic, block_px // stored_px)
     rows, cols = padding(*semantic.shape).inner
     depth_m = shrink(view.depth_m, block_px // stored_px)
-    seen.breakdown.add(predicted[rows, cols], semantic, depth_m, block_px)
+    seen.breakdown.add(calibrated[rows, cols], semantic, depth_m, block_px)
     some, kept = logits[:, 2::8, 2::8].permute(1, 2, 0).reshape(-1, CLASSES), truth[2::8, 2::8].reshape(-1)
     pair = some[kept >= 0].clone(), kept[kept >= 0].clone()  # a clone is not an inference tensor
     seen.samples.setdefault(view.record["house"], []).append(pair)
@@ -206,9 +237,9 @@ def loader(model: Network, views: Sequence[LabelledView], block_px: int, stored_
     return DataLoader(Samples(views, sampler), batch_size=BATCH)
 
 
-def frame_ms(model: Network, block_px: int) -> float:
+def frame_ms(model: Network, block_px: int, *, mirrored: bool = False) -> float:
     """Returns the median time of one frame in milliseconds, from 640 x 480 images to scores."""
-    segmenter = NetworkSegmenter(model, block_px=block_px)
+    segmenter = NetworkSegmenter(model, block_px=block_px, mirrored=mirrored)
     rng = np.random.default_rng(0)
     frame = {
         "rgb": rng.integers(0, 255, (480, 640, 3), np.uint8),

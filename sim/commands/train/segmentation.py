@@ -6,7 +6,8 @@ stubborn train segmentation --size published --init rednet_semmap_mp3d_40.pth --
     --val-views runs/views_val --out runs/finetuned --steps 20000
 
 The same command continues a killed run: `state.pt` holds weights, their average, optimiser and step. `train.csv` and
-`val.csv` hold the curves; `rednet.safetensors` is the averaged network of the best evaluation so far.
+`val.csv` hold the curves; `rednet.safetensors` is the averaged network with the best calibrated mIoU so far,
+`last.safetensors` that of the last evaluation.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from sim.commands.train.training_files import append_row, cut_rows, load_state, 
 from sim.interface import CameraModel, ConfigError
 from sim.reading import Count as ReadCount
 from sim.reading import Number
+from stubborn.segmentation.balanced import BalancedViews, ViewIndex
 from stubborn.segmentation.checkpoints import load_network, save_network
 from stubborn.segmentation.dataset import (
     RareObjectRepeats,
@@ -43,10 +45,17 @@ from stubborn.segmentation.dataset import (
     views_with,
 )
 from stubborn.segmentation.evaluation import Iou, evaluate
+from stubborn.segmentation.network import computes_bf16
 from stubborn.segmentation.networks import NETWORKS, Network, build_network, load_imagenet, with_geometry
 from stubborn.segmentation.rednet import RedNet
 from stubborn.segmentation.samples import Augmentation, Sampler, Samples
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
+from stubborn.segmentation.training import (
+    exponential_average,
+    learning_rate,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
 from stubborn.segmentation.unet import MobileEncoder, UNet
 
 LOG_EVERY_STEPS = 20
@@ -89,6 +98,15 @@ class Args:
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
     rare_share: cli.Share = 0.0
     """Views with a goal category that fewer than this share of the views show are used more often; 0: all once."""
+    balance: cli.Share = 0.0
+    """Share of the views that are drawn by an object: category, then style, then object; windows show it. Views need
+    --extras instances. 0: all views in turn, as --rare-share says."""
+    class_weights: str = "log"
+    """Weights of the categories in the loss: log (1 / ln(1.1 + share)) or root (share^-0.5)."""
+    area_weights: bool = False
+    """Pixels of small objects weigh up to four times as much. Views need --extras instances."""
+    subpixel: bool = True
+    """Train the finest output of a RedNet on one pixel of every 2 x 2 block, another one in each step: faster."""
     block_px: cli.Count = 1
     """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
     window_px: cli.Count | None = None
@@ -110,6 +128,10 @@ class Args:
     """Views per step."""
     rate: cli.Positive = 2e-3
     """Peak learning rate of AdamW."""
+    warmup_steps: cli.Count = 200
+    """Steps in which the rate rises to its peak."""
+    last_rate: cli.Share = 0.01
+    """Rate of the last step relative to --rate."""
     weight_decay: cli.NotNegative = 0.01
     """Weight decay of AdamW."""
     workers: cli.Amount = 0
@@ -168,7 +190,8 @@ class Trainer:
         self.optimiser = torch.optim.AdamW(_groups(self.model, args), lr=args.rate, weight_decay=args.weight_decay)
         shards, val_shards = _all_shards(args.views), _all_shards(args.val_views)
         self.options = options_of(args, may_change=MAY_CHANGE, files={"views": shards, "val_views": val_shards})
-        self.weights = class_weights(pixel_counts(shards)).to(self.device)
+        weigh = root_class_weights if args.class_weights == "root" else class_weights
+        self.weights = weigh(pixel_counts(shards)).to(self.device)
         camera = CameraModel()
         second = model.config.second
         self.val_block_px = args.val_block_px or args.block_px
@@ -181,9 +204,9 @@ class Trainer:
             args.focus_share,
             second,
             used_block_px=self.val_block_px,
+            area_weights=args.area_weights,
         )
-        repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
-        self.data = ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
+        self.data = _data(args, shards, sampler)
         self.stored_block_px = stored_block_px([*shards, *val_shards])
         self.val = Samples(
             spread_views(val_shards, args.val_count),
@@ -210,10 +233,10 @@ class Trainer:
         losses: list[float] = []
         self.first_step = self.step
         self._printed_s = time.perf_counter()
-        for rgb, depth, target in self._timed(self._batches()):
+        for batch in self._timed(self._batches()):
             if self.step >= self.total or self._time_is_up():
                 break
-            losses.append(self._train_on(rgb, depth, target))
+            losses.append(self._train_on(*batch))
             self.step += 1
             self.spent_s = time.perf_counter() - start_s
             if self.args.hours is not None and self.step % LOG_EVERY_STEPS == 0:
@@ -239,7 +262,7 @@ class Trainer:
         limit = self.args.stop_after_hours
         return limit is not None and self.spent_s >= 3600 * limit
 
-    def _timed(self, batches: Iterator[tuple[Tensor, Tensor, Tensor]]) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+    def _timed(self, batches: Iterator[Sequence[Tensor]]) -> Iterator[Sequence[Tensor]]:
         """Yields the same batches and measures how long each takes to come."""
         while True:
             start_s = time.perf_counter()
@@ -247,7 +270,7 @@ class Trainer:
             self.loading_s += time.perf_counter() - start_s
             yield batch
 
-    def _batches(self) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+    def _batches(self) -> Iterator[Sequence[Tensor]]:
         """Yields batches without end, epoch after epoch."""
         self.data.epoch = self.step  # another order after a restart
         while True:
@@ -259,9 +282,10 @@ class Trainer:
                 raise ConfigError(f"--views {folders}: fewer views than one batch of {self.args.batch}.")
             self.data.epoch += 1
 
-    def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor) -> float:
+    def _train_on(self, rgb: Tensor, depth: Tensor, target: Tensor, pixels: Tensor | None = None) -> float:
         """Makes one step of the optimiser and returns the loss."""
-        rate = learning_rate(self.step, self.total, peak=self.args.rate, warmup=min(200, 1 + self.total // 20))
+        warmup = min(self.args.warmup_steps, 1 + self.total // 20)
+        rate = learning_rate(self.step, self.total, peak=self.args.rate, warmup=warmup, last=self.args.last_rate)
         for group in self.optimiser.param_groups:
             group["lr"] = rate * group["relative_rate"]
         self.model.train()
@@ -269,27 +293,37 @@ class Trainer:
         with torch.autocast(self.device.type, dtype=torch.bfloat16, enabled=self.precision == "bf16"):
             rgb = rgb.to(self.device).contiguous(memory_format=torch.channels_last)
             second = depth.to(self.device).contiguous(memory_format=torch.channels_last)
-            outputs = self.model.pyramid(rgb, second)
-            loss = pyramid_loss(outputs, target.to(self.device), self.weights)
+            pixels = None if pixels is None else pixels.to(self.device)
+            loss = self._loss(rgb, second, target.to(self.device), pixels)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), MAX_GRADIENT_NORM)
         self.optimiser.step()
         self.average.update_parameters(self.model)
         return float(loss.detach())
 
+    def _loss(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor | None) -> Tensor:
+        """Returns the loss; with --subpixel, the finest output is trained on the pixel of the blocks that is drawn."""
+        if not (self.args.subpixel and isinstance(self.model, RedNet)):
+            return pyramid_loss(self.model.pyramid(rgb, second), target, self.weights, pixels=pixels)
+        row, column = divmod(int(np.random.default_rng([self.args.seed, 2, self.step]).integers(4)), 2)
+        outputs = self.model.pyramid(rgb, second, subpixel=(row, column))
+        return pyramid_loss(outputs, target, self.weights, subpixel=(row, column), pixels=pixels)
+
     def _evaluate(self) -> None:
         """Evaluates, writes a row, and saves the network, then the state, if it is the best so far."""
         self.evaluated_step = self.step
         print(f"step {self.step} of {self.total}: evaluating on {len(self.val)} views", flush=True)
         averaged = self._usable()
-        iou, reliability = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
+        iou, reliability, calibrated = evaluate(averaged, DataLoader(self.val, batch_size=8), device=self.device)
         row = {"step": self.step, "hours": round(self.spent_s / 3600, 4), "miou_goals": iou.goals}
+        row |= {"miou_calibrated": calibrated.goals}
         row |= {"miou_all": iou.everything, "accuracy": iou.accuracy, "calibration_error": reliability.error}
         append_row(self.args.out / "val.csv", row | iou.by_category)
-        print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, of all {iou.everything:.3f}", flush=True)
-        if iou.goals > self.best:
-            self.best = iou.goals
-            save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou))
+        print(f"step {self.step}: mIoU of goals {iou.goals:.3f}, calibrated {calibrated.goals:.3f}", flush=True)
+        save_network(self.args.out / "last.safetensors", averaged, self._card(iou, calibrated))
+        if calibrated.goals > self.best:
+            self.best = calibrated.goals
+            save_network(self.args.out / "rednet.safetensors", averaged, self._card(iou, calibrated))
             self._save_state()  # so that a continued run knows the best
 
     def _usable(self) -> Network:
@@ -300,7 +334,7 @@ class Trainer:
             set_normalisation(averaged, ((rgb.to(self.device), second.to(self.device)) for rgb, second, _ in loader))
         return averaged
 
-    def _card(self, iou: Iou) -> dict[str, Any]:
+    def _card(self, iou: Iou, calibrated: Iou) -> dict[str, Any]:
         """Returns the metadata of the file of weights."""
         options: dict[str, Any] = {
             key: None if value is None else str(value) for key, value in asdict(self.args).items()
@@ -312,6 +346,7 @@ class Trainer:
             "step": self.step,
             "hours": round(self.spent_s / 3600, 3),
             "miou_goals": round(iou.goals, 4),
+            "miou_calibrated": round(calibrated.goals, 4),
             "options": options,
             "torch": torch.__version__,
         }
@@ -372,6 +407,17 @@ def _all_shards(folders: Sequence[Path]) -> list[Path]:
     return [shard for folder in folders for shard in list_shards(folder)]
 
 
+def _data(args: Args, shards: Sequence[Path], sampler: Sampler) -> ViewDataset | BalancedViews:
+    """Returns the samples of a training."""
+    if args.balance > 0:
+        index = ViewIndex.of(shards)
+        counts = ", ".join(f"{name} {n} of {styles}" for name, (n, styles) in index.counts().items())
+        print(f"{len(index.views)} views; objects and styles: {counts}", flush=True)
+        return BalancedViews(index, sampler, object_share=args.balance, seed=args.seed)
+    repeats = RareObjectRepeats(views_with(shards), args.rare_share) if args.rare_share > 0 else None
+    return ViewDataset(shards, sampler, repeats=repeats, seed=args.seed)
+
+
 def _network(args: Args) -> tuple[str, Network, dict[str, Any]]:
     """Returns the size of the network to train, the network, and the metadata of its earlier training."""
     if args.init is None:
@@ -404,9 +450,7 @@ def _precision(name: str, device: torch.device) -> str:
     """Returns bf16 or fp32; `auto` is bf16 on a GPU and on a processor with instructions for it."""
     if name != "auto":
         return name
-    capabilities = torch.cpu.get_capabilities()
-    native = device.type == "cuda" or capabilities.get("avx512_bf16") or capabilities.get("amx_bf16")
-    return "bf16" if native else "fp32"
+    return "bf16" if device.type == "cuda" or computes_bf16() else "fp32"
 
 
 def _device(name: str) -> torch.device:
@@ -438,6 +482,10 @@ def _check(args: Args) -> None:
         raise ConfigError(f"--whole-share needs --window-px, got {args.whole_share} without it.")
     if args.focus_share and args.window_px is None:
         raise ConfigError(f"--focus-share needs --window-px, got {args.focus_share} without it.")
+    if args.class_weights not in ("log", "root"):
+        raise ConfigError(f"--class-weights must be log or root, got '{args.class_weights}'.")
+    if args.balance and args.rare_share:
+        raise ConfigError("--balance and --rare-share exclude each other: both say how often a view is used.")
     if args.batch < 2:
         raise ConfigError(f"--batch must be at least 2 for batch normalisation, got {args.batch}.")
     _all_shards((*args.views, *args.val_views))

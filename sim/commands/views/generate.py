@@ -3,6 +3,7 @@
 stubborn views --split train --views 100000 --out /data/views --workers 2
 stubborn views --pool wide --views 100000 --out /data/views_wide --workers 2
 stubborn views --pool wide --furniture runs/models --views 100000 --out /data/views_models --workers 2
+stubborn views --pool wide --views 15000 --aim rare --out /data/views_rare
 stubborn views --split val --views 2000 --out runs/views_val --seed 1
 stubborn views --split val --views 2000 --extras instances normals poses --out runs/views_objects
 stubborn views --split val --views 2000 --sequence 40 --extras poses --out runs/views_along
@@ -22,14 +23,16 @@ import hashlib
 import shlex
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, cast, get_args
 
 import numpy as np
 
 from sim import cli
+from sim.datasets.aimed import AIMS
 from sim.datasets.shards import ShardNote, read_note, shard_name, write_index, write_shard
 from sim.datasets.views import EXTRAS, sample_views
 from sim.env.scene import Scene
@@ -38,10 +41,11 @@ from sim.errors import HouseError
 from sim.evaluation.executors import make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.housegen.furniture import CATALOGUE
-from sim.housegen.generator import GeneratedHouse
+from sim.housegen.generator import GeneratedHouse, generate_house
 from sim.housegen.imported.catalogue import ImportedFurniture
 from sim.housegen.imported.library import sha256_of_models
 from sim.housegen.splits.recipes import Recipe, train_recipe
+from sim.housegen.withheld import Withheld, restricted
 from sim.houses.house import House
 from sim.interface import CameraModel, ConfigError
 from sim.robot.config import RobotConfig
@@ -75,6 +79,9 @@ class Args:
     """wide: new houses only, with the furniture of train and many more styles."""
     furniture: Path | None = None
     """Folder of imported models (`stubborn import furniture`): new houses only, with models of the split train."""
+    withheld: str | None = None
+    """With --pool or --furniture, for selecting a network: without leaves a fifth of the styles and models out of the
+    houses; only prefers these."""
     views: cli.Count = 1000
     """Number of views in all shards."""
     out: cli.OutFolder
@@ -97,6 +104,8 @@ class Args:
     """More of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
     sequence: cli.Count | None = None
     """Views come as sequences of this many along paths of a robot; None: half along paths, half anywhere."""
+    aim: str | None = None
+    """rare: cameras look at stools, cushions, showers and other rare goals from 1 to 3.5 m, partly hidden ones too."""
     shrink: cli.Count = 1
     """Factor by which the views are reduced: 2 gives 320 x 240."""
     rgb: str = "jpg"
@@ -180,7 +189,8 @@ def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote
         HouseError: the house gives no views.
     """
     began = time.perf_counter()
-    scene = Scene(_house(args, task), robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
+    house, styles = _house(args, task)
+    scene = Scene(house, robot=RobotConfig(), camera=CameraModel(), profile=args.profile)
     house_s = time.perf_counter() - began
     try:
         name = shard_name(task.number)
@@ -188,7 +198,7 @@ def make_shard(args: Args, config: dict[str, Any], task: ShardTask) -> ShardNote
         record = {"house": task.house, "seed": args.seed, "profile": args.profile, "versions": config["versions"]}
         views = sample_views(
             scene, rng, task.views, stem=name, record=record, block_px=args.shrink, extras=args.extras,
-            sequence=args.sequence,
+            sequence=args.sequence, aim=args.aim, styles=styles,
         )  # fmt: skip
         note = write_shard(args.out, name, views, house=task.house, config=config, rgb_format=args.rgb)
     finally:
@@ -202,20 +212,22 @@ def _split(args: Args) -> Split:
     return load_split(args.split)
 
 
-def _house(args: Args, task: ShardTask) -> House:
+def _house(args: Args, task: ShardTask) -> tuple[House, Mapping[str, str]]:
+    """Returns the house of a shard, and the styles of its instances by their names where it is a new one."""
     if task.fresh_seed is None:
-        return _split(args).load_house(task.house)
+        return _split(args).load_house(task.house), {}
     try:
-        return House(task.house, _made(args, task.fresh_seed).spec)
+        made = _made(args, task.fresh_seed)
     except HouseError:  # this seed gives no house: another fixed one replaces it
-        return House(task.house, _made(args, task.fresh_seed + FRESH_SEEDS_FROM // 2).spec)
+        made = _made(args, task.fresh_seed + FRESH_SEEDS_FROM // 2)
+    return House(task.house, made.spec), made.styles
 
 
 def _made(args: Args, seed: int) -> GeneratedHouse:
-    recipe = _recipe(args, seed)
+    config, withheld = _recipe(args, seed).config(), cast("Withheld | None", args.withheld)
     if args.furniture is None:
-        return recipe.make()
-    return ImportedFurniture(args.furniture).make_house(seed, recipe.config())
+        return generate_house(seed, config, restricted(CATALOGUE, withheld))
+    return ImportedFurniture(args.furniture).make_house(seed, config, withheld=withheld)
 
 
 def _recipe(args: Args, seed: int) -> Recipe:
@@ -251,6 +263,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         "pool": args.pool,
         "styles_sha256": _styles_sha256() if args.pool == WIDE else None,
         **({"furniture_sha256": sha256_of_models(args.furniture)} if args.furniture is not None else {}),
+        **({"withheld": args.withheld} if args.withheld is not None else {}),
         "split_version": split.version,
         "split_sha256": split.sha256,
         "seed": args.seed,
@@ -260,6 +273,7 @@ def _config(args: Args, split: Split) -> dict[str, Any]:
         "rgb": args.rgb,
         **({"extras": sorted(args.extras)} if args.extras else {}),
         **({"sequence": args.sequence} if args.sequence is not None else {}),
+        **({"aim": args.aim} if args.aim is not None else {}),
         "versions": {name: version(name) for name in packages} | {"gl_renderer": describe_gl()},
     }
 
@@ -281,12 +295,17 @@ def _check_options(args: Args) -> None:
         raise ConfigError(f"--extras must be some of {', '.join(EXTRAS)}, got '{' '.join(args.extras)}'.")
     if args.sequence is not None and (args.views % args.sequence or views_per_shard(args) % args.sequence):
         raise ConfigError(f"--sequence must divide --views and --views-per-shard, got {args.sequence}.")
+    if args.aim is not None and (args.aim not in AIMS or args.sequence is not None):
+        raise ConfigError(f"--aim must be {' or '.join(AIMS)}, without --sequence, got '{args.aim}'.")
     if args.rgb not in ("jpg", "png"):
         raise ConfigError(f"--rgb must be jpg or png, got '{args.rgb}'.")
     if args.pool not in (None, WIDE) or (args.pool and args.split != "train"):
         raise ConfigError(f"--pool must be {WIDE}, and needs --split train, got '{args.pool}' with '{args.split}'.")
     if args.furniture is not None and args.split != "train":
         raise ConfigError(f"--furniture needs --split train, got '{args.split}': other houses are files.")
+    if args.withheld not in (None, *get_args(Withheld)) or (args.withheld and not (args.pool or args.furniture)):
+        known = " or ".join(get_args(Withheld))
+        raise ConfigError(f"--withheld must be {known}, and needs --pool or --furniture, got '{args.withheld}'.")
     if args.house is None and (args.labels is not None or args.root is not None):
         raise ConfigError("--labels and --root need --house.")
     if args.house is not None and (args.pool is not None or args.furniture is not None or args.split != "train"):
@@ -297,7 +316,8 @@ def _command(args: Args) -> str:
     """Returns the options that generate the same shards."""
     source = ("split",) if args.house is None else ("house", "labels", "root")
     keys = (
-        *source, "pool", "furniture", "views", "profile", "seed", "views_per_shard", "shrink", "rgb", "sequence",
+        *source, "pool", "furniture", "withheld", "views", "profile", "seed", "views_per_shard", "shrink", "rgb",
+        "sequence", "aim",
     )  # fmt: skip
     given = [(key, [value]) for key in keys if (value := getattr(args, key)) is not None]
     given += [("extras", args.extras)] if args.extras else []

@@ -18,9 +18,8 @@ from sim.housegen.furniture.workbench import Workbench
 from sim.housegen.generator import GeneratedHouse, HouseConfig, generate_house
 from sim.housegen.imported.library import Model, ModelSplit, Shape, read_index, read_shape
 from sim.housegen.mjcf.triangles import mesh_shape
+from sim.housegen.withheld import Withheld, restricted, without_covered
 
-WITHOUT_USES = frozenset(("sofa",))
-"""Categories that rooms never ask for by use: imported models replace all own styles, whatever their uses."""
 _MESH_NAME = re.compile(r"(i[0-9a-f]{8})-\d+")
 
 
@@ -49,14 +48,17 @@ class ImportedFurniture:
         """
         return _catalogue(self.folder, self.split, pool, self.alone or self.split == "transfer")
 
-    def make_house(self, seed: int, config: HouseConfig) -> GeneratedHouse:
+    def make_house(self, seed: int, config: HouseConfig, *, withheld: Withheld | None = None) -> GeneratedHouse:
         """Returns a house with the models, of any file size, and with their credits in its comment.
+
+        `withheld` leaves out the withheld styles and models, or prefers them (`sim.housegen.withheld`).
 
         Raises:
             ConfigError: the folder or the seed is not allowed.
             HouseError: the seed gives no house.
         """
-        made = generate_house(seed, replace(config, any_size=True), self.catalogue(config.pool))
+        catalogue = restricted(self.catalogue(config.pool), withheld)
+        made = generate_house(seed, replace(config, any_size=True), catalogue)
         add_credits(made.spec, self.models)
         return made
 
@@ -87,18 +89,8 @@ def _catalogue(folder: Path, split: ModelSplit, pool: Pool, alone: bool) -> Cata
     if not alone:
         return CATALOGUE.with_styles(*styles)
     own = (style for category in CATALOGUE.categories for style in CATALOGUE.styles(category))
-    kept = (left for style in own if (left := _without_covered(style, models)) is not None)
+    kept = (left for style in own if (left := without_covered(style, models)) is not None)
     return Catalogue([*kept, *styles])
-
-
-def _without_covered(style: Style, models: Sequence[Model]) -> Style | None:
-    """Returns a style with the uses that no model has; None where nothing is left of it."""
-    of_category = [model for model in models if model.category == style.category]
-    if not of_category:
-        return style
-    covered = {use for model in of_category for use in model.uses}
-    uses = tuple(use for use in style.uses if use not in covered)
-    return replace(style, uses=uses) if uses and style.category not in WITHOUT_USES else None
 
 
 def style_of(folder: Path, model: Model, pool: Pool) -> Style:

@@ -67,6 +67,8 @@ class HouseBuilder:
         self._splits: dict[int, tuple[Item, tuple[Item | None, tuple[Movable, ...]]]] = {}
         self._counts: dict[str, int] = {}
         self._assets = AssetTable(self._spec)
+        self.styles: dict[str, str] = {}
+        """Style of each item by the name of its body, which is the label of its instance."""
 
     @property
     def spec(self) -> mujoco.MjSpec:
@@ -161,6 +163,7 @@ class HouseBuilder:
     def add_movable_body(self, movable: Movable, placed: PlacedItem) -> None:
         """Adds a body with a free joint at the pose of the item that it was part of."""
         name = self._label(movable.item.category)
+        self.styles[name] = movable.item.style
         x, y = placed.to_world(*movable.offset_m)
         body = self._spec.worldbody.add_body(
             name=name, pos=[_r(v) for v in (x, y, placed.z_m)], quat=_yaw_quat(placed.yaw_rad)
@@ -193,6 +196,7 @@ class HouseBuilder:
 
     def _add_body(self, parent: mujoco.MjsBody, item: Item, pos_m: tuple[float, float, float], yaw_rad: float) -> str:
         name = self._label(item.category)
+        self.styles[name] = item.style
         body = parent.add_body(name=name, pos=[_r(v) for v in pos_m], quat=_yaw_quat(yaw_rad))
         parts = self._assembly(item)
         for geom in parts.visual:

@@ -139,8 +139,8 @@ def test_some_views_are_spread_over_all_shards_and_no_other_is_decoded(
         write_tar(tmp_path / f"views-{number}.tar", ["a", "b"])
     shards = list_shards(tmp_path)
     decoded: list[Path] = []
-    decode = dataset._decoded
-    monkeypatch.setattr(dataset, "_decoded", lambda file, *of: (decoded.append(file), decode(file, *of))[1])
+    decode = dataset.decode_view
+    monkeypatch.setattr(dataset, "decode_view", lambda file, *of: (decoded.append(file), decode(file, *of))[1])
     assert len(spread_views(shards, count)) == len(decoded) == wanted
     if count == 2:
         assert decoded == [shards[0], shards[-1]]

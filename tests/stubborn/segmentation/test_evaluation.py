@@ -8,7 +8,7 @@ import torch
 
 from sim.interface import MPCAT40_ID
 from stubborn.segmentation.calibration import fit_temperature
-from stubborn.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, confusion
+from stubborn.segmentation.evaluation import GOAL_CHANNELS, Iou, Reliability, calibrated_iou, confusion
 from stubborn.segmentation.rednet import CLASSES
 from stubborn.segmentation.samples import IGNORED
 
@@ -46,3 +46,19 @@ def test_the_temperature_of_overconfident_logits_is_found() -> None:
     honest = torch.randn(5000, 5)
     truth = torch.distributions.Categorical(logits=honest).sample()
     assert fit_temperature(3.0 * honest, truth) == pytest.approx(3.0, rel=0.08)
+
+
+def test_a_constant_error_of_the_logits_is_calibrated_away_on_views_that_it_was_not_fitted_to() -> None:
+    """A network that gives walls a far too large logit."""
+    rng = torch.Generator().manual_seed(0)
+    wall, chair = (MPCAT40_ID[name] - 1 for name in ("wall", "chair"))
+    views = []
+    for _ in range(8):
+        truth = torch.where(torch.rand(32, 32, generator=rng) < 0.5, wall, chair)
+        logits = torch.randn(CLASSES, 32, 32, generator=rng)
+        logits += 8.0 * torch.nn.functional.one_hot(truth, CLASSES).permute(2, 0, 1)
+        logits[wall] += 9.0
+        views.append((logits.half(), truth))
+    raw = sum(confusion(logits.argmax(dim=0).numpy(), truth.numpy()) for logits, truth in views)
+    assert Iou.of(np.asarray(raw)).by_category["chair"] < 0.5
+    assert calibrated_iou(views).by_category["chair"] > 0.85

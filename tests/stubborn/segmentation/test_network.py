@@ -115,3 +115,15 @@ def test_resolution_and_temperature_are_stored_with_the_weights(model: RedNet, t
     segmenter = NetworkSegmenter.from_file(tmp_path / "net.safetensors")
     assert float(segmenter.calibration.scale[3]) == pytest.approx(1 / 1.5)
     assert segmenter.block_px == 4
+
+
+def test_a_mirrored_segmenter_averages_the_image_and_its_mirror_image(
+    model: RedNet, frame: dict[str, np.ndarray]
+) -> None:
+    turned = {name: np.ascontiguousarray(image[:, ::-1]) for name, image in frame.items()}
+    plain, both = (NetworkSegmenter(model, block_px=1, mirrored=mirrored) for mirrored in (False, True))
+    one, other = (plain.logits(images["rgb"], images["depth"]) for images in (frame, turned))
+    mean = both.logits(frame["rgb"], frame["depth"])
+    torch.testing.assert_close(mean, 0.5 * (one + other.flip(-1)), atol=0.05 if both.bf16 else 1e-4, rtol=0.0)
+    assert float((mean - one).abs().max()) > 0.05
+    assert not plain.bf16

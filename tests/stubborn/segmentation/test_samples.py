@@ -9,15 +9,19 @@ import pytest
 import torch
 
 from sim.interface import MPCAT40_ID, CameraModel, ConfigError
+from stubborn.segmentation.dataset import LabelledView
 from stubborn.segmentation.inputs import INPUTS
 from stubborn.segmentation.samples import (
     IGNORED,
+    MOST_WEIGHT,
     NONE,
+    SMALL_SHARE,
     Augmentation,
     Sampler,
     jitter_colour,
     jitter_depth,
     labels,
+    pixel_weights,
     random_goal_pixel,
     random_window,
     turn_hue,
@@ -130,7 +134,7 @@ def test_a_sampler_with_a_focus_shows_a_small_object_in_most_windows() -> None:
 
 
 def test_a_sampler_of_windows_pads_them_for_the_network() -> None:
-    rgb, depth, target = Sampler(CameraModel(), 1, Augmentation(), 48)(a_view(), np.random.default_rng(0))
+    rgb, depth, target = Sampler(CameraModel(), 1, Augmentation(), 48)(a_view(), np.random.default_rng(0))[:3]
     assert rgb.shape == (3, 32, 64)
     assert depth.shape == (1, 32, 64)
     assert (target[:, :8] == IGNORED).all()  # 48 x 32 pixels in the middle of 64 x 32
@@ -155,3 +159,42 @@ def test_a_whole_view_in_training_has_the_distances_of_the_view_that_the_network
             view, rng
         )[1]
         assert trained.mean() == pytest.approx(float(used.mean()), abs=0.02)
+
+
+def with_instances() -> LabelledView:
+    """A chair of a 32nd of the view on its left and a floor; the floor is an instance as well."""
+    view = a_view()
+    instances = np.full(view.semantic.shape, 2, np.uint16)
+    semantic = np.full(view.semantic.shape, MPCAT40_ID["floor"], np.uint8)
+    semantic[:8, :24], instances[:8, :24] = MPCAT40_ID["chair"], 1
+    return replace(view, semantic=semantic, instances=instances)
+
+
+def test_pixels_of_small_objects_weigh_more_and_surfaces_do_not() -> None:
+    view = with_instances()
+    weights = pixel_weights(view, 1)
+    assert weights[0, 0] == pytest.approx((SMALL_SHARE * 32) ** 0.5)
+    assert (weights[view.semantic == MPCAT40_ID["floor"]] == 1.0).all()
+    assert view.instances is not None
+    tiny = replace(view, instances=np.where(view.instances == 1, np.arange(96, dtype=np.uint16) + 3, 2).astype("u2"))
+    assert pixel_weights(tiny, 1)[0, 0] == MOST_WEIGHT
+    with pytest.raises(ConfigError, match="has no instances"):
+        pixel_weights(a_view(), 1)
+
+
+def test_a_window_shows_the_object_that_was_drawn_with_weights_of_its_size_in_the_view() -> None:
+    sampler = Sampler(CameraModel(), 1, Augmentation(), window_px=32, area_weights=True)
+    for seed in range(20):
+        target, weights = sampler(with_instances(), np.random.default_rng(seed), instance=1)[-2:]
+        chair = target == MPCAT40_ID["chair"] - 1
+        assert chair.any()
+        assert weights.shape == target.shape
+        np.testing.assert_allclose(weights[chair], (SMALL_SHARE * 32) ** 0.5, rtol=1e-6)
+        assert (weights[target == MPCAT40_ID["floor"] - 1] == 1.0).all()
+
+
+def test_a_share_of_the_samples_is_grey() -> None:
+    rgb = np.random.default_rng(0).integers(0, 255, (8, 8, 3), np.uint8)
+    some = replace(NONE, grey=0.25)
+    grey = [np.ptp(jitter_colour(rgb, some, np.random.default_rng(seed)), axis=2).max() == 0 for seed in range(400)]
+    assert 0.18 < np.mean(grey) < 0.32

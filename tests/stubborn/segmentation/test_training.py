@@ -13,7 +13,13 @@ from sim.interface import CameraModel
 from stubborn.segmentation.evaluation import Iou, confusion
 from stubborn.segmentation.rednet import CLASSES, RedNet, RedNetConfig
 from stubborn.segmentation.samples import IGNORED, Sampler
-from stubborn.segmentation.training import exponential_average, learning_rate, pyramid_loss, set_normalisation
+from stubborn.segmentation.training import (
+    exponential_average,
+    learning_rate,
+    pyramid_loss,
+    root_class_weights,
+    set_normalisation,
+)
 from tests.helpers.labelled_views import a_view
 
 TINY = RedNetConfig(width=8, encoder_blocks=(1, 1, 1, 1), bottleneck=False, decoder_blocks=(1, 1, 1, 1), final_blocks=1)
@@ -42,6 +48,44 @@ def test_the_loss_of_views_without_labels_is_zero() -> None:
     assert float(loss.detach()) == 0.0
     assert out.grad is not None
     assert torch.isfinite(out.grad).all()
+
+
+def test_one_subpixel_gives_the_logits_and_the_loss_of_its_pixels() -> None:
+    torch.manual_seed(0)
+    model = RedNet(TINY).eval().requires_grad_(False)
+    rgb, depth = torch.randn(2, 3, 64, 64), torch.randn(2, 1, 64, 64)
+    target = torch.randint(0, CLASSES, (2, 64, 64))
+    full = model.pyramid(rgb, depth)
+    for row, column in itertools.product((0, 1), repeat=2):
+        outputs = model.pyramid(rgb, depth, subpixel=(row, column))
+        torch.testing.assert_close(outputs[0], full[0][:, :, row::2, column::2])
+        loss = pyramid_loss(outputs[:1], target, torch.ones(CLASSES), subpixel=(row, column))
+        alone = torch.nn.functional.cross_entropy(full[0][:, :, row::2, column::2], target[:, row::2, column::2])
+        assert float(loss) == pytest.approx(float(alone), rel=1e-5)
+
+
+def test_pixel_weights_count_pixels_more_often() -> None:
+    torch.manual_seed(0)
+    out, weights = torch.randn(1, CLASSES, 32, 32), torch.rand(CLASSES) + 0.5
+    target = torch.randint(0, CLASSES, (1, 32, 32))
+    target[:, :3] = IGNORED
+    twice = torch.ones(1, 32, 32)
+    twice[:, :, 16:] = 2.0
+    doubled = torch.cat([out, out[..., 16:]], dim=-1), torch.cat([target, target[..., 16:]], dim=-1)
+    expected = torch.nn.functional.cross_entropy(*doubled, weight=weights, ignore_index=IGNORED)
+    assert float(pyramid_loss([out], target, weights, pixels=twice)) == pytest.approx(float(expected), rel=1e-5)
+    even = pyramid_loss([out], target, weights, pixels=torch.ones(1, 32, 32))
+    assert float(even) == pytest.approx(float(pyramid_loss([out], target, weights)), rel=1e-5)
+
+
+def test_root_weights_fall_with_the_square_root_of_the_share_up_to_a_ratio() -> None:
+    pixels = np.zeros(41)
+    pixels[:5] = (1e6, 4e4, 1e4, 1.0, 0.0)  # void has no weight
+    weights = root_class_weights(pixels, most=5.0)
+    assert float(weights[1] / weights[0]) == pytest.approx(2.0)
+    assert float(weights[2] / weights[0]) == pytest.approx(5.0)
+    assert float(weights[3]) == 0.0
+    assert float(weights[:3].mean()) == pytest.approx(1.0)
 
 
 def test_the_learning_rate_rises_to_its_peak_and_falls_like_a_cosine() -> None:

@@ -1,0 +1,153 @@
+"""Draws training views by the objects that they show: first the category, then the style, then the object.
+
+Views at random show hundreds of chairs for each stool. Here each goal category is drawn equally often, and in it each
+style, so that a network learns from many designs. It reads views in any order, from their places in the tar files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+from torch.utils.data import IterableDataset, get_worker_info
+
+from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
+from stubborn.segmentation.dataset import LabelledView, decode_view, read_members
+
+SMALLEST_PX = 40
+"""Visible pixels, of 320 x 240, from which an object is drawn."""
+
+
+class StoredView(NamedTuple):
+    """Where a view is stored: its file, and offset and size in bytes of each of its members."""
+
+    file: Path
+    key: str
+    members: tuple[tuple[str, int, int], ...]
+
+    def read(self) -> LabelledView:
+        """Returns the view, without the masks of its objects.
+
+        Raises:
+            ConfigError: the view is incomplete or broken.
+        """
+        parts: dict[str, bytes] = {}
+        with self.file.open("rb") as stream:
+            for name, offset, size in self.members:
+                if name != "coco":  # the image of instances has the same masks
+                    stream.seek(offset)
+                    parts[name] = stream.read(size)
+        return decode_view(self.file, self.key, parts)
+
+
+class ShownObject(NamedTuple):
+    """An object that a view shows."""
+
+    view: int
+    """Index of the view."""
+    number: int
+    """Its number in the image of instances."""
+
+
+class _Annotation(msgspec.Struct):
+    """The part of an annotation that says what an object is and how large."""
+
+    id: int
+    category_id: int
+    area: int
+    style: str = ""
+
+
+@dataclass(frozen=True)
+class ViewIndex:
+    """All views of some shards, and the goal objects in them by category and style."""
+
+    views: tuple[StoredView, ...]
+    objects: dict[str, dict[str, list[ShownObject]]]
+    """By category, then by style; "" where the style is not known."""
+
+    @classmethod
+    def of(cls, shards: Sequence[Path]) -> ViewIndex:
+        """Returns the index of some shards.
+
+        Raises:
+            ConfigError: a shard is broken or has no objects (`stubborn views --extras instances`).
+        """
+        views: list[StoredView] = []
+        objects: dict[str, dict[str, list[ShownObject]]] = {}
+        decoder = msgspec.json.Decoder(list[_Annotation])
+        for shard in shards:
+            with shard.open("rb") as stream:
+                for key, members in read_members(shard):
+                    for each in _annotations(decoder, shard, key, members, stream):
+                        category = MPCAT40[each.category_id]
+                        if category in GOAL_CATEGORIES and each.area >= SMALLEST_PX:
+                            shown = ShownObject(len(views), each.id)
+                            objects.setdefault(category, {}).setdefault(each.style, []).append(shown)
+                    views.append(StoredView(shard, key, tuple((name, *place) for name, place in members.items())))
+        return cls(tuple(views), objects)
+
+    def counts(self) -> dict[str, tuple[int, int]]:
+        """Returns the number of objects and of styles of each category."""
+        return {name: (sum(map(len, styles.values())), len(styles)) for name, styles in sorted(self.objects.items())}
+
+    def draw(self, rng: np.random.Generator) -> ShownObject:
+        """Returns an object: category, style and object are drawn one after the other, each equally often."""
+        styles = self.objects[_one_of(list(self.objects), rng)]
+        return _one_of(styles[_one_of(list(styles), rng)], rng)
+
+
+class BalancedViews(IterableDataset):
+    """A data set of views without end: some are drawn by an object that they show, the others at random.
+
+    Args:
+        index: the views.
+        transform: converts a view to a sample; it is told which object was drawn, so that a window shows it.
+        object_share: share of the views that are drawn by an object.
+        seed: seeds the order and the transform, together with `epoch`.
+    """
+
+    def __init__(
+        self, index: ViewIndex, transform: Callable[..., Any] | None = None, *, object_share: float = 0.8, seed: int = 0
+    ) -> None:
+        super().__init__()
+        if not index.views or (object_share > 0.0 and not index.objects):
+            raise ConfigError("No view shows an object of a goal category.")
+        self.index, self.transform, self.object_share, self.seed = index, transform, object_share, seed
+        self.epoch = 0
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yields the samples of this worker; views without a transform."""
+        info = get_worker_info()
+        rng = np.random.default_rng([self.seed, self.epoch, 0 if info is None else info.id])
+        while True:
+            drawn = self.index.draw(rng) if rng.random() < self.object_share else None
+            number = int(rng.integers(len(self.index.views))) if drawn is None else drawn.view
+            view = self.index.views[number].read()
+            if self.transform is None:
+                yield view
+            else:
+                yield self.transform(view, rng, instance=None if drawn is None else drawn.number)
+
+
+def _annotations(
+    decoder: msgspec.json.Decoder[list[_Annotation]], shard: Path, key: str, members: dict[str, tuple[int, int]],
+    stream: Any,
+) -> list[_Annotation]:  # fmt: skip
+    """Returns the objects of a view; raises ConfigError where the shard has none or they are broken."""
+    if "coco" not in members:
+        raise ConfigError(f"Shard '{shard}': view '{key}' has no objects; make it with --extras instances.")
+    offset, size = members["coco"]
+    stream.seek(offset)
+    try:
+        return decoder.decode(stream.read(size))
+    except msgspec.MsgspecError as error:
+        raise ConfigError(f"Shard '{shard}': the objects of view '{key}' cannot be read: {error}.") from None
+
+
+def _one_of(choices: Sequence[Any], rng: np.random.Generator) -> Any:
+    return choices[int(rng.integers(len(choices)))]
