@@ -32,7 +32,7 @@ NetworkT = TypeVar("NetworkT", bound=nn.Module)
 
 @dataclass(frozen=True)
 class Family(Generic[ConfigT, NetworkT]):
-    """A kind of network whose files are told apart by their header."""
+    """A kind of network whose files are distinguished by their header."""
 
     name: str
     """The header's entry is `<name>_config`."""

@@ -1,4 +1,4 @@
-"""Generates the episodes of a split, beside its house files or its list of houses, in Habitat's ObjectNav layout.
+"""Generates the episodes of a split next to its house files or its list of houses, in Habitat's ObjectNav layout.
 
     stubborn episodes --split assets/mjcf_houses/val --workers 2
     stubborn episodes --split my_houses --episodes 100 --recipe large
@@ -54,7 +54,7 @@ Turn = tuple[int, int, Ask]
 
 @dataclass(frozen=True)
 class Args:
-    """Generate the episodes of a split, beside its houses."""
+    """Generate the episodes of a split next to its houses."""
 
     split: Path | None = None
     """Folder of the split; its houses are its .xml files, or those in its houses.json."""
@@ -63,7 +63,7 @@ class Args:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
-    """With --house: a folder whose files the house may use besides those of its own folder."""
+    """With --house: a folder whose files the house may use in addition to its own folder."""
     out: cli.OutFolder | None = None
     """With --house: folder of the new split."""
     episodes: cli.Count | None = None

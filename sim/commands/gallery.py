@@ -45,7 +45,7 @@ class Args:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
-    """With --house: a folder whose files the house may use besides those of its own folder."""
+    """With --house: a folder whose files the house may use in addition to its own folder."""
     sheet: bool = False
     """Render every furniture style, one sheet per category."""
     categories: tuple[str, ...] = ()

@@ -46,7 +46,7 @@ class Args:
     house: Path
     """The MJCF file."""
     root: Path | None = None
-    """A folder whose files the house may use besides those of its own folder."""
+    """A folder whose files the house may use in addition to its own folder."""
     labels: Path | None = None
     """Check these label rules; by default, new ones are proposed."""
     out: cli.OutFile | None = None

@@ -2,7 +2,7 @@
 
 It stands for the agents that Luo et al. (2022, Table "leaderboard") compare with, which map images to actions by one
 network: EEAux (Ye et al. 2021, arXiv:2104.04112) and Habitat-Web (Ramrakhya et al. 2022, arXiv:2204.03514). The
-latter is cloned, as this one is; both are far larger. docs/learned_exploration.md says how it is trained.
+latter is cloned, as this one is; both are far larger. docs/explorers.md describes the training.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class Piece:
 class Streams:
     """Demonstrations in random order, `width` side by side, in pieces of `length` steps.
 
-    Each stream plays one demonstration to its end, half of them mirrored, then draws another; the state of the policy
+    Each stream reads one demonstration to its end, half of them mirrored, then draws another; the state of the policy
     is carried from piece to piece. An action that differs from the one before counts as often as such actions are
     rare (inflection weighting; Wijmans et al. 2019, arXiv:1904.03461), since most actions repeat the one before.
 

@@ -38,7 +38,7 @@ class ClonedNet(nn.Module):
     """Gives the logits of the next action from a sequence of small images.
 
     The layer of the goal marks the pixels of the goal category, so that a policy need not learn 21 categories apart;
-    the embedding of the categories tells it where such goals are usual.
+    the embedding of the categories shows it where such goals are usual.
     """
 
     goal_ids: Tensor

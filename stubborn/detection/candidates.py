@@ -2,7 +2,7 @@
 
 A rejected object keeps its cells for the rest of the episode. Its outline changes with every frame, so cells that join
 it later belong to it too, as long as they are no more than it had when it was rejected. A part that is larger than that
-cannot be the rest of it: it is an object that touches it, such as a table beside a rejected chair.
+cannot be the rest of it: it is an object that touches it, such as a table next to a rejected chair.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class CandidateParts:
     count: int
     """Candidates have the numbers 1 to `count`."""
     touches_rejected: Bool[np.ndarray, " numbers"]
-    """True for the number of a candidate beside a rejected object or its margin; entry 0 is False."""
+    """True for the number of a candidate next to a rejected object or its margin; entry 0 is False."""
 
     @classmethod
     def of(cls, view: NavMap, candidate_score: float, least_cells: int) -> CandidateParts:

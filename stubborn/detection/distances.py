@@ -31,7 +31,7 @@ class TargetConfig:
     distance; late in an episode the agent stops there, which may still succeed."""
     outline_margin_m: float = 0.25
     """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
-    may include a part of what is beside the target."""
+    may include a part of a neighbouring object."""
     last_resort_step: int = 420
     """From this step on, of `MAX_STEPS`, the agent stops at a last resort (see `last_resort_from`)."""
     rejection_margin_m: float = 0.25

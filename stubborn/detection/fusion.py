@@ -1,7 +1,7 @@
 """From the views of an object to the probability of each category.
 
-The posteriors of a track's pixels tell two things: how much of it is wall, floor or ceiling (a voxel holds some of what
-is behind the object), and which object the rest is. They are separated: the object's categories compete with each
+The posteriors of a track's pixels contain two facts: how much of it is wall, floor or ceiling (a voxel holds a part of
+what is behind the object), and which object the rest is. They are separated: the object's categories compete with each
 other, and the share of surface says whether there is an object at all. Views are averaged with a weight for each range
 of distance; the average is sharpened, the more the more views there are, and each category has an offset.
 

@@ -19,7 +19,7 @@ from stubborn.mapping.navmap import NavMap
 
 @dataclass(frozen=True, kw_only=True)
 class LookConfig:
-    """Probabilities at which a track is visited and accepted, and viewpoints; docs/verification.md tells the choice."""
+    """Probabilities at which a track is visited and accepted, and viewpoints; see docs/segmentation.md."""
 
     bar: tuple[tuple[int, float], ...] = ((0, 0.05), (40, 0.05), (100, 0.4), (200, 0.57), (300, 0.69), (500, 0.8))
     """(Steps left, probability), with straight lines between: a track is accepted from this probability on. A wrong

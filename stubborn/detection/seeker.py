@@ -30,7 +30,7 @@ class Seeker(Protocol):
     confidence: float | None
     """Probability or score in [0, 1] of the candidate that `judge` accepted last; None: it has accepted none."""
     accepted_cell: tuple[int, int] | None
-    """Map cell where that candidate scores highest; its other cells may show what is beside it."""
+    """Map cell where that candidate scores highest; its other cells may show neighbouring objects."""
 
     def reset(self, goal: str) -> None:
         """Forgets the last episode."""
@@ -251,7 +251,7 @@ class TargetSeeker:
         if number == 0:
             return False
         instance = parts.labels == number
-        # The cells at its edge, which are nearest, also show what is beside it: the cell seen best represents it.
+        # The cells at its edge, which are nearest, also show neighbouring objects: the cell seen best represents it.
         best = _seen_best(view, instance)
         features = features_of(view, best)
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())

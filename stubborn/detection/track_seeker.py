@@ -44,9 +44,9 @@ class TrackSeekerConfig:
     """Accepted tracks whose probability is at most this much below the best one's are equally good: the nearest of
     them is approached."""
     part_share: float = 0.6
-    """A track beside an accepted one, with at least this share of its probability, is driven to as a part of it."""
+    """A track next to an accepted one, with at least this share of its probability, is driven to as a part of it."""
     part_gap_voxels: int = 1
-    """Boxes of two tracks with at most this gap are beside each other."""
+    """Boxes of two tracks with at most this gap are next to each other."""
     most_pushes: int = 2
     """After so many steps of an approach that left the robot where it was, the agent stops there if a STOP counts."""
 
@@ -246,7 +246,7 @@ class TrackSeeker:
         """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again.
 
         Steps between in which it pursued nothing do not count, and do not end the count: a track that only one of two
-        headings shows would otherwise turn the robot to and fro.
+        headings shows would otherwise turn the robot back and forth.
         """
         look = self.config.look
         if self._pursuit is None or pose.distance_to(self._pursuit[0]) > look.patience_m:
@@ -264,7 +264,7 @@ class TrackSeeker:
         ]
 
     def _with_parts(self, tracks: list[int]) -> list[int]:
-        """Returns some tracks and those beside them that may be parts of them: a bed can be several tracks."""
+        """Returns some tracks and those next to them that may be parts of them: a bed can be several tracks."""
         result = set(tracks)
         for track in tracks:
             others = np.flatnonzero(self.probability >= self.config.part_share * self.probability[track])

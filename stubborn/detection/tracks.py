@@ -240,7 +240,7 @@ class Tracks:
         return track_of, takes_over
 
     def _categories(self, tracks: int, goal: int) -> Int[np.ndarray, " tracks"]:
-        """Returns the category by which the first tracks are told apart: that of the goal from `hot` on."""
+        """Returns the category by which the first tracks are distinguished: that of the goal from `hot` on."""
         probability = self.evidence.probability[:tracks]
         return np.where(probability[:, goal] >= self.config.hot, goal, np.argmax(probability, axis=1))
 

@@ -32,7 +32,7 @@ SHIFT_DEVIATION = 1.0
 """Standard deviation of the prior of a category's shift, in logits."""
 OPEN_SHARE = 0.8
 """An episode that goes on after the log, which ends at step 200 of 500, succeeds so often compared with one that begins
-(`stubborn-plus` on val: 64 % for 80 %, docs/verification.md)."""
+(`stubborn-plus` on val: 64 % for 80 %, docs/segmentation.md)."""
 _BINS = 5
 
 

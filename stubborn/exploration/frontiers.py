@@ -1,6 +1,6 @@
 """Frontiers of the known part of the map; all explorers that drive to frontiers share them.
 
-A level camera cannot see the floor under and beside the robot. Ground near the robot's own trail therefore counts as
+A level camera cannot see the floor under and next to the robot. Ground near the robot's own trail therefore counts as
 known, and paths may cross unknown ground at the planner's cost for it.
 """
 

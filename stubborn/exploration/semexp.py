@@ -2,7 +2,7 @@
 
 Reference: Chaplot, Gandhi, Gupta, Salakhutdinov (2020), "Object Goal Navigation using Goal-Oriented Semantic
 Exploration", NeurIPS, arXiv 2007.00643. The policy is a small network of our own, trained in house plans by
-`stubborn train semexp` (docs/learned_exploration.md says what differs). The two controls of Luo et al. (2022, Section
+`stubborn train semexp` (docs/explorers.md says what differs). The two controls of Luo et al. (2022, Section
 "Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong goal given to the policy.
 """
 
@@ -47,7 +47,7 @@ class SemExpConfig:
     """What the policy is shown of the goal categories seen: all of it, all of it with the categories exchanged at
     random in each episode (the first control), or nothing."""
     goal: Literal["true", "wrong"] = "true"
-    """Which goal the policy is told: the episode's, or another one, drawn in each episode (the second control)."""
+    """The goal that the policy gets: the episode's, or another one, sampled in each episode (the second control)."""
 
     def __post_init__(self) -> None:
         if self.goal_steps < 1 or self.arrived_m <= 0.0:
@@ -108,7 +108,7 @@ class SemExpExplorer:
         return None
 
     def told_goal(self, goal: str) -> str:
-        """Returns the goal category that the policy is told."""
+        """Returns the goal category that the policy gets."""
         if self.config.goal == "true":
             return goal
         return GOAL_CATEGORIES[(GOAL_CATEGORIES.index(goal) + self._other) % len(GOAL_CATEGORIES)]

@@ -23,7 +23,7 @@ from stubborn.exploration.patches import MapPatch, or_of_blocks, patch_around
 from stubborn.mapping.navmap import NavMap
 
 GEOMETRY = ("obstacle", "seen", "trail", "frontier")
-"""The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells beside one that was never seen.
+"""The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells next to one that was never seen.
 The robot has no layer: it is always in the middle."""
 _BLOCK = 4
 """Cells along the edge of a block: a goal cell of the local square, and a cell of `Square.goals`."""
@@ -97,7 +97,7 @@ def observe(
     Args:
         navmap: the map, with `goals_seen`.
         pose: of the robot, in the map's frame.
-        goal: the goal category that the policy is told.
+        goal: the goal category that the policy gets.
         view: sizes of the squares.
         order: the goal category that each bit shows; by default bit g shows category g.
         semantics: False: no category is shown anywhere.

@@ -63,7 +63,7 @@ class SemExpNet(nn.Module):
     the heading. A last convolution gives one logit per goal cell; it also gets the shares of each goal cell that are
     obstacle, seen and driven over, so that simple preferences are learned first.
 
-    The value, which only the training uses, is also told what no agent knows (`TRUTH`): most of the return depends on
+    The value, which only the training uses, also gets what no agent knows (`TRUTH`): most of the return depends on
     how far away the target is and on how much is left to see (an asymmetric critic; Pinto et al. 2018).
     """
 

@@ -66,14 +66,14 @@ class TourConfig:
     least_far_m2: float = 0.5
     """Smaller parts of such ground are no stops."""
     stop_m: float = 0.5
-    """Path length that each stop costs besides the path to it: the turns on the spot."""
+    """Path length that each stop costs in addition to the path to it: the turns on the spot."""
     turn_m: float = 0.15
     """Path length that a turn of 30 degrees towards the first stop costs."""
     most_stops: int = 6
     """Largest number of stops that are put in order: those with most weight for their path."""
     replan_steps: int = 8
     """The order is computed again when a stop is done with, and after this many steps if they showed new ground: two
-    stops that are about equally good would otherwise send the robot to and fro."""
+    stops that are about equally good would otherwise send the robot back and forth."""
     news_m2: float = 0.5
     """New ground smaller than this is none."""
     keep_steps: int = 80
@@ -404,7 +404,7 @@ def first_of_best_order(
         weight: of each stop.
         to_m: path length from the robot to each stop.
         between_m: path length between two stops; a path that is infinite counts as 100 m.
-        stop_m: path length that each stop costs besides.
+        stop_m: additional path length that each stop costs.
     """
     orders = _orders(len(weight))
     to_m, between_m = (np.where(np.isfinite(length), length, 100.0) for length in (to_m, between_m))

@@ -34,7 +34,7 @@ class DropConfig:
     below_m: float = 0.10
     """A ray that reaches this far below the floor has passed through it."""
     range_m: float = 3.0
-    """Rays that cross the plane of the floor farther away do not count: noisy depth errs there by more than a step."""
+    """Rays that cross the plane of the floor farther away do not count: the depth error exceeds a step there."""
     hit: int = 2
     """Evidence that a frame adds to a cell where a ray passes through the floor."""
     miss: int = 1

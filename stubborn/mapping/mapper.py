@@ -167,7 +167,7 @@ class Mapper:
         """Enters one frame of scores into the object layers, and returns the target points in it.
 
         A rim of `rim_px` pixels of the image at the target's outline does not count: with inexact depth or scores it
-        may show what is beside the target.
+        may show objects next to the target.
         """
         navmap, camera_pose, window = frame.navmap, frame.camera_pose, frame.window
         rays, score_pick = self._rays_for(scores.target.shape)

@@ -106,7 +106,7 @@ class BalancedViews(IterableDataset):
 
     Args:
         index: the views.
-        transform: converts a view to a sample; it is told which object was drawn, so that a window shows it.
+        transform: converts a view to a sample; it gets the object that was chosen, so that a window shows it.
         object_share: share of the views that are drawn by an object.
         seed: seeds the order and the transform, together with `epoch`.
     """

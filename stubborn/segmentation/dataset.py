@@ -37,7 +37,7 @@ class _NoteConfig(msgspec.Struct):
 
 
 class _Note(msgspec.Struct):
-    """The JSON note beside a shard: the part that says how its views were stored."""
+    """The JSON note next to a shard: the part that states how its views were stored."""
 
     config: _NoteConfig = msgspec.field(default_factory=_NoteConfig)
 
@@ -262,7 +262,7 @@ def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: i
 def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     """Returns the number of pixels of each mpcat40 category.
 
-    It is read from the JSON note beside each shard, or counted where there is no note.
+    It is read from the JSON note next to each shard, or counted where there is no note.
     """
     counts = np.zeros(len(MPCAT40))
     for shard in shards:
@@ -277,7 +277,7 @@ def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
 
 
 def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
-    """Returns the share of the views that show each mpcat40 category, from the JSON notes beside the shards.
+    """Returns the share of the views that show each mpcat40 category, from the JSON notes next to the shards.
 
     Raises:
         ConfigError: a shard has no note.
@@ -321,7 +321,7 @@ class RareObjectRepeats:
 
 
 def stored_block_px(shards: Sequence[Path]) -> int:
-    """Returns the factor by which the views were shrunk before they were stored; 1 without a note beside the shards.
+    """Returns the factor by which the views were shrunk before they were stored; 1 without a note next to the shards.
 
     Raises:
         ConfigError: the shards have different factors.

@@ -1,4 +1,4 @@
-"""The kinds of second input of a network beside colour: the depth of the published RedNet, geometric channels, or both.
+"""The second input of a network, in addition to colour: the depth of the published RedNet, geometry, or both.
 
 All are computed from the whole image before any crop. A network names the kind that it takes; training and the agent
 use the same functions.
@@ -22,7 +22,7 @@ InputKind = Literal["depth", "geometry", "depth-geometry"]
 
 
 class SecondInput(Protocol):
-    """One kind of input beside colour."""
+    """One kind of input in addition to colour."""
 
     channels: int
     """Number of channels."""

@@ -38,7 +38,7 @@ def build_network(config: Architecture) -> Network:
 
 
 def with_geometry(network: RedNet) -> RedNet:
-    """Returns a network that takes the geometric channels besides depth, with the same weights and the same output.
+    """Returns a network that takes the geometric channels in addition to depth, with the same weights and output.
 
     The weights of the new channels are zero: training starts from what the network knows.
 

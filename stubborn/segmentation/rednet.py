@@ -56,7 +56,7 @@ PUBLISHED = RedNetConfig()
 COMPACT = RedNetConfig(
     width=32, encoder_blocks=(2, 2, 2, 2), bottleneck=False, decoder_blocks=(2, 2, 2, 2), final_blocks=1
 )
-"""A narrow and shallow network that a CPU can run beside a simulator."""
+"""A narrow and shallow network that a CPU can run at the same time as a simulator."""
 
 
 class BasicBlock(nn.Module):

@@ -151,9 +151,7 @@ def pixel_weights(view: LabelledView, block_px: int) -> Float32[np.ndarray, "h w
 
 def _instances(view: LabelledView) -> UInt16[np.ndarray, "h w"]:
     if view.instances is None:
-        raise ConfigError(
-            f"View '{view.key}' has no instances; `stubborn views --extras instances` stores them."
-        )
+        raise ConfigError(f"View '{view.key}' has no instances; `stubborn views --extras instances` stores them.")
     return view.instances
 
 

@@ -5,4 +5,4 @@ from __future__ import annotations
 from pathlib import Path
 
 SHIPPED_REDNET = Path(__file__).parent / "weights" / "rednet.safetensors"
-"""The compact RedNet with depth and geometry, trained on views of generated houses; its model card is beside it."""
+"""The compact RedNet with depth and geometry, trained on generated houses; its model card is in the same folder."""

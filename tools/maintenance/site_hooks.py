@@ -1,4 +1,4 @@
-"""Hooks of MkDocs (`mkdocs.yml`): what the built site must keep, told as warnings, which `--strict` makes errors.
+"""Hooks of MkDocs (`mkdocs.yml`): rules of the built site, reported as warnings, which `--strict` turns into errors.
 
 The site asks no other host for anything: the reader may be offline, and no other host learns who reads it. Links that
 a reader follows are another matter.

@@ -1,4 +1,4 @@
-"""Compares the 2-D twin with recorded runs of the real environment (docs/plans.md).
+"""Compares the 2-D twin with recorded runs of the real environment (docs/explorers.md).
 
     python -m tools.research.check_twin --plans runs/plans/val --runs runs/stubborn runs/frontier-avoid --explore
 

@@ -1,9 +1,9 @@
-"""Compares explorers in house plans by when they first see the target (docs/plans.md, docs/learned_exploration.md).
+"""Compares explorers in house plans by when they first see the target (docs/explorers.md).
 
 python -m tools.research.compare_explorers --plans runs/plans/train runs/plans/large_train --episodes 200 \
     --explorers corners random-goals semexp semexp:semantics=shuffled semexp:goal=wrong semexp:semantics=none
 
-The whole agent plays, with an exact camera and a map as in the real environment; an episode ends with the first frame
+The whole agent runs, with an exact camera and a map as in the real environment; an episode ends with the first frame
 that shows the target, or after 500 steps. All explorers play the same episodes, in the houses that
 `stubborn train semexp` holds back; `stubborn train poni` holds back others (--houses held-back-poni). Intervals are
 from 2000 bootstrap samples of the houses.
@@ -75,11 +75,11 @@ class RandomGoals:
 
 
 def main(args: Args) -> int:
-    """Prints a row for each explorer as soon as it has played."""
+    """Prints a row for each explorer as soon as it has run."""
     plans = _plans(args)
     configs = {name: explorer_config(name, args.weights) for name in args.explorers}
     for config in configs.values():
-        config.make(CameraModel())  # missing weights are told before anything is played
+        config.make(CameraModel())  # missing weights are reported before any episode is run
     lines, first = [], None
     print(
         f"{args.episodes} episodes in {len(plans)} plans; steps to first sight count {MAX_STEPS} where it is never seen"
@@ -118,7 +118,7 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
 
 
 def episode(agent: TwinAgent, plans: Sequence[Path], number: int, seed: int) -> dict[str, Any]:
-    """Plays one episode; its house, goal and start depend on its number and the seed only."""
+    """Runs one episode; its house, goal and start depend on its number and the seed only."""
     file = plans[number % len(plans)]
     plan = _read(file)
     goal, start = draw_goal_and_start(plan, np.random.default_rng((seed, number)))

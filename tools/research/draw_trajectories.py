@@ -115,7 +115,7 @@ def _file(run: Run, episode_id: str) -> Path:
 
 
 def _side_by_side(pictures: Sequence[Picture]) -> Picture:
-    """Returns pictures beside each other, aligned at their lower edges, with a gap between them."""
+    """Returns pictures next to each other, aligned at their lower edges, with a gap between them."""
     height = max(picture.shape[0] for picture in pictures)
     columns = []
     for picture in pictures:

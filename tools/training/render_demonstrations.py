@@ -4,7 +4,7 @@
     python -m tools.training.render_demonstrations runs/shown/oracle runs/shown/poni --out runs/demonstrations
 
 Each episode of the runs that were recorded with --record becomes a file `<out>/<run>/<episode>.npz`
-(`sim.datasets.demonstrations`); nothing is played again. The same command continues a killed run. Train with
+(`sim.datasets.demonstrations`); no episode is run again. The same command continues a killed run. Train with
 `stubborn train cloned`.
 """
 

@@ -2,8 +2,8 @@
 
     python -m tools.training.twin_demonstrations --houses 200 --episodes 20 --out runs/demonstrations/searches
 
-A house is generated from its seed and exported as a plan (docs/plans.md). A demonstrator that knows the free space, but
-not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`); the small
+A house is generated from its seed and exported as a plan (docs/explorers.md). A demonstrator that knows the free space,
+but not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`); the small
 images are rendered at its poses. Searches that do not find the goal are left out. A file
 `<out>/<house>_<number>.npz` is one episode (`sim.datasets.demonstrations`); the same command continues a killed run.
 Train with `stubborn train cloned`.
@@ -43,7 +43,7 @@ PRINT_EVERY_S = 10.0
 
 
 class Note(msgspec.Struct):
-    """Record of the finished work in one house: the JSON file beside its demonstrations."""
+    """Record of the finished work in one house: the JSON file next to its demonstrations."""
 
     options: dict[str, Any]
     episodes: Count
@@ -86,7 +86,7 @@ class Rendered:
 
 
 def main(args: Args) -> int:
-    """Plays and renders; returns the exit status."""
+    """Runs and renders; returns the exit status."""
     seeds = range(args.first_seed, args.first_seed + args.houses)
     started_s = printed_s = time.monotonic()
     total = Rendered()
@@ -101,7 +101,7 @@ def main(args: Args) -> int:
 
 
 def render_seed(args: Args, seed: int) -> Rendered:
-    """Plays and renders the episodes of one house; none if it has no plan."""
+    """Runs and renders the episodes of one house; none if it has no plan."""
     config = HouseConfig(pool=args.pool, kind=args.kind)
     note = inside(args.out, f"{name_of(config, seed)}.json", what="A house")
     options = {"episodes": args.episodes, "size_px": [args.width_px, args.height_px], "generator": GENERATOR_VERSION}
@@ -117,7 +117,7 @@ def render_seed(args: Args, seed: int) -> Rendered:
 
 
 def _render(args: Args, config: HouseConfig, seed: int) -> Rendered:
-    """Plays and renders the episodes of one house that was not done yet."""
+    """Runs and renders the episodes of one house that was not done yet."""
     try:
         house = house_of(config, seed)
         plan = next(export_plans(house, {}), None)

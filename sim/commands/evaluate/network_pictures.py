@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 BACKGROUND = ("wall", "floor", "ceiling", "door", "window", "mirror", "shelving", "appliances", "lighting")
-"""Categories with columns of their own, besides the goals: what an object may be confused with."""
+"""Categories with columns of their own, in addition to the goals: objects are often confused with them."""
 DPI = 110
 
 

@@ -6,7 +6,7 @@
 
 With --calibrate a factor and an offset of each category's logit are fitted to the views of every second house, written
 to the file of the weights, and evaluated on the other houses; --block-px sets another resolution. --card writes the
-model card that is shipped with the weights, and beside it the confusion matrix as a picture and, with --curves, the
+model card that is shipped with the weights, and next to it the confusion matrix as a picture and, with --curves, the
 learning curves of the trainings that led to the network.
 """
 

@@ -9,7 +9,7 @@ Houses with models that `stubborn import furniture` has imported, and the ten ho
     stubborn houses generate --furniture runs/models --houses 5 --out /tmp/houses
     stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer
 
-The houses of a split use the folder `textures` beside their own; it is created if it is missing. The generated train
+The houses of a split use the folder `textures` next to their own; it is created if it is missing. The generated train
 houses are kept in the cache of `sim.housegen.splits.house_list`, where `stubborn episodes` reads them.
 """
 

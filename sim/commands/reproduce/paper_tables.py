@@ -170,7 +170,7 @@ def explorers(lines: Lines, setups: Sequence[AgentSetup]) -> list[ResultTable]:
 UNVERIFIED = f"stubborn --verification {ACCEPT_ALL}"
 """The paper's Single-Frame: the same map, and every candidate is accepted."""
 CONTROLS = ("semantics=shuffled", "goal=wrong", "semantics=none")
-"""What tells whether a learned explorer uses semantics and the goal (the paper's section on SemExp)."""
+"""The controls that show whether a learned explorer uses semantics and the goal (the paper's section on SemExp)."""
 TABLES: Mapping[str, PaperTable] = {
     "failures": PaperTable(("stubborn", UNVERIFIED, "frontier-avoid"), "noisy", failures),
     "ablation": PaperTable(tuple(ABLATION.values()), GROUND_TRUTH, ablation),

@@ -13,7 +13,7 @@ take turns, a chunk of episodes (with several splits, of each of them), so that 
 whenever the command is stopped; the same command resumes. Tables are printed and written to `<out>/tables`; the options
 --semantics, --agents, --noise, --split and --seed become part of the name if they are given. With `--minutes 0` no
 episode is run, and runs of older code are accepted if they have the same agent, segmentation, split, seed and noise.
-See docs/reproduce.md.
+See docs/running.md.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Logs of whole episodes that are played to fit something to them: they are continued, and refused for other settings.
+"""Logs of whole episodes to which parameters are fitted. A log is continued, and refused for other settings.
 
 A log is a folder with one line per episode. The same command continues it, and more episodes extend it, as long as
 split, code and detector are the same.
@@ -27,7 +27,7 @@ BATCH = 100
 """Number of episodes that are given to the workers together: a house is loaded once per batch, and a run that is cut
 short is still balanced."""
 COMPARED = ("semantics", "detector", "split_identity")
-"""Entries of the config of a log in which it must be equal when nothing is played."""
+"""Entries of the config of a log in which it must be equal when no episode is run."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +76,7 @@ def lines_of(
         split: the split of `args`.
         log: folder of the log.
         line_type: the fields of a line.
-        runner: plays an episode and returns its line.
+        runner: runs an episode and returns its line.
         nothing: what the line of an episode holds whose worker died.
 
     Raises:

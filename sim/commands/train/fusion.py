@@ -12,7 +12,7 @@ extend it, as long as split, code and detector are the same. --minutes 0 runs no
 `stubborn.detection.fusion_fit` fits the parameters and judges them on houses left out.
 
 The houses should hold furniture that the network was not trained on, else the fit trusts it too much: see
-docs/verification.md. Houses of val and test are for --judge only.
+docs/segmentation.md. Houses of val and test are for --judge only.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def main(args: Args) -> int:
 
 
 def compared(samples: Sequence[Sample]) -> dict[str, Any]:
-    """Returns the quality of the parameters on houses left out, beside that of plain averages on the same pairs."""
+    """Returns the quality of the parameters on houses left out, with that of plain averages on the same pairs."""
     fitted, plain = left_out(samples), probabilities(Fusion(), samples)
     goals = np.array([MPCAT40.index(name) - 1 for name in GOAL_CATEGORIES])
     among = np.maximum(fitted, plain)[:, goals] >= PLAUSIBLE

@@ -367,7 +367,7 @@ class Trainer:
         return self.args.batch * self.step / max(self.spent_s, 1e-9)
 
     def _parts(self) -> dict[str, Any]:
-        """Returns what `state.pt` holds besides the progress."""
+        """Returns the content of `state.pt` apart from the progress."""
         return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 
     def _save_state(self) -> None:

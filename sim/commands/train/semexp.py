@@ -190,7 +190,7 @@ class Run:
         FILES.save(self.args.out / "semexp.safetensors", self.policy.net, card)
 
     def _parts(self) -> dict[str, Any]:
-        """Returns what `state.pt` holds besides the progress."""
+        """Returns the content of `state.pt` apart from the progress."""
         return {"net": self.policy.net, "optimiser": self.policy.optimizer}
 
     def _resumed(self) -> bool:

@@ -103,7 +103,7 @@ class TimedTraining(ABC):
 
     @abstractmethod
     def about(self) -> dict[str, Any]:
-        """Returns what the file of weights tells of the data."""
+        """Returns the description of the data in the file of weights."""
 
     def run(self) -> None:
         """Trains until the time is up."""
@@ -193,7 +193,7 @@ class TimedTraining(ABC):
             cut_rows(self.out / name, "step", self.progress.step)
 
     def _parts(self) -> dict[str, Any]:
-        """Returns what `state.pt` holds besides the progress."""
+        """Returns the content of `state.pt` apart from the progress."""
         return {"model": self.model, "average": self.average, "optimiser": self.optimiser}
 
     def _save_state(self) -> None:

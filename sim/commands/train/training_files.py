@@ -1,4 +1,4 @@
-"""Files beside the weights: the rows of a training's curves, and the state that resumes a run."""
+"""Files next to the weights: the rows of a training's curves, and the state that resumes a run."""
 
 from __future__ import annotations
 

@@ -179,7 +179,7 @@ class CandidateRunner:
 
 
 def command(args: Args, episodes: int) -> str:
-    """Returns the command that plays as many episodes and fits to them.
+    """Returns the command that runs as many episodes and fits to them.
 
     They are the same episodes where the log holds the first ones of the split; --minutes may have left some out.
 

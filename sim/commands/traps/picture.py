@@ -23,7 +23,7 @@ INVISIBLE = (0.2, 0.75, 0.95, 1.0)
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
-    """Returns the top view and, if there is a map, the map beside it, uint8 (h, w, 3)."""
+    """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3)."""
     top = TopView(env.split.load_house(trial.trap).spec)
     top.path(trial.positions_m)
     for _, contact in trial.stops:

@@ -11,7 +11,7 @@ stubborn views --house kitchen.xml --labels labels.json --views 500 --out runs/v
 
 A shard holds views of one house: first of the houses of the split, in an order drawn from the seed, then (train only)
 of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
-With --furniture they are new as well, and have the imported models of the split `train` besides (docs/furniture.md).
+With --furniture they are new as well, and also have the imported models of the split `train` (docs/furniture.md).
 The same command continues a killed run; the same options give the same bytes. Several machines can share the work
 with --shard 0/4, 1/4, ...; the last to finish writes an index of all shards.
 """
@@ -74,7 +74,7 @@ class Args:
     labels: Path | None = None
     """With --house: a JSON file {"regex over names": "category"} for a house that has other names."""
     root: Path | None = None
-    """With --house: a folder whose files the house may use besides those of its own folder."""
+    """With --house: a folder whose files the house may use in addition to its own folder."""
     pool: str | None = None
     """wide: new houses only, with the furniture of train and many more styles."""
     furniture: Path | None = None
@@ -111,7 +111,7 @@ class Args:
     rgb: str = "jpg"
     """Format of the colour images: jpg or png."""
     check: bool = False
-    """Compare the checksums of existing shards, besides their sizes."""
+    """Compare the checksums of existing shards, in addition to their sizes."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ def _kept(args: Args, task: ShardTask, config: dict[str, Any]) -> ShardNote | No
 
 
 def _config(args: Args, split: Split) -> dict[str, Any]:
-    """Returns the options and versions that the bytes of a shard depend on, besides its number."""
+    """Returns the options and versions that the bytes of a shard depend on, apart from its number."""
     packages = ("stubborn-objectnav", "mujoco", "numpy", "opencv-python-headless")
     return {
         "split": split.name,
