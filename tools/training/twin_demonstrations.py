@@ -3,7 +3,8 @@
     python -m tools.training.twin_demonstrations --houses 200 --episodes 20 --out runs/demonstrations/searches
 
 A house is generated from its seed and exported as a plan (docs/explorers.md). A demonstrator that knows the free space,
-but not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`); the small
+but not where the goal is, explores the plan until the goal is in view and drives to it (`sim.twin.walks.search`);
+the small
 images are rendered at its poses. Searches that do not find the goal are left out. A file
 `<out>/<house>_<number>.npz` is one episode (`sim.datasets.demonstrations`); the same command continues a killed run.
 Train with `stubborn train cloned`.
