@@ -119,7 +119,7 @@ def _summary(network: Evaluated, measured: Measured, stages: Sequence[dict[str, 
     yield f"| time per frame, {network.threads} thread{'s' * (network.threads != 1)} | {measured.frame_ms:.0f} ms |"
     yield from (f"| training | {stage.get('step', '?')} steps, {stage.get('hours', '?')} h |" for stage in stages)
     yield f"| calibration error without calibration | {measured.before.error:.3f} |"
-    yield f"| calibration error, calibrated | {measured.after.error:.3f} |"
+    yield f"| calibration error with calibration | {measured.after.error:.3f} |"
     yield ""
 
 

@@ -345,7 +345,7 @@ def test_the_page_states_what_its_intervals_resample(pair: tuple[Path, Path]) ->
 def test_runs_of_other_episodes_are_refused(recorded_run: Path, pair: tuple[Path, Path]) -> None:
     _, folder = pair
     _write_lines(folder, [line | {"shortest_path": 99.0} for line in _lines(folder)[2:]])
-    with pytest.raises(ConfigError, match="not played on the same episodes"):
+    with pytest.raises(ConfigError, match="not run on the same episodes"):
         main(Args(runs=(recorded_run / "found", folder)))
 
 

@@ -37,7 +37,7 @@ def test_a_kernel_keeps_its_docstring_and_is_the_same_function_at_each_call() ->
     assert isinstance(kernel, Kernel)
     assert (kernel(1), kernel(2)) == (2, 3)
     assert kernel.compiled() is kernel.compiled()
-    assert add_twice.__doc__ == "Adds a number to all values, and again."
+    assert add_twice.__doc__ == "Adds a number to all values, twice."
 
 
 def test_kernels_bring_numba_when_they_are_called_and_not_when_they_are_imported() -> None:

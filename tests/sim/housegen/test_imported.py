@@ -301,7 +301,7 @@ def test_a_missing_package_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_a_folder_that_was_not_imported_or_lost_a_file_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="import_furniture"):
+    with pytest.raises(ConfigError, match="stubborn import furniture"):
         read_index(tmp_path)
     models = import_all(write_folder(tmp_path / "source"), tmp_path / "out")
     (tmp_path / "out" / "meshes" / f"{models[0].key}.npz").write_bytes(b"no zip")

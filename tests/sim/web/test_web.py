@@ -19,7 +19,9 @@ import pytest
 from sim import report
 from sim import run as sim_run
 from sim.composition.options import RunOptions
+from sim.composition.setup import Setup
 from sim.errors import ConfigError
+from stubborn.segmentation.shipped import SHIPPED_REDNET
 from tests.helpers.browser import ESCAPE, Browser, missing
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
@@ -306,11 +308,12 @@ def test_a_network_of_your_own_is_used_and_one_that_is_not_there_is_refused(
 ) -> None:
     asked: list[RunOptions] = []
 
-    def build(options: RunOptions, *, watched: bool) -> None:
-        asked.append(options)
+    def build(setup: Setup, *, watched: bool) -> None:
+        asked.append(setup.options)
         raise ConfigError("enough")
 
     monkeypatch.setattr(session, "build_parts", build)
+    (tmp_path / "mine.safetensors").write_bytes(SHIPPED_REDNET.read_bytes())
     playing = session.Session(Silent(), tmp_path / "mine.safetensors")
     for semantics in ("rednet", "gt"):
         with pytest.raises(ConfigError, match="enough"):

@@ -1,18 +1,15 @@
-"""Rooms must have the furniture of their kind, which the docs list."""
+"""Rooms must have the furniture of their kind."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 import pytest
 
 from sim.houses.house import House
 from sim.world.check import check_house
-from sim.world.room_requirements import GUEST_TOILET_M2, REQUIREMENTS, Piece, Requirement, missing_pieces
+from sim.world.room_requirements import GUEST_TOILET_M2, Piece, missing_pieces
 from tests.helpers.worlds import room, with_box
-
-DOCS = Path(__file__).parents[3] / "docs" / "houses.md"
 
 
 def kitchen(pieces: Mapping[str, tuple[float, float]], *, storey_m: float = 0.0) -> House:
@@ -64,15 +61,3 @@ def test_a_small_bathroom_needs_no_shower() -> None:
 
 def test_a_kind_of_room_without_requirements_needs_nothing() -> None:
     assert missing_pieces("attic", 20.0, []) == []
-
-
-def words(requirement: Requirement) -> str:
-    text = requirement.what if requirement.count == 1 else f"{requirement.count} {requirement.what}"
-    text += f", longest side >= {requirement.longest_m:.1f} m" if requirement.longest_m else ""
-    return text + (f", from {requirement.from_m2:.1f} m2 on" if requirement.from_m2 else "")
-
-
-@pytest.mark.parametrize("kind", REQUIREMENTS)
-def test_the_docs_list_the_requirements(kind: str) -> None:
-    row = f"| {kind} | {'; '.join(map(words, REQUIREMENTS[kind]))} |"
-    assert row in DOCS.read_text(), f"docs/houses.md lacks this row: {row}"

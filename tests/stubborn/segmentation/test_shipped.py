@@ -24,7 +24,7 @@ def test_it_is_small_and_its_card_agrees_with_it() -> None:
     assert model.config == NETWORKS["compact-both"]
     card = SHIPPED_REDNET.with_name("README.md").read_text(encoding="utf-8")
     assert metadata["calibration"]
-    assert "calibration error, calibrated" in card
+    assert "calibration error with calibration" in card
     assert f"{metadata['step']} steps, {metadata['hours']} h" in card
     for heading in (
         "mIoU, goal categories present",
