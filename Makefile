@@ -26,7 +26,7 @@ system-libraries:
 
 run: setup
 	@echo "== five episodes, filmed: stubborn-plus looks for objects in apartments that ship with this repository"
-	$(BIN)/python -m sim.run --agent stubborn-plus --video --record --workers 2
+	$(BIN)/stubborn run --agent stubborn-plus --video --record --workers 2
 
 test: setup
 	@echo "== the tests; where all cases would be too many, a sample that changes with each commit (all: make test-all)"
