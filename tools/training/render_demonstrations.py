@@ -119,7 +119,7 @@ def render_house(work: HouseWork) -> tuple[int, int]:
 def _work_of(run: Run, args: Args) -> Iterator[HouseWork]:
     """Yields what is to be rendered of a run, house by house."""
     if run.config.get("robot"):
-        raise ConfigError(f"'{run.path}' was played with another robot; demonstrations are rendered for ours.")
+        raise ConfigError(f"'{run.path}' was run with another robot; demonstrations are rendered for the default one.")
     mount_m = CameraModel().height_m
     recorded = run.config.get("config", {}).get("camera", {}).get("height_m", mount_m)
     if recorded != mount_m:

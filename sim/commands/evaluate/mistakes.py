@@ -101,7 +101,7 @@ def network_of(run: Run) -> NetworkSegmenter:
     """
     tree = run.config.get("config", {})
     if run.config.get("robot"):
-        raise ConfigError(f"'{run.path}' was played with another robot; views are drawn from ours.")
+        raise ConfigError(f"'{run.path}' was run with another robot; views are rendered for the default one.")
     for part, ours in (("camera", CameraModel()), ("robot", RobotConfig())):
         if with_fields(ours, tree.get(part, {})) != ours:
             raise ConfigError(f"'{run.path}' had another {part} than ours; views are drawn with ours.")
@@ -110,7 +110,7 @@ def network_of(run: Run) -> NetworkSegmenter:
     file = weights_file(Path(named) if named else None)
     checksum = run.config.get("files_sha256", {}).get("weights")
     if checksum is not None and checksum != file_sha256(file):
-        raise ConfigError(f"'{run.path}' was played with other weights than '{file}' holds now.")
+        raise ConfigError(f"'{run.path}' was run with other weights than '{file}' holds now.")
     return NetworkSegmenter.from_file(file, temperature=detector.get("temperature"))
 
 
