@@ -173,7 +173,7 @@ class StubbornAgent:
         return self.seeker.confidence
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns the position of the highest score in the last accepted candidate; see `sim.interface.StatesTarget`."""
+        """Returns the place of the highest score of the last accepted candidate; see `sim.interface.StatesTarget`."""
         if self.seeker.accepted_cell is None:
             return None
         x_m, y_m = self.navmap.frame.centres(*self.seeker.accepted_cell)

@@ -126,7 +126,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         ),
     }
 )
-"""All agents that `make` knows."""
+"""All agents that `make` can build."""
 
 NAMES: tuple[str, ...] = tuple(SPECS)
 """Their names."""

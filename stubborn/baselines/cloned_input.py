@@ -34,7 +34,7 @@ class Steps:
     categories: UInt8[np.ndarray, "n h w"]
     """mpcat40 ids; 0 is unknown."""
     motion: Float32[np.ndarray, "n motion"]
-    """As `MOTION` says."""
+    """The numbers that `MOTION` names."""
     before: UInt8[np.ndarray, " n"]
     """The action before each step; `NO_ACTION` before the first."""
     goal: int

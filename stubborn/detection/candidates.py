@@ -42,9 +42,9 @@ class CandidateParts:
         object_of[parts[left]] = objects[left]
         counts = (areas >= least_cells) & (areas > rejected_cells[object_of])
         counts[0] = False  # the background
-        beside = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
+        adjacent = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
         number = np.where(counts, np.cumsum(counts), 0)
-        return cls(number[parts], int(counts.sum()), np.append(False, beside[counts]))
+        return cls(number[parts], int(counts.sum()), np.append(False, adjacent[counts]))
 
     @property
     def mask(self) -> Bool[np.ndarray, "rows cols"]:

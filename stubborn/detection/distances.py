@@ -25,7 +25,7 @@ class TargetConfig:
     far_viewpoint_m: float = 0.93
     """A viewpoint within this distance is used where there is no nearer one."""
     pushing_m: float = 0.98
-    """Where the robot pushes against something on its way to a viewpoint, a visible candidate within this distance is
+    """If the robot pushes against something on its path to a viewpoint, a visible candidate within this distance is
     near enough."""
     last_resort_m: float = 1.6
     """Where there is no viewpoint at all, a candidate is verified from the nearest reachable place within this
@@ -80,7 +80,7 @@ class StopDistances:
     viewpoints_m: tuple[float, ...]
     """Viewpoints within the first distance come before those within the next one."""
     pushing_m: float
-    """Limit for a STOP where the robot pushes against something on its way to a viewpoint."""
+    """Limit for a STOP if the robot pushes against something on its path to a viewpoint."""
     last_resort_m: float
     """Limit for the nearest reachable place, where there is no viewpoint."""
 

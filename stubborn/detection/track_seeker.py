@@ -35,7 +35,7 @@ _STAYED_M = 0.4 * FORWARD_M
 
 @dataclass(frozen=True, kw_only=True)
 class TrackSeekerConfig:
-    """How tracks are made and judged, and which cells of them are approached."""
+    """Parameters of the tracks, of the decisions on them, and of the cells that are approached."""
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)

@@ -31,7 +31,7 @@ _IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
 
 @dataclass(frozen=True, kw_only=True)
 class TrackConfig:
-    """How detections become tracks. The values are reasoned, not fitted."""
+    """Parameters of the tracks that detections become. The values were chosen by reasoning, not fitted."""
 
     voxel_cells: int = 2
     """Edge of a voxel in cells of the map."""

@@ -167,7 +167,7 @@ def expected_success(probability: Float64[np.ndarray, " n"], table: Candidates, 
     """Returns the share of episodes that end at a true candidate if the agent stops at the first one above the bar.
 
     Args:
-        probability: of each candidate; NaN is never above the bar.
+        probability: probability of each candidate; NaN is never above the bar.
         table: the candidates, in the order in which each episode met them.
         bar: from 0 to 1.
         episodes: number of episodes of the log, also those without a candidate.
@@ -198,8 +198,8 @@ def judge(
     """Returns the quality of probabilities: precision before and after verification, accuracy, calibration.
 
     Args:
-        probability: of each candidate to be true; NaN is left out.
-        truth: of each candidate.
+        probability: probability of each candidate to be true; NaN is left out.
+        truth: True for each true candidate.
         least_probability: candidates with more are accepted.
     """
     known = np.isfinite(probability)

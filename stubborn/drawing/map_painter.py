@@ -41,14 +41,14 @@ LEGEND: tuple[tuple[str, Colour], ...] = (
     ("goal", GOAL),
 )
 GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
-"""The pale colours, for legends with room for them."""
+"""The pale colours of the ground, for legends that have space for them."""
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
 
 
 def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -> NDArray[np.uint8]:
     """Returns the agent's map around the robot, uint8 RGB (size_px, size_px + legend, 3); x is up, y is left.
 
-    With `whole` it is the known part of the map instead of the local window.
+    With `whole` the picture shows the known part of the map instead of the local window.
     """
     pose = agent.pose or Pose(0.0, 0.0, 0.0)
     window = agent.navmap.frame.window_at(pose.x_m, pose.y_m, agent.config.window_cells)
@@ -68,14 +68,15 @@ def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -
 class AgentMapPainter:
     """A `sim.viewers.viewer.MapPainter` of the agent's map, for videos.
 
-    The picture keeps its place and grows in strides. It is painted at each step; a new map means a new episode.
+    The area of the picture does not move and grows in large steps. `paint` is called at each step; a new map means a
+    new episode.
     """
 
     legend = (*LEGEND, *GROUND)
     """Name and colour of each item in the picture."""
 
     def __init__(self, agent: StubbornAgent, *, show_route: bool = True) -> None:
-        """Without `show_route` the route and its goal are not drawn."""
+        """If `show_route` is False, the route and its goal are not drawn."""
         self.agent = agent
         self.show_route = show_route
         self._navmap: NavMap | None = None
@@ -120,7 +121,7 @@ def make_painter(agent: Agent) -> AgentMapPainter:
     """Returns a painter of the agent's map; for `AgentSpec.painter` of agents that are a `StubbornAgent`.
 
     Raises:
-        TypeError: the agent is another one.
+        TypeError: the agent is of another class.
     """
     if not isinstance(agent, StubbornAgent):
         raise TypeError(f"Only a StubbornAgent has a map to draw, got {type(agent).__name__}.")
