@@ -57,8 +57,7 @@ class AgentConfig:
     window_cells: int = 240
     """Edge of the local window that is planned on."""
     recentre_every_steps: int = 1
-    """The window is moved with the robot after this many steps; the paper's value is 1, that of the published code
-    25."""
+    """The window is moved with the robot after this many steps: 1 in the paper, 25 in the published code."""
     mapping: MappingConfig = field(default_factory=MappingConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
@@ -235,7 +234,7 @@ class StubbornAgent:
         return Action.TURN_LEFT if self.navmap.seen_drop[index][ahead].any() else action
 
     def _inspect(self, approach: Approach, pose: Pose) -> Action:
-        """Faces the candidate from a viewpoint, then judges it."""
+        """Turns to the candidate at a viewpoint, then asks the seeker for a decision on it."""
         off_rad = wrap_angle(approach.bearing_rad - pose.yaw_rad)
         if abs(off_rad) > self.config.planning.aligned_rad:
             return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT

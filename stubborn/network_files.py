@@ -143,8 +143,7 @@ def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], Ne
 
 
 class _NoInitialNumbers(TorchFunctionMode):
-    """Drops random draws and fills: without memory they have no effect, but they would load 80 MB of PyTorch
-    modules."""
+    """Skips random initialisation, which has no effect without memory but loads 80 MB of PyTorch modules."""
 
     def __torch_function__(
         self, func: Callable[..., Any], types: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None

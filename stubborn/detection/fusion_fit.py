@@ -33,7 +33,7 @@ OFFSET_PRIOR = 30.0
 PARTS = 2
 """Number of random parts of the views of each track."""
 PLAUSIBLE = 0.1
-"""Goals below this probability, before and after the fit, are not judged: nearly all are true negatives."""
+"""Goals below this probability, before and after the fit, are left out: nearly all are true negatives."""
 _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
 
 
@@ -165,8 +165,7 @@ class _Data:
         return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
-        """Returns the values of `Fusion.probabilities` before the softmax: (n, objects + 1); the last column is for no
-        object."""
+        """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
         factor = (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()
         total = (self.weight @ factor)[:, None].clamp(min=1e-6)
         averaged = torch.einsum("nrc,r->nc", self.objects, factor) / total

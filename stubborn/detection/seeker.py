@@ -28,7 +28,7 @@ class Seeker(Protocol):
     """Decides on candidates of the goal: which one to approach, and when to stop."""
 
     confidence: float | None
-    """Probability or score in [0, 1] of the candidate that `judge` accepted last; None: no candidate was accepted."""
+    """Probability or score in [0, 1] of the candidate that `judge` last accepted; None: no candidate was accepted."""
     accepted_cell: tuple[int, int] | None
     """Map cell where that candidate scores highest; its other cells may show neighbouring objects."""
 
@@ -41,8 +41,7 @@ class Seeker(Protocol):
         ...
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
-        """Returns the map cell of a candidate in the current frame that is near enough to stop; None: there is no such
-        candidate."""
+        """Returns the map cell of a candidate in the current frame that is near enough to stop, or None."""
         ...
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
@@ -212,8 +211,7 @@ class TargetSeeker:
         return sighting.nearest(self._on_whole_map(navmap, self.parts(navmap).mask), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """Returns the approach to the nearest acceptable candidate, else to any candidate; None when no candidate can
-        be reached now."""
+        """Returns the approach to the nearest acceptable candidate, else to any reachable one, else None."""
         whole = self._known(navmap)
         if step >= self._retry_step:
             navmap.set_aside[whole.index] = False

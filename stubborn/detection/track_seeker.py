@@ -1,5 +1,4 @@
-"""The seeker of `stubborn-plus`: it decides on tracks, looks at doubtful ones first, and tries the best one at the
-end."""
+"""The seeker of `stubborn-plus`: it decides on tracks, and looks at doubtful ones first."""
 
 from __future__ import annotations
 
@@ -140,8 +139,7 @@ class TrackSeeker:
         return sighting.nearest(self.cells_of(navmap, self._accepted), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress another track is
-        chosen."""
+        """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
         self._count_pushes(pose)
         found = self._pursue(navmap, window, pose, step)
         if self._is_stuck(pose, pursuing=found is not None):
@@ -176,7 +174,7 @@ class TrackSeeker:
         return None
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
-        """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
+        """See `Seeker`: ends the look at the pursued track; an accepted track was judged before."""
         if self._accepted:
             at_cell = [t for t in self._accepted if self.cells_of(navmap, [t])[cell]]
             # The cell may belong to a part that is not accepted itself: then the decision is on the approached tracks.
@@ -196,8 +194,7 @@ class TrackSeeker:
         return False
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
-        """See `Seeker`: True at most once, if the candidate is not yet near enough and no seen obstacle is in the
-        way."""
+        """See `Seeker`: True at most once, if the candidate is not near enough and the path is free."""
         wanted_m = self.distances.nearer_viewpoint_m
         if self._went_nearer or wanted_m is None or self._pushes_on():
             return False
@@ -321,8 +318,7 @@ class TrackSeeker:
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
-        """Returns the approach to a place from which to look at a track; None: the track was decided on or set
-        aside."""
+        """Returns the approach to a place to look at a track from; None: the track was decided on or set aside."""
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
         looked_from = seen_from | self._hidden.get(track, False)

@@ -111,8 +111,7 @@ class Tracks:
         frame: GridFrame,
         fusion: Fusion | None = None,
     ) -> None:
-        """`frame` is the frame of the map; a voxel covers whole cells of it. `fusion` fuses views, by default exact
-        ones."""
+        """`frame` is that of the map; a voxel covers whole cells of it. `fusion` fuses views, by default exact ones."""
         self.config = config
         self.camera = camera
         self.frame = frame
@@ -224,8 +223,7 @@ class Tracks:
     def _associate(
         self, overlap: Int[np.ndarray, "regions tracks"], labels: Int[np.ndarray, " regions"], goal: int
     ) -> tuple[Int[np.ndarray, " regions"], Bool[np.ndarray, " regions"]]:
-        """Returns the track of each region (0: no track), and whether the region takes over voxels. It also begins new
-        tracks."""
+        """Returns the track of each region (0: no track), and whether it takes over voxels. Begins new tracks."""
         c, track_of = self.config, np.zeros(len(labels), np.int64)
         takes_over = np.zeros(len(labels), np.bool_)
         pixels, shown = overlap.sum(axis=1), overlap.sum(axis=0)
@@ -245,8 +243,7 @@ class Tracks:
         return track_of, takes_over
 
     def _categories(self, tracks: int, goal: int) -> Int[np.ndarray, " tracks"]:
-        """Returns the category by which the first tracks are distinguished: the goal if it has at least the probability
-        `hot`."""
+        """Returns the category by which the first tracks are distinguished: the goal from probability `hot` on."""
         probability = self.evidence.probability[:tracks]
         return np.where(probability[:, goal] >= self.config.hot, goal, np.argmax(probability, axis=1))
 

@@ -103,7 +103,7 @@ def _classifiers(
         method: one of `METHODS`.
         goals: goal of each candidate.
         features: features of each candidate.
-        truth: True for each candidate that is an instance of its goal; both values must occur.
+        truth: True for each true candidate; both values must occur.
         separate: goals that get a naive Bayes of their own.
     """
     if method == "naive-bayes":
@@ -234,8 +234,7 @@ def _calibration(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray,
 
 
 def judge_by_category(lines: Sequence[Mapping[str, Any]], verifier: FittedVerifier) -> dict[str, dict[str, Any]]:
-    """Returns the result of `judge` for a verifier on logged candidates: for all of them, then for each category that
-    occurs.
+    """Returns the result of `judge` for a verifier on logged candidates: for all, then for each category in them.
 
     Candidates of failed episodes (0 steps) are left out.
     """

@@ -35,8 +35,7 @@ class FrontierConfig:
     spent_m: float = 0.60
     """Within this distance of a place where a frontier was reached, no cell counts as a frontier any more."""
     look_around_turns: int = 0
-    """Turns on the spot at the start and at each frontier reached; 11 turns show all surroundings, as in the
-    reference."""
+    """Turns on the spot at the start and at each reached frontier; 11 show all surroundings, as in the reference."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
 
@@ -66,8 +65,7 @@ class FrontierExplorer:
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; returns the route to the pursued frontier, else to the nearest, else to ground far from the
-        trail."""
+        """Returns the route to the pursued frontier, else to the nearest, else to ground far from the trail."""
         turn = self.look_around.next_turn()
         if turn is not None:
             return turn

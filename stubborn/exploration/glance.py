@@ -73,8 +73,7 @@ class Glancer:
         return Action.TURN_LEFT if wrap_angle(self._aim_rad - pose.yaw_rad) > 0 else Action.TURN_RIGHT
 
     def _worth_a_look(self, navmap: NavMap, pose: Pose) -> float | None:
-        """Returns the heading, of those the robot can turn to, that would show most new ground; None: no heading shows
-        enough."""
+        """Returns the heading that would show most new ground; None: no heading shows enough."""
         hidden_m2 = self.hidden_area_m2(navmap, pose)
         best_gain_m2, best_rad = 0.0, None
         for turn in (*range(-5, 0), *range(1, 7)):
@@ -86,8 +85,7 @@ class Glancer:
         return best_rad
 
     def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> Float64[np.ndarray, " bearings"]:
-        """Returns, per bearing, the area of ground that was never in view and that no known obstacle hides from the
-        robot."""
+        """Returns, per bearing, the area of ground never in view that no known obstacle hides from the robot."""
         x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
         y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
         rows, cols = navmap.frame.cells(x_m, y_m)

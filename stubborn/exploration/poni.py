@@ -47,8 +47,7 @@ class PoniConfig(PotentialConfig):
     detour_m: float = 2.0
     """A frontier is given up when the path to it becomes this much longer than it was: a wall came into view."""
     stalled_steps: int = 10
-    """A frontier is given up when the robot has not moved for this many steps: it cannot leave its place on that
-    path."""
+    """A frontier is given up when the robot has not moved for this many steps: its path is blocked."""
     arrived_m: float = 0.35
     """A frontier counts as reached within this path length."""
     spent_m: float = 0.60
@@ -98,8 +97,7 @@ class PoniExplorer:
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; returns the route to the pursued frontier, else to the best, else to ground far from the
-        trail."""
+        """Returns the route to the pursued frontier, else to the best, else to ground far from the trail."""
         if self._spent.size == 0:
             self._spent = np.zeros(ground.navmap.frame.shape, np.bool_)
         config = self.config
@@ -132,8 +130,7 @@ class PoniExplorer:
         return route
 
     def _to_best(self, known: Frontiers, ground: Ground) -> Search:
-        """Returns the route to the open frontier with the highest score: a long one, else any; None: no frontier is
-        open."""
+        """Returns the route to the open frontier with the highest score: a long one, else any; None without any."""
         spent, score = self._spent[known.window.index], None
         for least_m in (self.config.least_length_m, 0.0):
             while (cells := large_parts(known.cells & ~spent, least_m / known.free.frame.cell_m)).any():

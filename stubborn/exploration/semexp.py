@@ -90,8 +90,7 @@ class SemExpExplorer:
         self._age_steps = 0
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; returns the route to the long-term goal, or None when it is reached, so that the agent pushes
-        on."""
+        """Returns the route to the long-term goal; None when it is reached, so that the agent pushes on."""
         if self.place_xy_m is not None and self._age_steps < self.config.goal_steps:
             route = yield from self._go_on(self.place_xy_m, ground)
             if route is not None:

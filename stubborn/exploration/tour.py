@@ -1,6 +1,6 @@
 """Explores by a tour over all unseen areas, in the order that shows most of them soonest; this is not in the paper.
 
-Two kinds of ground are left to see: unknown ground behind frontiers, and ground that was only seen from afar, where a
+Two kinds of ground are left to see: unknown ground behind frontiers, and ground that was seen only from afar, where a
 small object covers too little of the image to be noticed. Each frontier, and each part of the ground seen from afar, is
 a stop of the tour with a weight, the area that it would show. The order minimizes the sum of weight times path length
 until the stop (the minimum latency problem; Blum et al. 1994), which is the expected path until an object is seen if
@@ -152,8 +152,7 @@ class _Stop:
 
 
 class _Paths:
-    """Path lengths in the free space, on blocks of cells; this is exact enough for the order of the stops, also in
-    large houses."""
+    """Path lengths in the free space, on blocks of cells, which is exact enough to order the stops."""
 
     def __init__(self, known: Frontiers, block_cells: int, unknown_speed: float) -> None:
         free = known.free
@@ -203,7 +202,7 @@ class TourExplorer:
         self._layer: CollisionLayer | None = None  # the layer on which the route to it was planned
         self._age_steps = 0
         self._goal_from_m2 = 0.0  # the ground seen when the goal was chosen
-        self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
+        self._unmarked_steps = 0  # on routes over collision marks, since `_unmarked_from_m2` was set
         self._unmarked_from_m2 = 0.0
         self._unmarked_pose: Pose | None = None  # at the last step of such a route
         self._pushes = 0  # forwards on such routes that did not move the robot
@@ -212,8 +211,7 @@ class TourExplorer:
         self._frames = np.zeros((0, 0), np.uint16)
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; returns the route to the pursued stop, else to the first of a new tour, else far from the
-        trail.
+        """Returns the route to the pursued stop, else to the first of a new tour, else far from the trail.
 
         Where nothing is left to see in the free space of the preferred collision layer, a mark may close a passage:
         the tour is planned on the next layer and finally, for some steps, without collision marks.
@@ -264,8 +262,7 @@ class TourExplorer:
         return ground.layers if closed else (*ground.layers, CollisionLayer.NONE)
 
     def _left(self, ground: Ground, layer: CollisionLayer) -> _Left:
-        """Returns the areas in the known part of the map that are left to see and can be reached on a collision
-        layer."""
+        """Returns the areas that are left to see in the known part of the map and are reachable on a layer."""
         config = self.config
         known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells, layer=layer)
         far = np.zeros_like(known.cells)

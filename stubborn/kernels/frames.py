@@ -92,8 +92,7 @@ def nearest_down_columns(depth):
 def count_obstacle_points(
     depth, confirmed, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, low_m, top_m, eye_m, solid, tall
 ):
-    """Counts the points of each cell in the obstacle band and at eye level, at most 2 each; points off the grid are
-    ignored.
+    """Counts the points of each cell in the obstacle band and at eye level, at most 2 each, on the grid only.
 
     Args:
         depth: see `ground_points`, also for the next arguments up to `far_m`.
@@ -237,8 +236,7 @@ def ground_points(
 def cells_of_pixels(
     depth, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, top_m, height, width, rows, cols
 ):
-    """Computes the cell of each depth pixel, and returns the first and last row and the first and last column of all
-    cells.
+    """Computes the cell of each depth pixel, and returns the first and last row and column of all cells.
 
     Args:
         depth: see `ground_points`, also for the next arguments up to `far_m`.
@@ -317,8 +315,7 @@ def goal_bits(posteriors, channels, first, every, least):
 
 @njit(cache=True)
 def scores_of_category(semantic, category):
-    """Returns, as float32 images, 1 where a pixel has the category, and 1 where it has another one; id 0 is no
-    category."""
+    """Returns two float32 images: 1 where a pixel has the category, and 1 where it has another one (not 0)."""
     target, other = np.empty(semantic.shape, np.float32), np.empty(semantic.shape, np.float32)
     for r in range(semantic.shape[0]):
         for c in range(semantic.shape[1]):

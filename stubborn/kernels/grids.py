@@ -25,7 +25,7 @@ def distance_within(mask, reach):
         raise ValueError("distance_within: reach must be at most 180 cells, so that squares are 16-bit numbers.")
     rows, cols = mask.shape
     width = cols + reach  # the columns at the end are far from everything, so that a line may continue into the next
-    one, beyond = np.uint16(1), np.uint16(reach + 1)  # short numbers throughout: many of them are computed at once
+    one, beyond = np.uint16(1), np.uint16(reach + 1)  # 16-bit numbers throughout: many of them are computed at once
     gap = np.full((rows, width), beyond, np.uint16)  # first the distance to a True cell of the same column
     for row in range(rows):
         here, marked = gap[row], mask[row]

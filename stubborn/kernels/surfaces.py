@@ -57,8 +57,7 @@ def fill_surface_channels(depth, focal_px, camera_height_m, max_depth_m, step, c
 
 @njit(cache=True)
 def _nearest_neighbour(depth, row, col, down, right, max_depth_m):
-    """Returns the row or column of the valid one of two opposite neighbours that is nearer in depth; -1 if neither is
-    valid."""
+    """Returns the row or column of the neighbour, of two opposite ones, that is nearer in depth; -1: none is valid."""
     rows, cols = depth.shape
     best, least = -1, np.inf
     for sign in (1, -1):

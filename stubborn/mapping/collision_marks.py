@@ -74,8 +74,7 @@ class GpsNoise:
         return statistics.median(self._moved_m) / self._MEDIAN_SIGMAS
 
     def failed_below_m(self, config: CollisionConfig) -> float:
-        """Returns the distance below which a forward has failed: the configured one, or a smaller one if the noise is
-        larger."""
+        """Returns the distance below which a forward has failed: the configured one, or less with larger noise."""
         return max(
             min(config.failed_below_m, FORWARD_M - config.jitter_sigmas * self.std_m()),
             min(config.least_failed_m, config.failed_below_m),

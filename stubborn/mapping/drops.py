@@ -122,8 +122,7 @@ class Drops:
 def _cells_at(
     frame: GridFrame, pose: Pose, depth_m: Float32[np.ndarray, "h 1"], left: Float32[np.ndarray, " w"]
 ) -> Int[np.ndarray, "h w"]:
-    """Returns the row-major cells at some depths along the columns of the image; beyond the map the cells at its
-    edge."""
+    """Returns the row-major cells at some depths along the columns of the image, clipped to the map."""
     cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     x = (pose.x_m - frame.origin_xy_m[0]) + depth_m * (cos - sin * left)
     y = (pose.y_m - frame.origin_xy_m[1]) + depth_m * (sin + cos * left)

@@ -104,8 +104,7 @@ class Mapper:
     def __init__(
         self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
     ) -> None:
-        """Precomputes the rays of the camera. `layers` keeps the scores; None: the scores of all frames, as in the
-        paper."""
+        """Precomputes the rays of the camera. `layers` keeps the scores, by default of all frames as in the paper."""
         self.layers = layers or ObjectLayersConfig().make(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
         if config.obstacle_min_height_m >= top_m:
@@ -209,15 +208,16 @@ class Mapper:
             return
         points = rays.project(rays.sample(depth), bits != 0, camera_pose, window)
         counts = points.height_m <= self.config.score_max_height_m
-        counts &= window.frame.contains(points.rows, points.cols)  # at the edge of the map the camera sees beyond it
+        counts &= window.frame.contains(
+            points.rows, points.cols
+        )  # at the edge of the map the camera sees points outside the map
         seen = navmap.goals_seen[window.index]
         np.bitwise_or.at(seen, (points.rows[counts], points.cols[counts]), bits[points.valid][counts])
 
     def _confirm(
         self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
     ) -> tuple[Float32[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
-        """Returns depth smoothed over the target, and a mask that is False at target pixels off their neighbours'
-        surface.
+        """Returns depth smoothed over the target, and False at target pixels off their neighbours' surface.
 
         At the rim of an object a noisy depth image shows points behind it or in front of it.
         """
@@ -247,8 +247,7 @@ class Mapper:
     def _drop_candidates(
         self, view: NavMap, d: Float32[np.ndarray, "h w"], found: Bool[np.ndarray, "h w"], rays: Rays, camera_pose: Pose
     ) -> None:
-        """Removes candidates in free space in front of the target: from afar a noisy image shows the target too
-        near."""
+        """Removes candidates in free space in front of the target: a noisy image shows far targets too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
         target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
         sight = SightLines.of_frame(
@@ -270,7 +269,7 @@ class Mapper:
         every = max(1, self.config.score_stride_px // block_px)
         pick = slice(every // 2, None, every)
         if block_px not in self._score_rays:
-            first_px = (every // 2) * block_px + block_px // 2  # depth in the middle of the score's block
+            first_px = (every // 2) * block_px + block_px // 2  # the depth pixel in the middle of the score's block
             self._score_rays[block_px] = Rays(self.camera, first_px, every * block_px)
         return self._score_rays[block_px], (pick, pick)
 

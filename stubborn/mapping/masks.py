@@ -16,8 +16,7 @@ Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 
 
 def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
-    """Returns the exact distance from every cell's centre to that of the nearest True cell; huge when there is no True
-    cell."""
+    """Returns the exact distance from every cell's centre to that of the nearest True cell; huge in an empty mask."""
     return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
 
 

@@ -47,8 +47,7 @@ class FrameScores:
         target: Float32[np.ndarray, "h w"],
         other: Float32[np.ndarray, "h w"],
     ) -> None:
-        """`rows` and `cols` are the cell of each pixel, negative without a cell; `target` and `other` are scores in [0,
-        1]."""
+        """`rows` and `cols` are the cell of each pixel (negative: no cell); `target` and `other` are in [0, 1]."""
         in_view, highest, other_of = np.zeros(shape, np.bool_), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
         scored = highest_scores(rows, cols, target, other, in_view, highest, other_of)
         self.in_view: Bool[np.ndarray, "rows cols"] = in_view

@@ -134,8 +134,7 @@ class Planner:
         return farther_than(seen, self.config.unseen_gap_m, view.frame.cell_m)
 
     def unknown(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the ground that was never in view, up to the border of the seen ground; gaps in the seen ground are
-        closed."""
+        """Returns the ground that was never in view, up to the border of the seen ground, whose gaps are closed."""
         return ~farther_than(self.unseen(view), self.config.unseen_gap_m, view.frame.cell_m)
 
     def free_space(

@@ -97,8 +97,7 @@ class ViewIndex:
         return {name: (sum(map(len, styles.values())), len(styles)) for name, styles in sorted(self.objects.items())}
 
     def draw(self, rng: np.random.Generator) -> ShownObject:
-        """Returns a random object: category, style and object are sampled one after the other, each with equal
-        probability."""
+        """Returns a random object: first the category, then the style, then the object is sampled uniformly."""
         styles = self.objects[_one_of(list(self.objects), rng)]
         return _one_of(styles[_one_of(list(styles), rng)], rng)
 

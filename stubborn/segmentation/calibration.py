@@ -70,8 +70,7 @@ class Calibration:
 def fit_calibration(
     logits: Float32[Tensor, "k classes"], truth: Int64[Tensor, " k"], *, hold: float = HOLD
 ) -> Calibration:
-    """Returns the calibration that maximises the likelihood of the true classes, kept near one temperature by a
-    penalty.
+    """Returns the calibration of highest likelihood, with a penalty that keeps it near one temperature.
 
     Args:
         logits: logits of the pixels that count.

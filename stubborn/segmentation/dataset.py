@@ -1,7 +1,7 @@
 """Reads labelled views from WebDataset shards, as arrays and as a PyTorch data set.
 
 A shard is a tar file in which the members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
-millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, where they were asked for, `key.instances.png`,
+millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, if requested, `key.instances.png`,
 `key.coco.json` and `key.normals.png` (docs/datasets.md). The `webdataset` package reads them as well, with
 `decode_member`; this reader needs only the standard library and OpenCV, and its errors name the broken file and view.
 """
@@ -68,7 +68,7 @@ class LabelledView:
     record: dict[str, Any] = field(default_factory=dict)
     """Content of `key.json`."""
     instances: UInt16[np.ndarray, "h w"] | None = None
-    """Number of the instance of each pixel, from 1; 0: none. None: the shard has no such member."""
+    """Number of the instance of each pixel, from 1; 0: no instance. None: the shard has no such member."""
     annotations: list[dict[str, Any]] | None = None
     """The objects in the format of COCO: boxes and masks; None: the shard has no such member."""
     normals: Float32[np.ndarray, "h w 3"] | None = None
@@ -126,8 +126,7 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
 
 
 def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """Yields key and members of the views of a shard in their order; the members are {} if the number of the view is
-    not in `wanted`.
+    """Yields key and members of the views of a shard in their order; {} for views that are not in `wanted`.
 
     Raises:
         ConfigError: the file is not a tar file or truncated.
@@ -299,8 +298,8 @@ class RareObjectRepeats:
     """A function that returns how often a view is used: views that show rare goal categories are used more often.
 
     A category that is in a share f of the views has the value max(1, sqrt(wanted / f)), and a view gets the largest
-    value of the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). Views
-    count and not pixels, so that a large object is not preferred to a small one.
+    value of the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). It counts
+    views and not pixels, so that a large object is not preferred to a small one.
     """
 
     share: Float64[np.ndarray, " 41"]

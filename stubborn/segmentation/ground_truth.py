@@ -32,8 +32,7 @@ class GroundTruthSegmenter:
         return observation["semantic"]
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
-        """Returns 1 for the category in the middle of each block of 4 x 4 pixels, else 0, (40, h / 4, w / 4); void
-        gives 0."""
+        """Returns 1 for the category in the middle of each 4 x 4 block, else (and for void) 0, (40, h / 4, w / 4)."""
         every = STRIDE_PX
         semantic = observation["semantic"][every // 2 :: every, every // 2 :: every]
         by_id = np.zeros((len(MPCAT40), semantic.size), np.float32)

@@ -47,8 +47,7 @@ def require_whole_strides(height_px: int, width_px: int) -> None:
 
 
 def padding(height_px: int, width_px: int) -> Padding:
-    """Returns the padding that an image of this size needs: about half of it, an even number, is at the top and the
-    left."""
+    """Returns the padding that an image of this size needs; an even number, about half, is at the top and left."""
     rows, cols = -height_px % STRIDE_PX, -width_px % STRIDE_PX
     top, left = rows // 4 * 2, cols // 4 * 2
     return Padding(top, rows - top, left, cols - left)

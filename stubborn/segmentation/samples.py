@@ -69,8 +69,7 @@ NONE = Augmentation(
 
 @dataclass(frozen=True)
 class Sampler:
-    """A function that returns a training sample of a view. It is a class, so that it can be pickled for a loader's
-    workers."""
+    """A function that returns a training sample of a view; as a class it can be pickled for a loader's workers."""
 
     camera: CameraModel
     block_px: int = 1
@@ -198,10 +197,9 @@ class Window:
 
 
 def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
-    """Returns row and column of a pixel of a goal category, each category in the view equally often; None if there is
-    no such pixel.
+    """Returns row and column of a random pixel of a goal category; None if there is no such pixel.
 
-    It samples categories and not pixels, so that windows show small objects as often as large ones.
+    Each category in the view is sampled equally often, so that windows show small objects as often as large ones.
     """
     present = np.flatnonzero(np.bincount(semantic.reshape(-1), minlength=len(MPCAT40)))
     goals = np.intersect1d(present, GOAL_IDS)

@@ -21,8 +21,7 @@ def pyramid_loss(
     subpixel: tuple[int, int] | None = None,
     pixels: Float32[Tensor, "n h w"] | None = None,
 ) -> Float[Tensor, ""]:
-    """Returns the sum over scales of the weighted cross entropy, for which the coarser scales use every 2nd, 4th, 8th
-    and 16th label.
+    """Returns the sum of the weighted cross entropies of all scales; coarser ones use every 2nd, 4th, ... label.
 
     Args:
         outputs: logits at full size, and at 1/2, 1/4, ... of it.

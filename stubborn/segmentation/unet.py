@@ -1,5 +1,4 @@
-"""U-Nets for colour and geometric channels that run on a CPU: an encoder, a narrow decoder, and logits at half the
-size.
+"""U-Nets for colour and geometric channels that run on a CPU: encoder, narrow decoder, logits at half the size.
 
 The dense encoder sees colour and geometry (`stubborn.segmentation.geometry`) together from the first convolution on.
 The mobile encoder is EfficientNet-Lite0 for colour (`stubborn.segmentation.lite0`), to which a small encoder adds
