@@ -9,6 +9,8 @@ user allows more with `--root FOLDER`, for packages whose files lie in folders n
 from __future__ import annotations
 
 import os
+import re
+import stat
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +18,18 @@ from pathlib import Path
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
 from sim.paths import assets_dir
-from sim.reading import printable
+from sim.reading import printable, read_bytes
 
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
+MOST_FILES = 10_000
+"""Files of a house whose checksums are computed."""
+_MOST_BYTES = 64 << 20
+_VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
+_FILE = re.compile(rb"\bfile\w*" + _VALUE)
+_FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
+_ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".bin", ".skn"))
+"""Suffixes of files that include no other."""
 MOST_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
@@ -116,3 +126,44 @@ def require_root(root: Path | None) -> None:
     """Raises a HouseError where the folder of `--root` does not exist."""
     if root is not None and not root.is_dir():
         raise HouseError(f"--root '{root}': there is no such folder.")
+
+
+def files_of(house_file: Path) -> list[Path]:
+    """Returns the files that an MJCF file uses, with those of its included files, sorted; shipped ones do not count.
+
+    The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used, and
+    what a file may not read (`Allowed`) is left out.
+    """
+    found: set[Path] = set()
+    waiting, first = [house_file.resolve()], house_file.resolve().parent
+    shipped = assets_dir().resolve()
+    while waiting and len(found) < MOST_FILES:
+        text = _content(waiting.pop())
+        folders = [value.decode(errors="replace") for value in _values(_FOLDER, text)]
+        for name in {value.decode(errors="replace") for value in _values(_FILE, text)}:
+            for folder in ("", *folders):
+                for each in (name, name.replace("\\", "/").rpartition("/")[2]):
+                    path = path_as_read(first, folder, each)
+                    if path not in found and _is_plain(path) and not path.is_relative_to(shipped):
+                        found.add(path)
+                        if path.suffix.lower() not in _ASSETS:
+                            waiting.append(path)
+    return sorted(found - {house_file.resolve()})
+
+
+def _content(file: Path) -> bytes:
+    try:
+        return read_bytes(file, what="File", most=_MOST_BYTES)
+    except ObjectNavError:
+        return b""  # `read_spec` refuses it
+
+
+def _values(attribute: re.Pattern[bytes], text: bytes) -> list[bytes]:
+    return [match["value"][1:-1] for match in attribute.finditer(text)]
+
+
+def _is_plain(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False
