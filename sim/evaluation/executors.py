@@ -160,8 +160,8 @@ class _Process:
         except Exception:  # the pipe was closed, or code of a user wrote to it
             where, killed = self.calls.where, self.loss
             self.end(within_s=LAST_WORDS_S)
-            at = f"{where}: its" if where else "Its"
-            loss = killed or f"{at} process ended with status {self.process.exitcode}"
+            at = f"{where}: its process" if where else "The process of the worker"
+            loss = killed or f"{at} ended with status {self.process.exitcode}"
             raise WorkerLost(loss, final=bool(killed)) from None
         self.busy = False
         return message
