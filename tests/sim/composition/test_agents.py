@@ -26,6 +26,7 @@ def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str
     """Runs one episode; returns its result line and the keys of the observations."""
     agents.SEEN.clear()
     options = ["--agent", agent, "--semantics", semantics, "--house", str(house), "--episodes", "1", "--out", str(out)]
+    options += ["--step-timeout", "0"]  # in this process, which has the list of observations
     assert entry([*options, "--config", *SMALL, *config]) == 0
     (keys,) = {frozenset(keys) for keys in agents.SEEN}
     return json.loads((out / "results.jsonl").read_text()), set(keys)
