@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from rich.console import Console
 from rich.table import Table
 
 from sim import cli
@@ -15,7 +16,7 @@ from sim.analysis import display
 from sim.composition.agents import SPECS
 from sim.composition.isolation import RUNNER, isolation_of
 from sim.composition.options import RunOptions
-from sim.evaluation.executors import start_early
+from sim.evaluation.executors import started_early
 from sim.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS
 
@@ -29,8 +30,13 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    if isolation_of(options).needed and options.workers == 1 and options.executor == "local":
-        start_early(RUNNER)  # it imports its modules while this process reads the options
+    apart = isolation_of(options).needed and options.workers == 1 and options.executor == "local"
+    with started_early(RUNNER if apart else None):  # it imports its modules while this process reads the options
+        return _run(options, console)
+
+
+def _run(options: RunOptions, console: Console) -> int:
+    """Runs the episodes; returns the exit status."""
     from sim.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
     from sim.composition.running import report_house, run_missing
     from sim.composition.setup import resolve

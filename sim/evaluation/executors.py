@@ -186,14 +186,21 @@ _spare: _Process | None = None
 """A process that was started before its work is known."""
 
 
-def start_early(preload: str) -> None:
-    """Starts one process now, which the next `ProcessPool` uses: it imports modules while this process reads options.
+@contextlib.contextmanager
+def started_early(preload: str | None) -> Iterator[None]:
+    """Starts one process, which a `ProcessPool` inside the `with` block uses; it imports modules in the meantime.
 
     Args:
-        preload: the module that it imports.
+        preload: the module that it imports; None: no process is started.
     """
     global _spare
-    _spare = _spare or _Process(threads=_processors(), preload=preload)
+    _spare = None if preload is None else _Process(threads=_processors(), preload=preload)
+    try:
+        yield
+    finally:
+        unused, _spare = _spare, None
+        if unused is not None:
+            unused.end(within_s=0.0)
 
 
 class ProcessPool:

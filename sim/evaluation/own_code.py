@@ -48,10 +48,10 @@ def text_of(error: BaseException) -> str:
     return one_line(text) or "no message"
 
 
-def one_line(text: str) -> str:
+def one_line(text: str, most: int = MOST_LETTERS) -> str:
     """Returns a text in one line that a terminal, JSON and UTF-8 can hold; of a long text the beginning."""
-    cut = f" ... ({len(text)} letters)" if len(text) > MOST_LETTERS else ""
-    return printable(" ".join(text[:MOST_LETTERS].split())) + cut
+    cut = f" ... ({len(text)} letters)" if len(text) > most else ""
+    return printable(" ".join(text[:most].split())) + cut
 
 
 def hash_of_own(modules: Iterable[str]) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
-from sim.evaluation.own_code import one_line, place_of, text_of
+from sim.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
 from sim.evaluation.watch import is_stop, marked
 from sim.geometry.pose import Pose
 from sim.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
@@ -261,7 +261,7 @@ def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about:
 def broken_metrics(error: str) -> dict[str, Any]:
     """Returns the entries of a result line for an episode that ended with an error."""
     zero = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc"}
-    return zero | {"end_reason": "error", "error": one_line(error)}
+    return zero | {"end_reason": "error", "error": one_line(error, 2 * MOST_LETTERS)}
 
 
 def _plain(value: Any) -> Any:

@@ -91,7 +91,7 @@ def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_pat
 
 
 def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
-    options = ("--agent", "random", "--house", house)
+    options = ("--agent", "random", "--house", house, "--seed-key", "k")
     run(*options, "--episodes", 2, "--out", tmp_path / "plain")
     assert not any((tmp_path / "plain" / name).exists() for name in ("trajectories", "pictures"))
     run(*options, "--episodes", 1, "--out", tmp_path / "recorded", "--record")
