@@ -24,6 +24,7 @@ SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
 MOST_FILES = 10_000
 """Files of a house whose checksums are computed."""
+_MOST_FOLDERS = 20
 _MOST_BYTES = 64 << 20
 _VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
 _FILE = re.compile(rb"\bfile\w*" + _VALUE)
@@ -134,21 +135,27 @@ def files_of(house_file: Path) -> list[Path]:
     The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used, and
     what a file may not read (`Allowed`) is left out.
     """
-    found: set[Path] = set()
-    waiting, first = [house_file.resolve()], house_file.resolve().parent
-    shipped = assets_dir().resolve()
-    while waiting and len(found) < MOST_FILES:
-        text = _content(waiting.pop())
-        folders = [value.decode(errors="replace") for value in _values(_FOLDER, text)]
-        for name in {value.decode(errors="replace") for value in _values(_FILE, text)}:
-            for folder in ("", *folders):
-                for each in (name, name.replace("\\", "/").rpartition("/")[2]):
-                    path = path_as_read(first, folder, each)
-                    if path not in found and _is_plain(path) and not path.is_relative_to(shipped):
-                        found.add(path)
-                        if path.suffix.lower() not in _ASSETS:
-                            waiting.append(path)
-    return sorted(found - {house_file.resolve()})
+    shipped, house_file = assets_dir().resolve(), house_file.resolve()
+    read: set[Path] = set()
+    found = {house_file}
+    names: dict[str, None] = {}
+    folders: dict[str, None] = {"": None}
+    bases: dict[Path, None] = {}
+    while waiting := [file for file in sorted(found - read) if file.suffix.lower() not in _ASSETS]:
+        for file in waiting:
+            read.add(file)
+            bases[file.parent] = None
+            text = _content(file)
+            names.update(dict.fromkeys(_values(_FILE, text)))
+            folders.update(dict.fromkeys(_values(_FOLDER, text)))
+        for base in list(bases)[:_MOST_FOLDERS]:  # next to the first file, or next to the one that names it
+            for folder in list(folders)[:_MOST_FOLDERS]:
+                for name in list(names)[:MOST_FILES]:
+                    for each in {name, name.replace("\\", "/").rpartition("/")[2]}:
+                        path = path_as_read(base, folder, each)
+                        if _is_plain(path) and not path.is_relative_to(shipped):
+                            found.add(path)
+    return sorted(found - {house_file})
 
 
 def _content(file: Path) -> bytes:
@@ -158,8 +165,8 @@ def _content(file: Path) -> bytes:
         return b""  # `read_spec` refuses it
 
 
-def _values(attribute: re.Pattern[bytes], text: bytes) -> list[bytes]:
-    return [match["value"][1:-1] for match in attribute.finditer(text)]
+def _values(attribute: re.Pattern[bytes], text: bytes) -> list[str]:
+    return [match["value"][1:-1].decode(errors="replace") for match in attribute.finditer(text)]
 
 
 def _is_plain(path: Path) -> bool:

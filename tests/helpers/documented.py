@@ -454,8 +454,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
         "stubborn reproduce splits --splits val hazards --agents oracle random --episodes 1 --out {tmp}/paper",
     ),
-    f"{_RUN} --episodes 1000 --shard 0/2 --out runs/big": (_SHARDS[0],),
-    f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[1],),
+    f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[0],),
+    f"{_RUN} --episodes 1000 --shard 2/2 --out runs/big": (_SHARDS[1],),
     "stubborn teleop --goal sofa --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
         f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
