@@ -15,6 +15,7 @@ from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
 from sim.composition.segmenters import SegmentationKind, detector_config, find_segmentation
 from sim.configuration import parse_assignments, read_settings, with_fields
+from sim.episodes.splits import Split
 from sim.errors import ConfigError
 from sim.geometry.pose import Pose
 from sim.interface import AgentSpec, CameraModel
@@ -81,10 +82,26 @@ class Setup:
     verifier: Verifier
     start: Pose | None
     """With `--house`, the start of every episode; None: starts are sampled."""
+    planned: str | None = None
+    """Checksum of the split or house from which the episodes were planned; None: nothing is compared with it."""
 
     def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
         """Pickles the setup as its options."""
-        return resolve, (self.options,)
+        return _resolve_planned, (self.options, self.planned)
+
+    def with_absolute_paths(self) -> Setup:
+        """Returns this setup with paths that have the same meaning after a change of the current folder."""
+        options = self.options
+        named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
+        paths = {name: path.absolute() for name, path in named.items() if path is not None}
+        return replace(self, options=replace(options, **paths))
+
+    def require_planned(self, split: Split) -> None:
+        """Raises ConfigError where a split is not the one from which the episodes were planned."""
+        if self.planned not in (None, split.sha256):
+            raise ConfigError(
+                f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
+            )
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -126,6 +143,10 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
         verifier=verifier,
         start=start_pose(options.start_deg),
     )
+
+
+def _resolve_planned(options: RunOptions, planned: str | None) -> Setup:
+    return replace(resolve(options), planned=planned)
 
 
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:

@@ -133,6 +133,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
     """
     parts: dict[str, bytes] = {}
     key, number = "", -1
+    once = _Once(file)
     try:
         with (
             open_plain(file, what="Shard") as stream,
@@ -141,6 +142,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
+                once.require(name, suffix.split(".")[0])
                 if name != key or number < 0:
                     if number >= 0:
                         yield key, parts
@@ -163,11 +165,13 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
         ConfigError: the file is not a tar file or truncated.
     """
     key, places = "", {}
+    once = _Once(file)
     try:
         with tarfile.open(file, mode="r:") as archive:
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
+                once.require(name, suffix.split(".")[0])
                 if name != key and places:
                     yield key, places
                     places = {}
@@ -179,6 +183,26 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
         if isinstance(error, ConfigError):
             raise
         raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
+
+
+class _Once:
+    """Refuses a shard that holds a view twice, or one part of a view twice, such as `rgb.jpg` and `rgb.png`."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._keys: set[str] = set()
+        self._key, self._parts = "", set[str]()
+
+    def require(self, key: str, part: str) -> None:
+        """Raises ConfigError where a member, which follows the earlier ones, is a second one of its kind."""
+        if key != self._key or not self._keys:
+            if key in self._keys:
+                raise ConfigError(f"Shard '{self._file}' holds the view '{key}' twice; a view is stored once.")
+            self._keys.add(key)
+            self._key, self._parts = key, set()
+        if part in self._parts:
+            raise ConfigError(f"Shard '{self._file}': view '{key}' has '{part}' twice; a view has one of each kind.")
+        self._parts.add(part)
 
 
 def _require_small_file(file: Path, member: tarfile.TarInfo) -> None:
