@@ -155,25 +155,38 @@ def load_split(name_or_path: str | Path) -> Split:
 
 
 def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:
-    """Returns a split of one house file, without episodes.
+    """Returns a split of one house file, without episodes; see `split_of_files`."""
+    return split_of_files((path,), labels=labels, root=root)
+
+
+def split_of_files(
+    paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
+) -> Split:
+    """Returns a split of some house files, without episodes.
 
     Args:
-        path: the file.
-        labels: its label rules.
-        root: another folder whose files it may use, in addition to its own folder.
+        paths: the files; each name is that of one house.
+        labels: label rules of all houses.
+        root: another folder whose files they may use, in addition to their own folders.
 
     Raises:
+        ConfigError: two files have one name.
         HouseError: there is no such file.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise HouseError(f"House '{path}': there is no such file.")
     labels_path = None if labels is None else Path(labels)
-    digest = hashlib.sha256(path.read_bytes() + _sidecar_bytes(path))
+    digest, files = hashlib.sha256(), dict[str, Path]()
+    for path in map(Path, paths):
+        if not path.is_file():
+            raise HouseError(f"House '{path}': there is no such file.")
+        if path.stem in files:
+            raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
+        files[path.stem] = path
+        digest.update(path.read_bytes() + _sidecar_bytes(path))
     if labels_path is not None and labels_path.is_file():
         digest.update(labels_path.read_bytes())
     allowed = None if root is None else Path(root)
-    return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path, allowed)
+    name, version = (next(iter(files)), "one-house") if len(files) == 1 else ("houses", "houses")
+    return Split(name, version, digest.hexdigest(), files, (), labels_path, allowed)
 
 
 def write_split(
