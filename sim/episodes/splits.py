@@ -111,9 +111,7 @@ class Split:
         Raises:
             HouseError: the file violates the format of `sim.houses.sidecar`.
         """
-        path = self.house_paths[house]
-        is_rules = self.labels_path is not None and self.labels_path.resolve() == sidecar_path(path).resolve()
-        return EMPTY_SIDECAR if is_rules else read_sidecar(path)
+        return house_sidecar(self.house_paths[house], self.labels_path)
 
     def episode(self, episode_id: str) -> Episode:
         """Returns the episode with an id.
@@ -127,6 +125,16 @@ class Split:
         near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
+
+
+def house_sidecar(house_file: Path, labels_path: Path | None) -> Sidecar:
+    """Returns the sidecar of a house file; empty if there is none, or if the file holds the label rules.
+
+    Raises:
+        HouseError: the file violates the format of `sim.houses.sidecar`.
+    """
+    is_rules = labels_path is not None and labels_path.resolve() == sidecar_path(house_file).resolve()
+    return EMPTY_SIDECAR if is_rules else read_sidecar(house_file)
 
 
 def shipped_splits() -> tuple[str, ...]:
