@@ -17,6 +17,8 @@ Picture = NDArray[np.uint8]
 HEIGHT_PX, MARGIN_PX, TITLE_PX = 640, 16, 30
 ARROW_M = 0.35
 """Length of the line from a start in the direction in which the robot looks."""
+TEXT = 0.45
+"""Size of the names of goals."""
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
@@ -32,7 +34,8 @@ def draw_episode_map(task: Task, episodes: Sequence[Episode]) -> Picture:
     picture = np.full((TITLE_PX + HEIGHT_PX, sum(tile.shape[1] for tile in tiles), 3), 255, np.uint8)
     picture[TITLE_PX:] = np.hstack(tiles)
     count = f"{len(episodes)} episode" + ("" if len(episodes) == 1 else "s")
-    text = f"{episodes[0].house}: {count}; blue: starts and headings; green: goals; grey: obstacles"
+    colours = "starts and headings blue, goals green, obstacles dark grey, too narrow light grey"
+    text = f"{episodes[0].house}: {count}; {colours}"
     size = min(0.5, 0.5 * (picture.shape[1] - 2 * MARGIN_PX) / cv2.getTextSize(text, _FONT, 0.5, 1)[0][0])
     cv2.putText(picture, text, (MARGIN_PX, 20), _FONT, size, ROBOT, 1, cv2.LINE_AA)
     return picture
@@ -57,10 +60,11 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
         height = HEIGHT_PX - MARGIN_PX - 0.5 * (HEIGHT_PX - 2 * MARGIN_PX - (high[1] - low[1]) * px_m)
         return np.rint(np.stack([MARGIN_PX + pixels[:, 0], height - pixels[:, 1]], axis=1)).astype(np.int32)
 
-    half = 0.5 * space.frame.cell_m
-    for row, col in np.argwhere(space.free).tolist():
-        corners = at(np.array([[x[col] - half, y[row] + half], [x[col] + half, y[row] - half]]))
-        cv2.rectangle(picture, corners[0].tolist(), corners[1].tolist(), FREE, -1)
+    corner, step = at(np.array([[x[0], y[0]]]))[0].astype(np.float64), space.frame.cell_m * px_m
+    to_picture = np.array([[step, 0.0, corner[0]], [0.0, -step, corner[1]]])  # of column and row of a cell
+    size = (picture.shape[1], picture.shape[0])
+    free = cv2.warpAffine(space.free.astype(np.uint8), to_picture, size, flags=cv2.INTER_NEAREST)
+    picture[free > 0] = FREE
     for polygon in space.obstacles:
         cv2.fillConvexPoly(picture, at(polygon.vertices_m), OBSTACLE, cv2.LINE_AA)
     for of_goal in footprints.values():
@@ -73,17 +77,26 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
         begin, end = at(np.array([here, here + ahead])).tolist()
         cv2.line(picture, begin, end, PATH, 2, cv2.LINE_AA)
         cv2.circle(picture, begin, max(3, round(0.1 * px_m)), PATH, -1, cv2.LINE_AA)
+    taken: list[tuple[int, int, int, int]] = []
     for goal, of_goal in footprints.items():
         for footprint in of_goal:
             x0, y0, x1, y1 = footprint.bounds_m
-            _write(picture, goal, at(np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]]))[0])
+            _write(picture, goal, at(np.array([[0.5 * (x0 + x1), 0.5 * (y0 + y1)]]))[0], taken)
     return picture
 
 
-def _write(picture: Picture, text: str, middle: NDArray[np.int32]) -> None:
-    """Writes a text with a light outline, its middle at a pixel but within the picture."""
-    (width, height), _ = cv2.getTextSize(text, _FONT, 0.36, 1)
+def _write(picture: Picture, text: str, middle: NDArray[np.int32], taken: list[tuple[int, int, int, int]]) -> None:
+    """Writes a text with a light outline near a pixel, where no other text is; leaves it out where there is no place.
+
+    `taken` holds left, top, right and bottom of the texts so far.
+    """
+    (width, height), _ = cv2.getTextSize(text, _FONT, TEXT, 1)
     left = int(np.clip(middle[0] - width // 2, 2, max(2, picture.shape[1] - width - 2)))
-    place = left, int(middle[1] + height // 2)
-    cv2.putText(picture, text, place, _FONT, 0.36, FREE, 3, cv2.LINE_AA)
-    cv2.putText(picture, text, place, _FONT, 0.36, ROBOT, 1, cv2.LINE_AA)
+    for shift in (0, 1, -1, 2, -2):
+        base = int(middle[1]) + height // 2 + shift * (height + 4)
+        box = (left - 2, base - height - 2, left + width + 2, base + 2)
+        if not any(box[0] < t[2] and t[0] < box[2] and box[1] < t[3] and t[1] < box[3] for t in taken):
+            taken.append(box)
+            cv2.putText(picture, text, (left, base), _FONT, TEXT, FREE, 3, cv2.LINE_AA)
+            cv2.putText(picture, text, (left, base), _FONT, TEXT, ROBOT, 1, cv2.LINE_AA)
+            return

@@ -22,6 +22,7 @@ HEIGHT_PX = 480
 FOVY_DEG = 6.0
 MARGIN_M = 0.3
 PATH, STOPPED, START, END = (40, 90, 220), (225, 30, 30), (20, 150, 60), (20, 20, 20)
+PAPER = (245, 245, 245)
 INVISIBLE = (0.2, 0.75, 0.95, 1.0)
 """Colour of geoms that cameras do not render."""
 
@@ -36,7 +37,8 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
     top.dot(trial.positions_m[-1], END, 6)
     outcome = "escaped" if trial.escaped else "stuck"
     title = f"{trial.episode_id}, {trial.agent}: {outcome}, {len(trial.motions)} steps"
-    cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, END, 1, cv2.LINE_AA)
+    for colour, thickness in ((PAPER, 4), (END, 1)):  # the surroundings of a scene are black
+        cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, thickness, cv2.LINE_AA)
     if belief is None:
         return top.image
     width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
