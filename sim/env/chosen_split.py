@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from sim.episodes.splits import Split, load_split, split_of_files
-from sim.errors import ConfigError, HouseError
+from sim.errors import ConfigError
 
 
 def chosen_split(
@@ -28,8 +28,8 @@ def chosen_split(
         root: another folder whose files the files may use.
 
     Raises:
-        ConfigError: there is no such split, or the options contradict each other.
-        HouseError: there is no such house.
+        ConfigError: there is no such split or house, or the options contradict each other.
+        HouseError: there is no such file.
     """
     if isinstance(houses, str | Path):
         raise ConfigError(f"houses must be a list of names or files, got '{houses}'; house= takes one file.")
@@ -52,7 +52,7 @@ def _with_houses(split: Split, names: Sequence[str]) -> Split:
     unknown = [name for name in names if name not in split.house_paths]
     if unknown:
         there_is = ", ".join(split.houses[:5]) + (" ..." if len(split.houses) > 5 else "")
-        raise HouseError(f"Split '{split.name}' has no house '{unknown[0]}'. It has: {there_is}.")
+        raise ConfigError(f"Split '{split.name}' has no house '{unknown[0]}'. It has: {there_is}.")
     episodes = tuple(episode for episode in split.episodes if episode.house in names)
     return replace(split, house_paths={name: split.house_paths[name] for name in names}, episodes=episodes)
 

@@ -49,8 +49,8 @@ def _draw_storey(task: Task, episodes: Sequence[Episode], floor_z_m: float) -> P
     x, y = space.frame.axes()
     cols, rows = (np.flatnonzero(space.free.any(axis=axis)) for axis in (0, 1))
     boxes = [each.bounds_m for of_goal in footprints.values() for each in of_goal]
-    low = np.min([(x[cols[0]], y[rows[0]]), *(box[:2] for box in boxes)], axis=0) - 0.3
-    high = np.max([(x[cols[-1]], y[rows[-1]]), *(box[2:] for box in boxes)], axis=0) + 0.3
+    corners = np.array([(x[cols[0]], y[rows[0]], x[cols[-1]], y[rows[-1]]), *boxes])  # (n, 4)
+    low, high = corners[:, :2].min(axis=0) - 0.3, corners[:, 2:].max(axis=0) + 0.3
     px_m = (HEIGHT_PX - 2 * MARGIN_PX) / float(max(high - low))
     picture = np.full((HEIGHT_PX, round((high[0] - low[0]) * px_m) + 2 * MARGIN_PX, 3), BLOCKED, np.uint8)
 
