@@ -37,7 +37,7 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
     top.dot(trial.positions_m[-1], END, 6)
     outcome = "escaped" if trial.escaped else "stuck"
     title = f"{trial.episode_id}, {trial.agent}: {outcome}, {len(trial.motions)} steps"
-    for colour, thickness in ((PAPER, 4), (END, 1)):  # the surroundings of a scene are black
+    for colour, thickness in ((END, 3), (PAPER, 1)):  # mostly on the black surroundings of a scene
         cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, thickness, cv2.LINE_AA)
     if belief is None:
         return top.image
