@@ -122,9 +122,7 @@ class Split:
         Raises:
             HouseError: the file violates the format of `sim.houses.sidecar`.
         """
-        path = self.house_paths[house]
-        is_rules = self.labels_path is not None and self.labels_path.resolve() == sidecar_path(path).resolve()
-        return EMPTY_SIDECAR if is_rules else read_sidecar(path)
+        return house_sidecar(self.house_paths[house], self.labels_path)
 
     def episode(self, episode_id: str) -> Episode:
         """Returns the episode with an id.
@@ -138,6 +136,16 @@ class Split:
         near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
+
+
+def house_sidecar(house_file: Path, labels_path: Path | None) -> Sidecar:
+    """Returns the sidecar of a house file; empty if there is none, or if the file holds the label rules.
+
+    Raises:
+        HouseError: the file violates the format of `sim.houses.sidecar`.
+    """
+    is_rules = labels_path is not None and labels_path.resolve() == sidecar_path(house_file).resolve()
+    return EMPTY_SIDECAR if is_rules else read_sidecar(house_file)
 
 
 def shipped_splits() -> tuple[str, ...]:
@@ -166,27 +174,42 @@ def load_split(name_or_path: str | Path) -> Split:
 
 
 def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:
-    """Returns a split of one house file, without episodes.
+    """Returns a split of one house file, without episodes; see `split_of_files`."""
+    return split_of_files((path,), labels=labels, root=root)
+
+
+def split_of_files(
+    paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
+) -> Split:
+    """Returns a split of some house files, without episodes.
 
     Args:
-        path: the file.
-        labels: its label rules.
-        root: another folder whose files it may use, in addition to its own folder.
+        paths: the files; each name is that of one house.
+        labels: label rules of all houses.
+        root: another folder whose files they may use, in addition to their own folders.
 
     Raises:
+        ConfigError: two files have one name.
         HouseError: there is no such file.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise HouseError(f"House '{path}': there is no such file.")
     labels_path = None if labels is None else Path(labels)
-    of_house = house_sum(path)
-    digest = of_house
+    files, sums = dict[str, Path](), dict[str, str]()
+    for path in map(Path, paths):
+        if not path.is_file():
+            raise HouseError(f"House '{path}': there is no such file.")
+        if path.stem in files:
+            raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
+        files[path.stem], sums[path.stem] = path, house_sum(path)
+    rules = b""
     if labels_path is not None and labels_path.is_file():
-        digest = house_sum(path, with_also=read_bytes(labels_path, what="Label rules", error=HouseError))
+        rules = read_bytes(labels_path, what="Label rules", error=HouseError)
     allowed = None if root is None else Path(root)
-    houses, sums = {path.stem: path}, {path.stem: of_house}
-    return Split(path.stem, "one-house", digest, houses, (), labels_path, allowed, house_sums=sums)
+    if len(files) > 1:
+        digest = hashlib.sha256("".join(sums.values()).encode() + rules).hexdigest()
+        return Split("houses", "houses", digest, files, (), labels_path, allowed, house_sums=sums)
+    ((name, path),) = files.items()
+    digest = house_sum(path, with_also=rules) if rules else sums[name]
+    return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
 
 
 def house_sum(path: Path, *, with_also: bytes = b"") -> str:

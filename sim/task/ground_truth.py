@@ -135,7 +135,6 @@ class GroundTruth:
                 world.model, self._at_rest, world.labels, sight_height_m=self._sight_height_m, floor_z_m=floor_z_m
             )
         return GoalRegion(
-            world.model,
             data,
             world.labels,
             goal,

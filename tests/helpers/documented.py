@@ -195,7 +195,7 @@ _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
-_HOUSES = "stubborn houses generate --first-seed 0 --houses 1 --out {tmp}/houses"
+_HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
 _SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
 _SEARCHES = (
     f"{PYTHON} -m tools.training.twin_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
@@ -204,6 +204,10 @@ _SEARCHES = (
 _TRAIN_CLONED = "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2"
 _CLONED = f"{_TRAIN_CLONED} --streams 2 --out {{tmp}}/cloned"
 _PLANS = ("stubborn houses plans --pool train --kind studio --houses 4 --out {tmp}/plans",)
+_MY_TRAPS = (
+    f"{PYTHON} -c 'from tests.helpers.foreign import *; write_trap(Path(\"{{tmp}}/traps\"))'",
+    "stubborn episodes --split {tmp}/traps --recipe traps",
+)
 _EPISODES = "stubborn episodes --split {tmp}/houses --episodes 3"
 _VIEWS = (
     "stubborn views --split val --views 4 --shrink 4 --profile fast --out {tmp}/views --workers 1 --views-per-shard 4"
@@ -309,7 +313,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn gallery --houses examples/my_house.xml --out runs/my_gallery": (
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
-    "stubborn houses generate --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
+    "stubborn houses generate --houses 4 --area-m2 90 --rooms gym --hazards glass --out runs/mine/houses": (_HOUSES,),
     "stubborn episodes --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
         _HOUSES,
@@ -384,6 +388,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     # docs/traps.md
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
+    ),
+    "stubborn episodes --split my_traps --recipe traps": _MY_TRAPS,
+    "stubborn traps report --split my_traps --out runs/my_traps": (
+        *_MY_TRAPS,
+        "stubborn traps report --split {tmp}/traps --agents oracle --headings 1 --out {tmp}/report",
     ),
     # docs/watching.md
     f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
@@ -515,7 +524,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
-    "stubborn houses check --split runs/mine/houses": (_HOUSES, "stubborn houses check --split {tmp}/houses"),
+    "stubborn houses check --house runs/mine/houses/house_00000.xml": (
+        _HOUSES,
+        "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
+    ),
     "stubborn views --split val --views 500 --extras instances normals poses --out views_objects": (
         "stubborn views --split val --views 4 --views-per-shard 4 --extras instances normals poses --out {tmp}/views",
     ),
