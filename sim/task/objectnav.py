@@ -230,7 +230,7 @@ class Task:
         }
 
     def stop_target(self) -> dict[str, Any]:
-        """Returns the place for which the agent stopped, its distance to the goal and the object there, for a result line."""
+        """Returns the entries of a result line on the place for which the agent stopped."""
         record = self._running
         place = record.stop_target_xy_m
         return {

@@ -7,6 +7,7 @@ are shaded as those of the robot's camera (`sim.sensors.shading`).
 
 from __future__ import annotations
 
+import itertools
 import math
 import weakref
 
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from sim.env.scene import Scene
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.houses.labels import collidable_geoms, geoms_of, opacity, rendered_geoms
+from sim.houses.labels import RENDERED_GROUPS, collidable_geoms, geoms_of, opacity, rendered_geoms
 from sim.interface import MPCAT40_ID, CameraModel
 from sim.robot.body import PREFIX
 from sim.sensors.lamps import Lamps
@@ -41,8 +42,11 @@ HFOV_RAD = math.radians(70.0)
 HIDDEN: Colour = (40, 170, 240)
 """Tint of obstacles that no camera renders."""
 _TINT, _IN_FRONT_M = 0.4, 0.06
-"""Share of the tint, and how far before the visible surface an invisible one is tinted: parts of visible furniture that
-only collide lie at its surface."""
+"""Share of the tint, and how far before the visible surface an invisible one must be."""
+_COVER_M = 0.12
+"""A point of an invisible geom with a visible surface within this distance is no invisible obstacle: it is a part of
+visible furniture that only collides."""
+_AXES = np.vstack([np.eye(3), -np.eye(3)])
 _SPECK_PX = 12
 """Outlines around less than this area are not drawn."""
 OUTSIDE: Colour = (36, 40, 48)
@@ -190,7 +194,26 @@ def _hidden_obstacles(world: World) -> NDArray[np.bool_]:
     """Returns (ngeom,) True for obstacles that no camera renders; floors and ceilings are none."""
     model, labels = world.model, world.labels
     flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
-    return collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
+    hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
+    for geom in np.flatnonzero(hidden).tolist():
+        hidden[geom] = _covered_share(world, geom) < 0.5
+    return hidden
+
+
+def _covered_share(world: World, geom: int) -> float:
+    """Returns the share of nine points of a geom, across its two longest sides, that have a visible surface nearby."""
+    model, data = world.model, world.data
+    middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:].copy()
+    half[int(np.argmin(half))] = 0.0
+    steps = np.unique(np.array(list(itertools.product((-0.6, 0.0, 0.6), repeat=3))) * half, axis=0)
+    points = data.geom_xpos[geom] + (middle + steps) @ data.geom_xmat[geom].reshape(3, 3).T
+    groups = np.array([group < RENDERED_GROUPS for group in range(6)], np.uint8)
+    hit, far_m = np.zeros(len(_AXES), np.int32), np.zeros(len(_AXES))
+    covered = 0
+    for point in points:
+        mujoco.mj_multiRay(model, data, point, _AXES.ravel(), groups, 1, -1, hit, far_m, None, len(_AXES), _COVER_M)
+        covered += bool(np.any((hit >= 0) & (far_m <= _COVER_M)))  # the cutoff only leaves geoms out
+    return covered / len(points)
 
 
 def _depth_slope(near_m: float) -> float:

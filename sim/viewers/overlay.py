@@ -56,7 +56,7 @@ _SMALL = (204, 153)
 _SMALL_TOP, _SMALL_LEFT = 562, (8, 226)
 _CHASE = (656, 60, *CHASE_PX)
 _DEPTH = (1068, 60, 204, 153)
-_LOW_DEPTH, _SCORE = (1068, 60, 204, 117), (1068, 193, 204, 117)
+_LOW_DEPTH, _SCORE = (1068, 60, 204, 112), (1068, 198, 204, 112)
 _NAMES_PX = 104
 """Width of a column of names of categories."""
 _MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
