@@ -56,6 +56,8 @@ Amount = Annotated[int, Meta(ge=0, le=10_000_000)]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]
+OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
+"""A switch that is on by default. Its option is `--no-NAME`, so its help text says what that option does."""
 OutFile = Annotated[Path, Written(folder=False)]
 OutFolder = Annotated[Path, Written(folder=True)]
 

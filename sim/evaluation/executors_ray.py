@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
+from sim import invocation
 from sim.errors import ConfigError, WorkersError
 from sim.evaluation.executors import Isolation, Supervisor
 from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_in_pool
@@ -57,9 +58,10 @@ class RayCluster:
                 ray.init(address=address or "auto", log_to_driver=False, logging_level=logging.ERROR)
             except (OSError, RuntimeError, ValueError) as error:  # ConnectionError, or an error of gRPC
                 reason = str(error).strip().split("\n")[0]
+                start = f"{invocation.beside_python('ray')} start"
                 raise ConfigError(
                     f"No Ray cluster answers at --address {address or 'auto'} ({reason}). Start one with "
-                    "`ray start --head` and join it from other machines with `ray start --address HOST:6379`."
+                    f"`{start} --head` and join it from other machines with `{start} --address HOST:6379`."
                 ) from None
         return cls(workers, isolation or Isolation())
 

@@ -81,6 +81,7 @@ class ResultLine(msgspec.Struct):
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None
     stop_target_to_goal_m: Measured = None
+    stop_target_category: str | None = None
     wall_time_s: Measured = None
     steps_per_s: Measured = None
 

@@ -20,26 +20,25 @@ UNKNOWN: Colour = BACKGROUND
 SEEN_FREE: Colour = (252, 252, 250)
 SEEN_OBSTACLE: Colour = (62, 66, 77)
 SWEPT: Colour = (219, 234, 250)
-LARGE_MARK: Colour = (246, 178, 107)
-SMALL_MARK: Colour = (204, 65, 37)
-CANDIDATE: Colour = (56, 158, 80)
-SET_ASIDE: Colour = (160, 205, 168)
-REJECTED: Colour = (176, 122, 190)
-TRAIL: Colour = (111, 160, 220)
-ROUTE: Colour = (32, 84, 190)
-GOAL: Colour = (228, 28, 130)
+LARGE_MARK: Colour = (250, 196, 132)
+SMALL_MARK: Colour = (232, 128, 24)
+CANDIDATE: Colour = (228, 28, 130)
+SET_ASIDE: Colour = (244, 160, 204)
+REJECTED: Colour = (142, 104, 84)
+TRAIL: Colour = (32, 84, 190)
+ROUTE: Colour = (0, 158, 170)
 
 LEGEND: tuple[tuple[str, Colour], ...] = (
-    ("seen obstacle", SEEN_OBSTACLE),
+    ("obstacle", SEEN_OBSTACLE),
     ("large mark", LARGE_MARK),
     ("small mark", SMALL_MARK),
-    ("visited", TRAIL),
-    ("target", CANDIDATE),
+    ("driven path", TRAIL),
+    ("candidate", CANDIDATE),
     ("set aside", SET_ASIDE),
     ("rejected", REJECTED),
-    ("route", ROUTE),
-    ("goal", GOAL),
+    ("route, its end", ROUTE),
 )
+"""Colours that the true plan (`sim.viewers.topview`) has too have the same meaning there."""
 GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
 """The pale colours of the ground, for legends that have space for them."""
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
@@ -165,10 +164,10 @@ def _draw_intention(canvas: Canvas, agent: StubbornAgent, pose: Pose) -> None:
     """Draws the path ahead, the goal cells, and the corner or candidate that they belong to."""
     if agent.route is not None:
         goal = agent.route.goal
-        canvas.outline(goal.cells, goal.free.frame, GOAL)
+        canvas.outline(goal.cells, goal.free.frame, ROUTE)
         canvas.line(trace_xy_m(agent.route, pose), ROUTE)
         if goal.marker_xy_m is not None:
-            canvas.cross(goal.marker_xy_m, GOAL)
+            canvas.cross(goal.marker_xy_m, ROUTE)
     if agent.approach is not None:
         x_m, y_m = agent.navmap.frame.centres(*agent.approach.cell)
         canvas.ring((float(x_m), float(y_m)), CANDIDATE)

@@ -62,8 +62,9 @@ class Args:
     """Number of start headings of each trap."""
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
-    pictures: bool = True
-    """Draw the first heading of each trap, and every episode in which an agent did not escape."""
+    pictures: cli.OnUnlessNo = True
+    """Draw no paths; by default those of the first heading of each trap, and of every episode in which an agent did
+    not escape, are drawn."""
 
 
 def main(args: Args) -> int:

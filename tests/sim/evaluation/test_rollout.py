@@ -120,6 +120,12 @@ def test_a_line_without_a_stop_or_a_place_says_so(env: ObjectNavEnv, agent: Any,
     assert line["end_reason"] == end
     assert line["stop_target_xy_m"] is None
     assert line["stop_target_to_goal_m"] is None
+    assert line["stop_target_category"] is None
+
+
+def test_a_line_names_the_object_for_which_the_agent_stops(env: ObjectNavEnv) -> None:
+    lines = [play_episode(env, Aimed([Action.STOP], place), EPISODE, seed=0) for place in ((3.4, 0.0), (-1.9, 0.0))]
+    assert [line["stop_target_category"] for line in lines] == ["sofa", "wall"]
 
 
 def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
