@@ -15,6 +15,7 @@ from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.agent import AgentConfig
 from stubborn.detection.verification import Verifier
 from stubborn.exploration.explorer import ExplorerConfig
 
@@ -41,6 +42,8 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     }
 )
 """The agents that `--agent` takes by name."""
+EXPLORERS: Mapping[str, ExplorerConfig] = agents.EXPLORERS
+"""The explorers that `--explorer` takes by name."""
 
 
 def find_agent(name: str) -> AgentSpec:
@@ -90,6 +93,11 @@ def find_explorer(name: str) -> ExplorerConfig:
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
+
+
+def takes_explorer(spec: AgentSpec) -> bool:
+    """Returns whether an agent explores with the explorer of `--explorer`."""
+    return isinstance(spec.config, AgentConfig)
 
 
 def build_agent(
