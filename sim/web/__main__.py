@@ -8,18 +8,20 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import logging
 import socket
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
 from sim import cli, invocation
 from sim.analysis import display
-from sim.errors import ConfigError
+from sim.errors import ConfigError, debug
+from sim.reading import printable
 
 if TYPE_CHECKING:
     from sim.web.choices import Offer
@@ -91,6 +93,8 @@ def main(args: Args) -> int:
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )
+    for name in ("uvicorn.error", "asyncio", "sim.web.server"):
+        logging.getLogger(name).addFilter(in_one_line)
     names = sorted(hosts - HERE) or ["127.0.0.1"]
     addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
     display.make_console().print(
@@ -100,6 +104,15 @@ def main(args: Args) -> int:
     with contextlib.suppress(KeyboardInterrupt):
         uvicorn.Server(config).run(sockets=[listening])
     return 0
+
+
+def in_one_line(record: logging.LogRecord) -> bool:
+    """Replaces the traceback of a log record by the error, unless --debug is given: clients can cause it."""
+    if record.exc_info and not debug():
+        error = record.exc_info[1]
+        told = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
+        record.msg, record.args, record.exc_info, record.exc_text = printable(told), (), None, None
+    return True
 
 
 def offer(args: Args) -> Offer:
@@ -118,16 +131,21 @@ def offer(args: Args) -> Offer:
     if not args.house and for_houses != (None, None):
         raise ConfigError("--labels and --root need --house.")
     same = ("weights", "robot", "seed", "profile", "noise", "config", "config_file")
-    options = RunOptions(**{name: getattr(args, name) for name in same})
+    options = RunOptions(**{name: _absolute(getattr(args, name)) for name in same})
     resolve(replace(options, config=(), config_file=None))  # fields of agents depend on the agent
     return Offer(
         agents=args.agent,
         explorers=args.explorer,
         semantics=args.semantics,
         splits=args.split,
-        houses=tuple(file.absolute() for file in args.house),
-        options=replace(options, labels=args.labels, root=args.root),
+        houses=tuple(map(_absolute, args.house)),
+        options=replace(options, labels=_absolute(args.labels), root=_absolute(args.root)),
     )
+
+
+def _absolute(value: Any) -> Any:
+    """Returns an absolute path for a path, which holds in whatever folder an agent works; other values as they are."""
+    return value.absolute() if isinstance(value, Path) else value
 
 
 def _listen(host: str, port: int) -> socket.socket:

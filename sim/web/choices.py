@@ -58,7 +58,7 @@ class Choices:
         self._agents = {**SPECS, **{name: find_agent(name) for name in offer.agents}}
         self._explorers = {**EXPLORERS, **{name: find_explorer(name) for name in offer.explorers}}
         self._semantics = {**KINDS, **{name: find_segmentation(name, None) for name in offer.semantics}}
-        self._splits: dict[str, Goals] = {name: _goals_of_split(name) for name in offer.splits}
+        self._splits: dict[str, Goals] = {_split_name(name): _goals_of_split(name) for name in offer.splits}
         self._houses = {str(file): file for file in offer.houses}
         self._splits |= {name: _goals_of_house(file, offer.options) for name, file in self._houses.items()}
         others = [name for name in shipped_splits() if name not in (*NOT_OFFERED, *self._splits)]
@@ -111,9 +111,8 @@ class Choices:
         """
         by_person = str(record.get("agent")).partition("+")[0] == HUMAN_NAME
         file = record.get("house")
-        of_house = [name for name, path in self._houses.items() if file and path.resolve() == Path(file).resolve()]
         asked = {
-            "split": of_house[0] if of_house else file or record.get("split"),
+            "split": str(Path(file).absolute()) if file else _split_name(str(record.get("split"))),
             "house": line["house"],
             "goal": line["goal"],
             "agent": "stubborn" if by_person else record.get("agent"),
@@ -178,6 +177,11 @@ class _Start(msgspec.Struct):
     explorer: str = ""
     episode: str = ""
     driver: Literal["agent", "person"] = "agent"
+
+
+def _split_name(name: str) -> str:
+    """Returns the name of a shipped split, or the absolute path of a folder."""
+    return name if name in shipped_splits() else str(Path(name).absolute())
 
 
 def _goals_of_split(name: str) -> Goals:

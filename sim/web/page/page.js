@@ -156,7 +156,8 @@ async function draw(figure, blob) {
 }
 
 function facts(frame) {
-  const words = [`step ${frame.step}${state.max_steps ? ` of ${state.max_steps}` : ""}`];
+  const words = [state.episode_id, `step ${frame.step}${state.max_steps ? ` of ${state.max_steps}` : ""}`];
+  if (!state.episode_id) words.shift();
   if (frame.last) words.push(frame.last);
   words.push(`driven ${frame.driven_m.toFixed(1)} m`);
   words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(1)} m to go`);
