@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -121,7 +121,7 @@ class Choices:
             "episode": line["episode_id"],
             "driver": driver,
         }
-        options = replace(self._options, config=(*self._options.config, *_settings(record)))
+        options = replace(self._options, config=_settings(record, self._options.config), config_file=None)
         for name in ("seed", "noise", "profile", "verification"):
             if record.get(name) is not None:
                 options = replace(options, **{name: record[name]})
@@ -210,12 +210,18 @@ def _place_of(episode_id: str, houses: Goals, split: str) -> tuple[str, str]:
     raise ConfigError(f"Split '{split}' has no episode '{episode_id}'.")
 
 
-def _settings(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yields the settings of a run as `--config` takes them; values that may name files are left out."""
+def _settings(record: Mapping[str, Any], own: Iterable[str]) -> tuple[str, ...]:
+    """Returns the settings of a run as `--config` takes them.
+
+    Args:
+        record: the run's `config.json`.
+        own: the assignments of the server, which replace those of the run that may name files.
+    """
     settings = record.get("settings")
-    for path, value in settings.items() if isinstance(settings, dict) else ():
-        if _is_plain(value):
-            yield f"{path}={json.dumps(value)}"
+    settings = settings if isinstance(settings, dict) else {}
+    plain = [f"{path}={json.dumps(value)}" for path, value in settings.items() if _is_plain(value)]
+    files = [path for path, value in settings.items() if not _is_plain(value)]
+    return (*plain, *(assignment for assignment in own if assignment.partition("=")[0] in files))
 
 
 def _is_plain(value: Any) -> bool:

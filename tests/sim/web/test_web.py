@@ -425,7 +425,8 @@ def test_all_pictures_are_above_the_fold_and_none_is_black_while_loading(server:
         browser.visit(server.address)
         wait_for(lambda: browser.run("return document.querySelector('#link').textContent").startswith("connected"))
         boxes = browser.run(
-            "told({...state, phase: 'loading', note: ''}); return [...document.querySelectorAll('figure')].map(f => [f.getBoundingClientRect().bottom,"
+            "told({...state, phase: 'loading', note: ''});"
+            "return [...document.querySelectorAll('figure')].map(f => [f.getBoundingClientRect().bottom,"
             " getComputedStyle(f.querySelector('canvas')).visibility, f.offsetHeight])"
         )
         assert len(boxes) == 8
