@@ -82,6 +82,7 @@ function told(news) {
   document.body.dataset.phase = news.phase;
   document.body.dataset.driver = news.driver;
   const playing = news.phase === "playing";
+  if (following && news.phase === "loading") follow(news.wish);
   if (news.phase === "loading") {
     document.body.dataset.step = "-1";
     for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
@@ -251,6 +252,19 @@ function chosenAgent() {
   $("agent-note").textContent = described.map(([name, words]) => (words ? `${name}: ${words.replace(/\.$/, "")}.` : `${name}.`)).join(" ");
 }
 
+// Shows the episode of a finished run in the form.
+function follow(wish) {
+  following = false;
+  if (!(wish.split in choices.splits)) return;
+  $("split").value = wish.split;
+  chosenSplit();
+  $("house").value = wish.house;
+  options($("goal"), Object.keys(goalsNow()), wish.goal);
+  for (const name of ["agent", "semantics", "explorer"]) $(name).value = wish[name];
+  $("episode").value = wish.episode_id ?? "";
+  chosenAgent();
+}
+
 function start(driver) {
   const wish = {do: "start", driver};
   for (const name of ["split", "house", "goal", "agent", "semantics"]) wish[name] = $(name).value;
@@ -274,6 +288,7 @@ async function choose() {
 // --- finished runs ------------------------------------------------------------------------------------------------
 
 let runs = [];
+let following = false;  // the next episode that begins is the one that was asked for here
 let opened = null;  // the run whose episodes are shown: its name, address and result lines
 const marked = new Set();  // names of the runs to compare, in the order of the clicks
 
@@ -339,8 +354,15 @@ async function compare() {
   $("comparison").hidden = false;
   $("comparison-message").hidden = answer.ok;
   $("comparison-message").textContent = answer.ok ? "" : await answer.text();
-  fill($("comparison-tables"), answer.ok ? (await answer.json()).flatMap(comparisonTable) : []);
+  fill($("comparison-tables"), answer.ok ? comparisonShown(...(await answer.json())) : []);
   $("comparison").scrollIntoView({block: "nearest"});
+}
+
+function comparisonShown(means, differences) {
+  const details = document.createElement("details"), summary = document.createElement("summary");
+  summary.textContent = `${differences.title} (${differences.rows.length})`;
+  details.append(summary, ...comparisonTable(differences));
+  return [...comparisonTable(means), details];
 }
 
 function comparisonTable(shown) {
@@ -384,6 +406,7 @@ function episodeRow(line) {
   };
   const again = (driver) => {
     tab("live");
+    following = true;
     send({do: "again", driver, run: opened.name, episode: line.episode_id});
   };
   add("Watch", () => again("agent"));
