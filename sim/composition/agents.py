@@ -17,6 +17,7 @@ from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop, marked
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.agent import AgentConfig
 from stubborn.detection.verification import Verifier
 from stubborn.exploration.explorer import ExplorerConfig
 
@@ -43,6 +44,8 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     }
 )
 """The agents that `--agent` takes by name."""
+EXPLORERS: Mapping[str, ExplorerConfig] = agents.EXPLORERS
+"""The explorers that `--explorer` takes by name."""
 
 
 def find_agent(name: str) -> AgentSpec:
@@ -92,6 +95,11 @@ def find_explorer(name: str) -> ExplorerConfig:
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
+
+
+def takes_explorer(spec: AgentSpec) -> bool:
+    """Returns whether an agent explores with the explorer of `--explorer`."""
+    return isinstance(spec.config, AgentConfig)
 
 
 def build_agent(

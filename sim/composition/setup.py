@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from sim.composition.agents import find_agent, find_explorer
+from sim.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
 from sim.composition.segmenters import SegmentationKind, detector_config, find_segmentation
@@ -25,7 +25,6 @@ from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
-from stubborn.agent import AgentConfig
 from stubborn.detection.verification import FittedVerifier, Verifier, verifier_for
 
 
@@ -170,7 +169,7 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
     if options.explorer is None:
         return spec.config
     explorer = find_explorer(options.explorer)
-    if not isinstance(spec.config, AgentConfig):
+    if not takes_explorer(spec):
         raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
     return replace(spec.config, explorer=explorer)
 

@@ -402,6 +402,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
+    "stubborn web --agent examples.my_agent:AGENT --house examples/my_house.xml": Only(
+        "serves until it is interrupted; tests/sim/web/test_choices.py chooses an agent and a house so"
+    ),
     "stubborn web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
