@@ -30,7 +30,7 @@ def setup_of_person(setup: Setup, out: Path | None, *, with_agent: bool = False)
     """
     options = setup.options
     name = f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME
-    kept = ("split", "house", "labels", "root", "goal", "start_deg", "robot", "seed", "profile", "noise")
+    kept = ("split", "house", "labels", "root", "goal", "start_deg", "robot", "seed", "seed_key", "profile", "noise")
     of_person = RunOptions(
         agent=name,
         semantics="gt",

@@ -122,7 +122,7 @@ class Choices:
             "driver": driver,
         }
         options = replace(self._options, config=_settings(record, self._options.config), config_file=None)
-        for name in ("seed", "noise", "profile", "verification"):
+        for name in ("seed", "seed_key", "noise", "profile", "verification"):
             if record.get(name) is not None:
                 options = replace(options, **{name: record[name]})
         return replace(self._wish(convert(asked, _Start, where="The run's config.json"), options), record=record)

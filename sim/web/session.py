@@ -19,7 +19,7 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import EpisodeError, debug
 from sim.evaluation.config_fields import differing_fields, is_same_file
-from sim.evaluation.rollout import episode_seed, play_episode
+from sim.evaluation.rollout import agent_seed, episode_seed, play_episode
 from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
 from sim.reading import printable
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
@@ -104,8 +104,8 @@ class Session:
                 if debug():
                     traceback.print_exc()
                 self._free()
-                told = f"{type(error).__name__}: {error} (unexpected; --debug shows where)"
-                self._tell(wish, "failed", f"The episode broke: {told}")
+                reason = f"{type(error).__name__}: {error} (unexpected; --debug shows where)"
+                self._tell(wish, "failed", f"The episode broke: {reason}")
         self._free()
 
     def _play(self, wish: Wish) -> None:
@@ -122,8 +122,16 @@ class Session:
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
-        seed = episode_seed(wish.options.seed, episode.episode_id)
-        line = play_episode(parts.env, shared, episode, seed=seed, viewers=[watcher], name=wish.agent)
+        options = wish.options
+        line = play_episode(
+            parts.env,
+            shared,
+            episode,
+            seed=episode_seed(options.seed, episode.episode_id),
+            seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+            viewers=[watcher],
+            name=wish.agent,
+        )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.segmenter is not None and not shared.stopped_by_person
