@@ -310,6 +310,8 @@ class AgentSpec:
     """False: its results do not depend on `--semantics`."""
     uses_ground_truth: bool = False
     """True: it may read the `semantic` sensor and gets the running environment as `truth`; its results say so."""
+    goals: Callable[[Any], tuple[str, ...]] | None = None
+    """Returns the goal categories that the agent knows, from its configuration; None: all. Runs skip other episodes."""
     painter: Callable[[Agent], Any] | None = None
     """Returns a `sim.viewers.viewer.MapPainter` that draws the agent's map; None: viewers draw the true floor plan."""
 

@@ -1,4 +1,7 @@
-"""Agents by name: those of `stubborn`, the oracle of `sim`, and anybody's own as `package.module:NAME`."""
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own.
+
+Your own are named `package.module:NAME`, or `habitat:package.module:CLASS` if they have Habitat's interface.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,11 @@ import importlib
 import inspect
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
+from sim.composition.isolation import HABITAT
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of, text_of
 from sim.evaluation.watch import is_stop, marked
@@ -60,6 +64,8 @@ def find_agent(name: str) -> AgentSpec:
     """
     if name in SPECS:
         return SPECS[name]
+    if name.startswith(HABITAT):
+        return _find_habitat_agent(name)
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         near = difflib.get_close_matches(name, SPECS, n=1)
@@ -73,6 +79,29 @@ def find_agent(name: str) -> AgentSpec:
     if not callable(found):
         raise ConfigError(f"Agent '{name}' must be an AgentSpec or a factory, got {type(found).__name__}.")
     return AgentSpec(make=cast(AgentFactory, found), description=(inspect.getdoc(found) or "").partition("\n")[0])
+
+
+def _find_habitat_agent(name: str) -> AgentSpec:
+    """Returns the specification of an agent with Habitat's interface; see `find_agent`."""
+    from sim.bridges.habitat import agents as bridge
+    from sim.bridges.habitat import stand_in
+
+    module_name, _, attribute = name.removeprefix(HABITAT).partition(":")
+    if not module_name or not attribute:
+        raise ConfigError(f"--agent '{name}' must have the form habitat:package.module:CLASS.")
+    stand_in.install()
+    with bridge.own_command_line():
+        found = _import_attribute(name, module_name, attribute, explain=stand_in.lacking)
+    return bridge.spec_of(name, found)
+
+
+def notes_on(name: str) -> tuple[str, ...]:
+    """Returns sentences about an agent that has been found, which the header of a run prints."""
+    if not name.startswith(HABITAT):
+        return ()
+    from sim.bridges.habitat import stand_in
+
+    return (stand_in.NOTE,) if stand_in.installed() else ()
 
 
 def find_explorer(name: str) -> ExplorerConfig:
@@ -130,7 +159,20 @@ def build_agent(
         raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
 
 
-def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
+def _import_attribute(
+    name: str, module_name: str, attribute: str, explain: Callable[[BaseException], str | None] = lambda error: None
+) -> Any:
+    """Returns an attribute of a module of the user's.
+
+    Args:
+        name: of the option, for messages.
+        module_name: the module.
+        attribute: its attribute.
+        explain: returns a sentence on an error of the import, if it knows its cause.
+
+    Raises:
+        ConfigError: the module cannot be imported, or has no such attribute.
+    """
     if "" not in sys.path:
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
     folder = os.getcwd()

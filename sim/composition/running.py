@@ -10,6 +10,7 @@ from typing import Any
 from rich.console import Console
 
 from sim.analysis import display
+from sim.composition.agents import notes_on
 from sim.composition.isolation import isolation_of
 from sim.composition.options import RunOptions
 from sim.composition.record import code_of, error_line, record_of
@@ -64,6 +65,8 @@ def run_missing(
             f"{options.agent}{segmentation}, {display.counted(len(episodes), 'episode')} of {split['name']} "
             f"(version {split['version']}), rendered by {record['versions']['gl_renderer']}; results in {options.out}"
         )
+        for note in notes_on(options.agent):
+            console.print(note, highlight=False, soft_wrap=True)
         _report_resumed(run, len(episodes), len(todo), code_of(options), console)
         if todo and must_compile():
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
