@@ -182,7 +182,7 @@ def recipe_of(args: Args) -> EpisodeRecipe:
     if args.recipe is None:
         return EPISODE_RECIPES.get(folder_of(args).resolve().name, DEFAULT_RECIPE)
     if args.recipe not in EPISODE_RECIPES:
-        raise ConfigError(f"No recipe '{args.recipe}'. There is: {', '.join(EPISODE_RECIPES)}.")
+        raise ConfigError(f"No recipe '{args.recipe}'. Available: {', '.join(EPISODE_RECIPES)}.")
     return EPISODE_RECIPES[args.recipe]
 
 

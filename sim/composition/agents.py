@@ -60,7 +60,7 @@ def find_agent(name: str) -> AgentSpec:
         near = difflib.get_close_matches(name, SPECS, n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown agent '{name}'.{hint} There is: {', '.join(SPECS)}, or your own as package.module:NAME."
+            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME."
         )
     found = _import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
@@ -84,7 +84,7 @@ def find_explorer(name: str) -> ExplorerConfig:
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         raise ConfigError(
-            f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
+            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
         )
     found = _import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):

@@ -120,7 +120,7 @@ def test_explorers_are_compared_in_the_same_episodes(plans: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("explorer", "message"),
     [
-        ("corner", "there is no 'corner'. There is: corners, "),
+        ("corner", "there is no 'corner'. Available: corners, "),
         ("semexp:colour=red", "semexp:colour=red: There is no field 'colour'. The configuration has: weights, "),
         (
             "informed-tour:potentials.colour=red",

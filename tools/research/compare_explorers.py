@@ -107,7 +107,7 @@ def explorer_config(text: str, weights: Path | None) -> ExplorerConfig:
             raise ConfigError(f"--explorers {text}: {RANDOM} has no fields.")
         return RandomGoals()
     if name not in EXPLORERS:
-        raise ConfigError(f"--explorers: there is no '{name}'. There is: {', '.join((*EXPLORERS, RANDOM))}.")
+        raise ConfigError(f"--explorers: there is no '{name}'. Available: {', '.join((*EXPLORERS, RANDOM))}.")
     assignments = [field for field in fields.split(",") if field]
     if name == "semexp" and weights is not None and not any(each.startswith("weights=") for each in assignments):
         assignments.append(f"weights={weights}")

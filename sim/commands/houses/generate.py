@@ -117,7 +117,7 @@ def main(args: Args) -> int:
 def _write_split(args: Args, split: str) -> Iterator[Made]:
     """Writes the houses of a split that is shipped as files."""
     if split not in SPLITS:
-        raise ConfigError(f"No split '{split}'. There is: {', '.join(SPLITS)}, train.")
+        raise ConfigError(f"No split '{split}'. Available: {', '.join(SPLITS)}, train.")
     textures = args.out.resolve().parent / "textures"
     if not textures.is_dir():
         copy_textures(textures)

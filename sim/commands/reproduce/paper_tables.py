@@ -236,7 +236,7 @@ def table_named(name: str) -> PaperTable:
         ConfigError: there is no such table.
     """
     if name not in TABLES:
-        raise ConfigError(f"There is no table '{name}'. There is: {', '.join(TABLES)}.")
+        raise ConfigError(f"There is no table '{name}'. Available: {', '.join(TABLES)}.")
     return TABLES[name]
 
 

@@ -61,7 +61,7 @@ def check(args: LogOptions) -> None:
     find_segmentation(args.semantics, args.weights)
     if not KINDS[args.semantics].spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
-        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. There is: {', '.join(kinds)}.")
+        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
     if args.split in ("val", "test") and not args.judge:
         raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
 
