@@ -27,14 +27,14 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
-    from sim.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
+    from sim.composition.environments import episodes_of  # these import MuJoCo, which `--list-agents` does not need
     from sim.composition.running import report_house, run_missing
     from sim.composition.setup import resolve
     from sim.evaluation.parallel import Shard
 
     setup = resolve(options)
     if options.house is None and options.split == "test":
-        print("Split test is for a last measurement: base no choice on its results.", file=sys.stderr)
+        print("Split test is for a last measurement: do not base choices on its results.", file=sys.stderr)
     episodes, split = episodes_of(setup)
     report_house(options, console)
     out = options.out or Path("runs") / time.strftime("%Y-%m-%d_%H-%M-%S")

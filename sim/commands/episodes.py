@@ -10,11 +10,11 @@ and its episodes. `stubborn run --split runs/kitchen` then needs neither the ori
 The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
-The order goes round the houses; the next goal of a house is the one with the fewest episodes so far, so that the first
-N episodes are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as
-reachable on the storey of the start only. A start is uniform over the free space that the recipe allows, and the robot
-has been placed there without contact. Goals are categories with an instance that can be reached; instances that cannot
-are listed in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
+The houses take turns; the next goal of a house is the one with the fewest episodes so far, so that the first N episodes
+are balanced for any N. In a house of two storeys, the episodes take turns on them, and a goal counts as reachable on
+the storey of the start only. A start is sampled uniformly from the free space that the recipe allows, and the robot has
+no contact there. Goals are categories with an instance that can be reached; instances that cannot be reached are listed
+in `unreachable.json`. The same seed, houses, version and success rule give the same bytes.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Args:
     workers: cli.Count = 1
     """Number of processes."""
     success: SuccessRule = field(default_factory=SuccessRule)
-    """When a STOP succeeds: distances, view points and unreachable goals depend on it."""
+    """Conditions under which a STOP succeeds; distances, view points and unreachable goals depend on them."""
 
 
 def main(args: Args) -> int:
@@ -118,7 +118,7 @@ def main(args: Args) -> int:
 def folder_of(args: Args) -> Path:
     """Returns the folder of the split; raises ConfigError where the options name none."""
     if args.split is None:
-        raise ConfigError("make_episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
+        raise ConfigError("Give --split FOLDER, or --house FILE with --out FOLDER.")
     return args.split
 
 
@@ -169,7 +169,7 @@ def house_files(folder: Path) -> tuple[str, ...]:
         tuple(read_house_list(folder).recipes) if listed else tuple(sorted(file.stem for file in folder.glob("*.xml")))
     )
     if not names:
-        raise ConfigError(f"There are 0 houses in '{folder}' (`{command('houses', 'generate')}` makes some).")
+        raise ConfigError(f"There is no house in '{folder}' (`{command('houses', 'generate')}` makes some).")
     return names
 
 

@@ -1,4 +1,4 @@
-"""Agents by name: those of `stubborn`, the oracle of `sim`, and anybody's own as `package.module:NAME`."""
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own as `package.module:NAME`."""
 
 from __future__ import annotations
 
@@ -84,7 +84,8 @@ def find_explorer(name: str) -> ExplorerConfig:
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         raise ConfigError(
-            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
+            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
+            "package.module:NAME."
         )
     found = _import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
@@ -115,8 +116,8 @@ def build_agent(
     except (Exception, SystemExit) as error:
         if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
             raise
-        told = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
+        reason = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error
 
 
 def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
@@ -128,8 +129,8 @@ def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
         raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
     except (Exception, SystemExit) as error:  # the user's code
         place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        told = f"{type(error).__name__}: {error}{place}"
-        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
+        reason = f"{type(error).__name__}: {error}{place}"
+        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
     try:
         return vars(module)[attribute]
     except KeyError:

@@ -98,10 +98,10 @@ class EpisodeRunner:
             traceback.print_exc()
         for viewer in self._viewers:
             viewer.close()
-        told = str(error)
+        message = str(error)
         if not isinstance(error, ObjectNavError):
-            told = f"{type(error).__name__}: {told} (unexpected; --debug shows where)"
-        return error_line(self._setup, episode, " ".join(told.split()))
+            message = f"{type(error).__name__}: {message} (unexpected; --debug shows where)"
+        return error_line(self._setup, episode, " ".join(message.split()))
 
     def close(self) -> None:
         """Frees the renderers; viewers discard an unfinished recording."""

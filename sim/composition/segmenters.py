@@ -112,7 +112,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             make=NoisySegmenter,
         ),
         "rednet": SegmentationKind(
-            description="the RedNet that ships, or your own with --weights",
+            description="the shipped RedNet, or your own with --weights",
             spec=SegmenterSpec(sensors=("rgb",)),
             config=NetworkConfig(),
             make=_make_network,

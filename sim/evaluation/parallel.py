@@ -17,7 +17,7 @@ ResultT = TypeVar("ResultT")
 
 @dataclass(frozen=True)
 class Shard:
-    """Every `count`-th item from item `index` on: the part of the work that one of several machines does."""
+    """Every `count`-th item from item `index` on: the part of the work that one of several machines processes."""
 
     index: int = 0
     count: int = 1

@@ -1,4 +1,4 @@
-"""Part (j): steps per second of the environment alone, as a training has them: by image size, sensors and number."""
+"""Part (j): steps per second of the environment alone, as in a training, by image size, sensors and number."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ VECTORS = ((1, "sync"), (2, "sync"), (1, "async"), (2, "async"), (4, "async"))
 """Number of environments, and the kind of vector."""
 VECTOR_SIZE_PX = (128, 96)
 ROUNDS = 5
-"""The cases take turns in so many rounds; the fastest round of each counts."""
+"""Number of rounds in which the cases take turns; the fastest round of each counts."""
 _MOVES = (Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)
 
 

@@ -61,11 +61,11 @@ class Args:
     pool: Pool = "train"
     """Without a split: styles and textures that may appear."""
     kind: PlanKind | None = None
-    """Without a split: kind of floor plan; drawn when not given."""
+    """Without a split: kind of floor plan; sampled when not given."""
     area_m2: cli.Positive | None = None
-    """Without a split: floor area; drawn when not given."""
+    """Without a split: floor area; sampled when not given."""
     clutter: cli.Share | None = None
-    """Without a split: 0 without small objects to 1 with many; drawn when not given."""
+    """Without a split: 0 without small objects to 1 with many; sampled when not given."""
     movable: bool = False
     """Without a split: whether light furniture can be pushed."""
     furniture: Path | None = None

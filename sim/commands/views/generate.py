@@ -13,7 +13,7 @@ A shard holds views of one house: first of the houses of the split, in an order 
 of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
 With --furniture they are new as well, and also have the imported models of the split `train` (docs/furniture.md).
 The same command continues a killed run; the same options give the same bytes. Several machines can share the work
-with --shard 0/4, 1/4, ...; the last to finish writes an index of all shards.
+with --shard 0/4, 1/4, ...; the machine that finishes last writes an index of all shards.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ class Args:
     shard: str = "0/1"
     """i/n: generate every n-th shard from the i-th on."""
     executor: str = "local"
-    """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
+    """Executor of the shards: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine is in."""
     profile: str = "good"
@@ -99,9 +99,9 @@ class Args:
     seed: cli.Seed = 0
     """Seed of houses and poses."""
     views_per_shard: cli.Count | None = None
-    """Number of views in a shard, all of one house; None: 250, or fewer, so that few views are of 20 houses."""
+    """Number of views in a shard, all of one house; None: 250, or fewer, so that few views still show 20 houses."""
     extras: tuple[str, ...] = ()
-    """More of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
+    """Additional data of each view: instances (ids, COCO boxes and masks), normals, poses (camera to world)."""
     sequence: cli.Count | None = None
     """Views come as sequences of this many along paths of a robot; None: half along paths, half anywhere."""
     aim: str | None = None

@@ -94,7 +94,9 @@ class Catalogue:
             ConfigError: the catalogue has no such category.
         """
         if category not in self._by_category:
-            raise ConfigError(f"No furniture of category '{category}'. Available: {', '.join(sorted(self.categories))}.")
+            raise ConfigError(
+                f"No furniture of category '{category}'. Available: {', '.join(sorted(self.categories))}."
+            )
         shown = (style for style in self._by_category[category] if pool is None or style.shown_in(pool))
         return tuple(style for style in shown if use is None or use in style.uses)
 
