@@ -215,7 +215,7 @@ class Segmenter(Protocol):
         ...
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
-        """Returns the probability of each category of `MPCAT40` but void, float32 (40, h, w), in their order.
+        """Returns the probability of each category of `MPCAT40` except void, float32 (40, h, w), in their order.
 
         The resolution may be any whole fraction of the image's. All probabilities of a pixel may be 0 if the frame has
         no information on it. Agents that track objects of all categories (`stubborn-plus`), explorers that map them

@@ -112,7 +112,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             make=NoisySegmenter,
         ),
         "rednet": SegmentationKind(
-            description="the RedNet that ships, or your own with --weights",
+            description="the shipped RedNet, or your own with --weights",
             spec=SegmenterSpec(sensors=("rgb",)),
             config=NetworkConfig(),
             make=_make_network,
@@ -133,7 +133,7 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
         ConfigError: there is no such kind, or no weights for it.
     """
     if semantics not in KINDS:
-        raise ConfigError(f"Unknown --semantics '{semantics}'. There is: {', '.join(KINDS)}.")
+        raise ConfigError(f"Unknown --semantics '{semantics}'. Available: {', '.join(KINDS)}.")
     kind = KINDS[semantics]
     if weights is not None and not isinstance(kind.config, NetworkConfig):
         raise ConfigError(f"--weights go with --semantics rednet, not with '{semantics}'.")

@@ -172,7 +172,7 @@ def _checked(sensor: Sensor) -> Sensor:
 def _standard_sensor(name: str) -> Sensor:
     if name not in STANDARD_SENSORS:
         raise ConfigError(
-            f"Unknown sensor '{name}'. There is: {', '.join(STANDARD_SENSORS)}, or an object with the interface "
+            f"Unknown sensor '{name}'. Available: {', '.join(STANDARD_SENSORS)}, or an object with the interface "
             "`sim.sensors.sensor.Sensor`."
         )
     return STANDARD_SENSORS[name]

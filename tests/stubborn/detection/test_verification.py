@@ -245,7 +245,7 @@ def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str
 
 
 def test_an_unknown_kind_or_goal_and_a_broken_file_are_refused(tmp_path: Path):
-    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. There is: noisy, rednet"):
+    with pytest.raises(ConfigError, match=r"No verifier for semantics 'dreams'\. Available: noisy, rednet"):
         verifier_for("dreams", IMPERFECT)
     with pytest.raises(ConfigError, match="Unknown goal 'unicorn'"):
         FittedVerifier({}, NaiveBayes(np.zeros(2), np.zeros((2, 4)), np.ones((2, 4)))).probability(
