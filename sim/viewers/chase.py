@@ -63,8 +63,8 @@ class ChaseView:
         self._depth = np.zeros((height_px, width_px), np.float32)
         profile = get_profile("fast")
         self._gl = make_gl_context(self._size)
-        self._gl.make_current()
-        self._context = make_frame_buffer(model, self._size, profile)
+        with self._gl.as_current():
+            self._context = make_frame_buffer(model, self._size, profile)
         self._finalizer = weakref.finalize(self, free_contexts, self._gl, {self._context})
         self._finalizer.atexit = False  # OpenGL may be unloaded before the process ends
         robot = np.flatnonzero(geoms_of(model, PREFIX))
@@ -83,7 +83,6 @@ class ChaseView:
         eye_m, axes = eye_and_axes(pose)
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
         near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
-        self._gl.make_current()
         offset = data.geom_xpos[self._geoms] - eye_m
         near_enough = np.linalg.norm(offset, axis=1) < self._reach_m
         bound = self._world.model.geom_rbound[self._geoms]
@@ -104,9 +103,10 @@ class ChaseView:
         flags = self._scene.scene.flags
         flags[:] = 0
         flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
-        mujoco.mjr_restoreBuffer(self._context)
-        mujoco.mjr_render(self._rect, self._scene.scene, self._context)
-        mujoco.mjr_readPixels(self._color, self._depth, self._rect, self._context)
+        with self._gl.as_current():
+            mujoco.mjr_restoreBuffer(self._context)
+            mujoco.mjr_render(self._rect, self._scene.scene, self._context)
+            mujoco.mjr_readPixels(self._color, self._depth, self._rect, self._context)
         # The shading expects the depth buffer of the robot's camera, whose near plane is another one.
         raw = self._depth * np.float32(_depth_slope(near_m) / _depth_slope(Z_NEAR_M))
         picture = self._color[::-1].copy()
