@@ -6,15 +6,18 @@ import dataclasses
 import difflib
 import importlib
 import inspect
+import os
 import sys
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 from sim.errors import AgentError, ConfigError, ObjectNavError
-from sim.evaluation.own_code import place_of
+from sim.evaluation.own_code import place_of, text_of
+from sim.evaluation.watch import is_stop, marked
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.agent import AgentConfig
 from stubborn.detection.verification import Verifier
 from stubborn.exploration.explorer import ExplorerConfig
 
@@ -41,6 +44,8 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     }
 )
 """The agents that `--agent` takes by name."""
+EXPLORERS: Mapping[str, ExplorerConfig] = agents.EXPLORERS
+"""The explorers that `--explorer` takes by name."""
 
 
 def find_agent(name: str) -> AgentSpec:
@@ -92,6 +97,11 @@ def find_explorer(name: str) -> ExplorerConfig:
     return found
 
 
+def takes_explorer(spec: AgentSpec) -> bool:
+    """Returns whether an agent explores with the explorer of `--explorer`."""
+    return isinstance(spec.config, AgentConfig)
+
+
 def build_agent(
     name: str, spec: AgentSpec, env: ObjectNavEnv, *, segmenter: Segmenter, verifier: Verifier, config: Any
 ) -> Agent:
@@ -111,25 +121,31 @@ def build_agent(
     if spec.uses_ground_truth:
         parts["truth"] = env
     try:
-        return spec.build(name, max_steps=env.task_config.max_steps, **parts)
-    except (Exception, SystemExit) as error:
-        if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
+        with marked(f"Agent '{name}', its factory"):
+            return spec.build(name, max_steps=env.task_config.max_steps, **parts)
+    except BaseException as error:
+        if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
+        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
 
 
 def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
     if "" not in sys.path:
         sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
+    folder = os.getcwd()
     try:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
-    except (Exception, SystemExit) as error:  # the user's code
+    except BaseException as error:  # the user's code
+        if is_stop(error):
+            raise
         place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        told = f"{type(error).__name__}: {error}{place}"
+        told = f"{type(error).__name__}: {text_of(error)}{place}"
         raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
+    finally:
+        os.chdir(folder)  # the options' paths are relative to it
     try:
         return vars(module)[attribute]
     except KeyError:

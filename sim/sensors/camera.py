@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
-from sim.gl import mujoco
+from sim.gl import begin_rendering, mujoco
 from sim.houses.labels import Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.sensors.lamp_maps import MAP_PX, LampMaps
@@ -101,12 +101,14 @@ class Camera:
 
         Raises:
             ConfigError: an unknown sensor.
+            RenderError: this process was forked from the one that made this camera.
         """
         unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
         if unknown:
             raise ConfigError(f"Unknown sensor '{unknown[0]}'. The sensors are: {', '.join(SENSORS)}, geom.")
         if not sensors:
             return {}
+        begin_rendering()
         with self._gl.as_current():
             return self._render(data, pose, sensors)
 
