@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import importlib
 import inspect
-import sys
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
+from sim.composition.imports import import_attribute
 from sim.errors import AgentError, ConfigError, ObjectNavError
 from sim.evaluation.own_code import place_of
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
@@ -62,7 +61,7 @@ def find_agent(name: str) -> AgentSpec:
         raise ConfigError(
             f"Unknown agent '{name}'.{hint} There is: {', '.join(SPECS)}, or your own as package.module:NAME."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
         return found
     if not callable(found):
@@ -86,7 +85,7 @@ def find_explorer(name: str) -> ExplorerConfig:
         raise ConfigError(
             f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
         )
-    found = _import_attribute(name, module_name, attribute)
+    found = import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
         raise ConfigError(f"--explorer '{name}' must be a dataclass object with a method make(camera).")
     return found
@@ -117,20 +116,3 @@ def build_agent(
             raise
         told = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
-
-
-def _import_attribute(name: str, module_name: str, attribute: str) -> Any:
-    if "" not in sys.path:
-        sys.path.insert(0, "")  # `python -m` has it; spawned workers and installed scripts do not
-    try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as error:
-        raise ConfigError(f"'{name}': no module '{error.name}' can be imported from here.") from None
-    except (Exception, SystemExit) as error:  # the user's code
-        place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        told = f"{type(error).__name__}: {error}{place}"
-        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
-    try:
-        return vars(module)[attribute]
-    except KeyError:
-        raise ConfigError(f"'{name}': module '{module_name}' has no '{attribute}'.") from None

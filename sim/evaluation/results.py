@@ -39,10 +39,11 @@ VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
 """Options that start viewers; they change no result."""
 WITHOUT_EFFECT = frozenset({"workers", "out", "record", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
 """Entries of the config that change no result."""
-NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings"}
+NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
 """Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
 
 `settings` are the assignments of the command line; what counts is the tree that they lead to, `config`.
+`segmentation` says in words what `semantics` and the code lead to.
 """
 
 

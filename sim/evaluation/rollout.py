@@ -159,6 +159,8 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
     """
     try:
         return call()
+    except AgentError as error:  # of a part of the agent, which names its own line
+        raise AgentError(f"{where}: {error}") from error
     except (Exception, SystemExit) as error:
         if debug():
             traceback.print_exc()

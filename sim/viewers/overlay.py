@@ -8,8 +8,8 @@
     |                                   +----------------+----+-----------+
     |                                   | the agent's    | the true       |
     +-----------+-----------+-----------+ map            | plan           |
-    | predicted | score of  | true      +----------------+----------------+
-    | segments  | the goal  | segments  | legends, state of the agent     |
+    | the       | score of  | true      +----------------+----------------+
+    | agent's   | the goal  | segments  | legends, state of the agent     |
     +-----------+-----------+-----------+---------------------------------+
 
 A text that is too wide for its place is written smaller.
@@ -25,7 +25,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Scores
+from sim.interface import MPCAT40, MPCAT40_ID, CameraModel, Perceived
 from sim.task.explanations import ACTION_WORDS, Outcome, in_words, with_article
 from sim.viewers.palette import PALETTE, colour_segmentation
 from sim.viewers.text import BOLD, NORMAL, text_width, wrapped, write
@@ -73,15 +73,6 @@ class MapPanel:
     """Text that says what the agent is doing."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Perceived:
-    """The result of the agent's segmentation for one frame."""
-
-    scores: Scores
-    categories: NDArray[np.uint8] | None
-    """mpcat40 ids (h, w) at any size; None: it does not name them."""
-
-
 class FrameComposer:
     """Composes the frames of one episode; what does not change is drawn once.
 
@@ -91,6 +82,7 @@ class FrameComposer:
         plan_legend: names and colours of the true plan.
         map_legend: names and colours of the agent's map; empty without one.
         max_steps: number of actions that the episode allows.
+        segmentation: name of the segmentation that the agent acts on; "": none, and its panels are left out.
     """
 
     def __init__(
@@ -101,8 +93,9 @@ class FrameComposer:
         plan_legend: tuple[tuple[str, Colour], ...],
         map_legend: tuple[tuple[str, Colour], ...] = (),
         max_steps: int = 500,
+        segmentation: str = "",
     ) -> None:
-        self.goal, self._camera, self._max_steps = goal, camera, max_steps
+        self.goal, self._camera, self._max_steps, self._segmentation = goal, camera, max_steps, segmentation
         self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
         frame = self._ground
         frame[:_HEADER_PX] = HEADER
@@ -177,18 +170,23 @@ class FrameComposer:
             write(frame, words, (left + 24, base + 4 + 25 * row), width - 48, 18, WHITE)
 
     def _segmentations(self, frame: Picture, moment: Moment, perceived: Perceived | None) -> None:
-        """Draws the predicted segmentation, the score of the goal and the true segmentation."""
+        """Draws the segmentation that the agent acts on, its score of the goal, and the true segmentation."""
         boxes = [(left, _SMALL_TOP, *_SMALL) for left in _SMALL_LEFT]
         _put(frame, segmentation_picture(_resized(moment.images["semantic"], boxes[2]), self.goal), boxes[2])
+        if not self._segmentation:
+            return
+        self._caption(frame, f"segmentation ({self._segmentation})", boxes[0])
         if perceived is None:
-            self._empty(frame, "no segmentation", boxes[0])
-            self._empty(frame, "no score", boxes[1])
+            self._empty(frame, "not used in this step", boxes[0])
+            self._empty(frame, "not used in this step", boxes[1])
             return
         if perceived.categories is None:
-            self._empty(frame, "scores of the goal only", boxes[0])
+            self._empty(frame, "names no categories", boxes[0])
         else:
-            self._caption(frame, "segmentation (predicted)", boxes[0])
             _put(frame, segmentation_picture(_resized(perceived.categories, boxes[0]), self.goal), boxes[0])
+        if perceived.scores is None:
+            self._empty(frame, "no score", boxes[1])
+            return
         target = perceived.scores.target
         self._caption(frame, f"score of the goal, at most {float(target.max()):.2f}", boxes[1])
         _put(frame, score_picture(_fitted(moment.seen("rgb"), boxes[1]), target), boxes[1])

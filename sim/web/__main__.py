@@ -37,6 +37,10 @@ class Args:
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
     weights: Path | None = None
     """Your network in place of the shipped one, for segmentation by rednet."""
+    semantics: tuple[str, ...] = ()
+    """Segmentations of your own, package.module:NAME ..., to choose on the page."""
+    config: tuple[str, ...] = ()
+    """Their options, detector.FIELD=VALUE ..."""
     runs: Path = Path("runs")
     """Folder of the runs that the page shows."""
 
@@ -50,6 +54,12 @@ def main(args: Args) -> int:
         from sim.composition.segmenters import weights_file
 
         weights_file(args.weights)
+    if args.semantics:
+        from sim.composition.segmenters import find_segmentation
+
+        own = {name: find_segmentation(name, None).description for name in args.semantics}
+    else:
+        own = {}
     listening = _listen(args.host, args.port)  # before the imports, which take seconds
     import uvicorn
 
@@ -58,7 +68,7 @@ def main(args: Args) -> int:
 
     port = listening.getsockname()[1]
     hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
-    app = make_app(Hub(args.weights), Runs(args.runs), hosts=hosts)
+    app = make_app(Hub(args.weights, args.config), Runs(args.runs), hosts=hosts, segmentations=own)
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )

@@ -6,6 +6,7 @@ import contextlib
 import os
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from sim import invocation
@@ -35,7 +36,13 @@ _COLUMNS = (
 class Choices:
     """Houses with their goals, agents and segmentations; read once."""
 
-    def __init__(self) -> None:
+    def __init__(self, segmentations: Mapping[str, str] = MappingProxyType({})) -> None:
+        """Reads the splits.
+
+        Args:
+            segmentations: names and descriptions of those that can be chosen in addition to the shipped ones.
+        """
+        self._segmentations = {name: kind.description for name, kind in KINDS.items()} | dict(segmentations)
         names = [name for name in shipped_splits() if name not in NOT_OFFERED]
         names.sort(key=lambda name: (FIRST.index(name) if name in FIRST else len(FIRST), name))
         self._goals: dict[str, dict[str, list[str]]] = {}
@@ -53,7 +60,7 @@ class Choices:
             "splits": self._goals,
             "agents": {name: spec.description for name, spec in SPECS.items()},
             "uses_segmentation": {name: spec.uses_segmentation for name, spec in SPECS.items()},
-            "semantics": {name: kind.description for name, kind in KINDS.items()},
+            "semantics": self._segmentations,
             "run_command": invocation.command("run", "--video"),
         }
 
@@ -61,7 +68,7 @@ class Choices:
         """Returns the episode that a message of the page asks for.
 
         Raises:
-            ConfigError: something in it cannot be chosen. Only what ships with the package can be.
+            ConfigError: something in it cannot be chosen. Only what ships or was given to the server can be.
         """
         chosen = {name: message.get(name) for name in ("split", "house", "goal", "agent", "semantics")}
         for name, value in chosen.items():
@@ -73,7 +80,7 @@ class Choices:
             raise ConfigError(f"There is no '{chosen['goal']}' in house '{chosen['house']}' of '{chosen['split']}'.")
         if chosen["agent"] not in SPECS:
             raise ConfigError(f"There is no agent '{chosen['agent']}' here.")
-        if chosen["semantics"] not in KINDS:
+        if chosen["semantics"] not in self._segmentations:
             raise ConfigError(f"There is no segmentation '{chosen['semantics']}'.")
         driver = "person" if message.get("driver") == "person" else "agent"
         return Wish(**{name: str(value) for name, value in chosen.items()}, driver=driver)

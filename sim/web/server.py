@@ -12,6 +12,7 @@ import json
 import struct
 from collections.abc import AsyncIterator, Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -56,10 +57,10 @@ class Client:
 class Hub:
     """Hands the newest state and frame of the session to all clients; slow ones miss frames (`Audience`)."""
 
-    def __init__(self, weights: Path | None = None) -> None:
-        """Makes a session whose network has these weights; the shipped ones when None."""
+    def __init__(self, weights: Path | None = None, config: tuple[str, ...] = ()) -> None:
+        """Makes a session whose network has these weights; the shipped ones when None. `config`: see `Session`."""
         self.clients: set[Client] = set()
-        self.session = Session(self, weights)
+        self.session = Session(self, weights, config)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._told: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
         self._frame: Frame | None = None
@@ -185,15 +186,18 @@ def _name_of(host: str) -> str:
     return urlsplit(f"//{host}").hostname or ""
 
 
-def make_app(hub: Hub, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
+def make_app(
+    hub: Hub, runs: Runs, *, hosts: frozenset[str], segmentations: Mapping[str, str] = MappingProxyType({})
+) -> Starlette:
     """Returns the application.
 
     Args:
         hub: of the session; it is opened and closed with the application.
         runs: finished runs.
         hosts: names under which the server may be addressed.
+        segmentations: names and descriptions of those that can be chosen in addition to the shipped ones.
     """
-    choices = Choices()
+    choices = Choices(segmentations)
 
     @contextlib.asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:

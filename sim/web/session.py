@@ -12,6 +12,7 @@ from typing import Any, Protocol
 from sim.cli import USAGE_ERRORS
 from sim.composition.options import RunOptions
 from sim.composition.runner import Parts, build_parts
+from sim.composition.segmenters import KINDS
 from sim.composition.setup import resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
@@ -55,15 +56,16 @@ class Audience(Protocol):
 class Session:
     """Runs one episode after the other, as users ask for them; all users see the same one."""
 
-    def __init__(self, audience: Audience, weights: Path | None = None) -> None:
+    def __init__(self, audience: Audience, weights: Path | None = None, config: tuple[str, ...] = ()) -> None:
         """Makes a session; `start` starts it.
 
         Args:
             audience: receives what there is to show.
             weights: of the network of `rednet`; the shipped one when None.
+            config: `detector.FIELD=VALUE`, options of segmentations that do not ship.
         """
         self.controls = Controls()
-        self._audience, self._weights = audience, weights
+        self._audience, self._weights, self._config = audience, weights, config
         self._parts: Parts | None = None
         self._pictures: Pictures | None = None
         self._made_for: tuple[str, str, str] | None = None
@@ -102,6 +104,7 @@ class Session:
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
+            about.update(segmentation=parts.seen.name if parts.seen is not None else "")
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
@@ -109,7 +112,7 @@ class Session:
         line = play_episode(parts.env, shared, episode, seed=seed, viewers=[watcher], name=wish.agent)
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
-        detects = parts.segmenter is not None and not shared.stopped_by_person
+        detects = parts.seen is not None and not shared.stopped_by_person
         outcome = explain_end(line, wish.goal, parts.env.success_rule, nearest_m, detects=detects)
         self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome), **about)
 
@@ -119,7 +122,10 @@ class Session:
         if self._parts is None or self._pictures is None or key != self._made_for:
             self._free()
             weights = self._weights if wish.semantics == "rednet" else None
-            options = RunOptions(agent=wish.agent, semantics=wish.semantics, weights=weights, split=wish.split)
+            config = () if wish.semantics in KINDS else self._config
+            options = RunOptions(
+                agent=wish.agent, semantics=wish.semantics, weights=weights, split=wish.split, config=config
+            )
             self._parts = build_parts(resolve(options), watched=True)
             self._pictures, self._made_for = Pictures(self._parts), key
         return self._parts, self._pictures
