@@ -11,6 +11,7 @@ the best evaluation so far, `curve.png` the picture of the two curves.
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from torch.nn import functional
 
 from sim import cli
 from sim.commands.train.timed_training import PRINT_EVERY_S, TimedTraining, stride
-from sim.commands.train.training_files import read_columns
+from sim.commands.train.training_files import read_columns, tell_next
 from sim.interface import ConfigError
 from sim.invocation import command
 from sim.plans.plan import read_plan
@@ -78,6 +79,9 @@ def main(args: Args) -> int:
     files = make_samples(args, config)
     Trainer(args, config, files).run()
     draw_curve(args.out)
+    weights = args.out / "poni.safetensors"
+    chosen = f"--agent poni --semantics gt --config agent.explorer.weights={shlex.quote(str(weights))}"
+    tell_next(weights, command("run", chosen), command("run", f"{chosen} --video --episodes 2"))
     return 0
 
 
