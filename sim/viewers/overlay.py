@@ -175,7 +175,9 @@ class FrameComposer:
         _put(frame, segmentation_picture(_resized(moment.images["semantic"], boxes[2]), self.goal), boxes[2])
         if not self._segmentation:
             return
-        self._caption(frame, f"segmentation ({self._segmentation})", boxes[0])
+        module, own, name = self._segmentation.rpartition(":")
+        named = f"by {module.rpartition('.')[2]}:{name}" if own else f"segmentation ({name})"
+        self._caption(frame, named, boxes[0])
         if perceived is None:
             self._empty(frame, "not used in this step", boxes[0])
             self._empty(frame, "not used in this step", boxes[1])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.objectnav import ObjectNavEnv
-from sim.interface import Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
+from sim.interface import Action, Observation, Perceived, Scores, SegmentationSpec, SegmenterSpec
 
 ASKED: list[set[str]] = []
 """Keys of each observation that a `Flat` got in this process."""
@@ -69,10 +69,10 @@ class Stating:
     def reset(self, goal: str, seed: int) -> None:
         self.seen: Perceived | None = None
 
-    def act(self, observation: Observation) -> int:
+    def act(self, observation: Observation) -> Action:
         target = np.full((12, 16), 0.5, np.float32)
         self.seen = Perceived(Scores(target, target), np.full((12, 16), 3, np.uint8))
-        return 0
+        return Action.STOP
 
     def stated_segmentation(self) -> Perceived | None:
         return self.seen

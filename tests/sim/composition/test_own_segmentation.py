@@ -56,10 +56,10 @@ def test_a_segmentation_that_reads_the_truth_is_marked(house: Path, tmp_path: Pa
 @pytest.mark.parametrize(
     ("returned", "message"),
     [
-        (Scores(np.zeros((7, 7)), np.zeros((7, 7))), "an array of shape"),
-        (Scores(np.full((48, 64), 2.0), np.zeros((48, 64))), "probabilities in"),
-        (Scores(np.full((48, 64), np.nan), np.zeros((48, 64))), "probabilities in"),
-        ((np.zeros((48, 64)),), "it returns Scores"),
+        (Scores(np.zeros((7, 7), np.float32), np.zeros((7, 7), np.float32)), "an array of shape"),
+        (Scores(np.full((48, 64), 2.0, np.float32), np.zeros((48, 64), np.float32)), "probabilities in"),
+        (Scores(np.full((48, 64), np.nan, np.float32), np.zeros((48, 64), np.float32)), "probabilities in"),
+        ((np.zeros((48, 64), np.float32),), "it returns Scores"),
         (ValueError("no weights"), "ValueError: no weights"),
     ],
 )
@@ -120,6 +120,6 @@ def test_the_segmentation_that_an_agent_brings_is_shown_and_no_other() -> None:
     assert stated is not None
     assert stated.categories is not None
     assert (stated.categories == 3).all()
-    agent.seen = Perceived(None, np.full((2, 2), 99))
+    agent.seen = Perceived(None, np.full((2, 2), 99, np.uint8))
     with pytest.raises(AgentError, match="mpcat40 ids 0 to 40"):
         seen.perceived({}, "sofa")
