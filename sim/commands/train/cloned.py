@@ -10,7 +10,6 @@ demonstrator. The same command continues a killed run: `state.pt` holds weights,
 
 from __future__ import annotations
 
-import shlex
 import time
 import zlib
 from collections.abc import Mapping, Sequence
@@ -71,8 +70,8 @@ def main(args: Args) -> int:
     Trainer(args, train, val, files).run()
     draw_curve(args.out)
     weights = args.out / "cloned.safetensors"
-    chosen = f"--agent cloned --semantics gt --config agent.weights={shlex.quote(str(weights))}"
-    tell_next(weights, command("run", chosen), command("run", f"{chosen} --video --episodes 2"))
+    chosen = ("--agent", "cloned", "--semantics", "gt", "--config", f"agent.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 

@@ -11,7 +11,6 @@ the best evaluation so far, `curve.png` the picture of the two curves.
 
 from __future__ import annotations
 
-import shlex
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -80,8 +79,8 @@ def main(args: Args) -> int:
     Trainer(args, config, files).run()
     draw_curve(args.out)
     weights = args.out / "poni.safetensors"
-    chosen = f"--agent poni --semantics gt --config agent.explorer.weights={shlex.quote(str(weights))}"
-    tell_next(weights, command("run", chosen), command("run", f"{chosen} --video --episodes 2"))
+    chosen = ("--agent", "poni", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 

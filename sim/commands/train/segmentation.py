@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import copy
 import math
-import shlex
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
@@ -167,11 +166,10 @@ def main(args: Args) -> int:
     weights = args.out / "rednet.safetensors"
     if trainer.start_miou is not None:
         print(f"mIoU of goals, calibrated: {trainer.start_miou:.3f} at the start, {trainer.best:.3f} now")
-    views = " ".join(shlex.quote(str(folder)) for folder in args.val_views)
     tell_next(
         weights,
-        command("evaluate", f"--views {views} --weights {shlex.quote(str(weights))}"),
-        command("run", f"--semantics rednet --weights {shlex.quote(str(weights))}"),
+        command("evaluate", "--views", *map(str, args.val_views), "--weights", str(weights)),
+        command("run", "--semantics", "rednet", "--weights", str(weights)),
     )
     return 0
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 import csv
 import functools
 import io
-import shlex
 import time
 from collections import deque
 from collections.abc import Sequence
@@ -119,8 +118,8 @@ def main(args: Args) -> int:
     run = Run(args, plans)
     run.train()
     weights = args.out / "semexp.safetensors"
-    chosen = f"--agent semexp --semantics gt --config agent.explorer.weights={shlex.quote(str(weights))}"
-    tell_next(weights, command("run", chosen), command("run", f"{chosen} --video --episodes 2"))
+    chosen = ("--agent", "semexp", "--semantics", "gt", "--config", f"agent.explorer.weights={weights}")
+    tell_next(weights, command("run", *chosen), command("run", *chosen, "--episodes", "2", "--video"))
     return 0
 
 
