@@ -137,7 +137,7 @@ def test_candidates_that_are_verified_from_too_far_to_stop_are_not_logged(
     monkeypatch.setattr(TargetSeeker, "judge", lambda *args: judged.append(args) or judge(*args))
     monkeypatch.setattr(train_verifier.RecordingVerifier, "accepts", spy)
     exact = replace(KINDS["gt"], spec=replace(GroundTruthSegmenter.spec, needs_verification=True))
-    monkeypatch.setattr(train_verifier, "KINDS", {"noisy": exact})
+    monkeypatch.setattr(train_verifier, "find_segmentation", lambda *_: exact)
     monkeypatch.setattr(train_verifier, "make_segmenter", lambda *_, **__: GroundTruthSegmenter())
     log_after(folder, tmp_path / "log", 3, max_steps=120)
     assert set(asked) == {(True, 1), (False, 0)}
