@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     from sim.episodes.splits import Episode, load_split
     from sim.errors import ConfigError, ObjectNavError
     from sim.geometry.pose import Pose
+    from sim.housegen.config import HouseConfig
     from sim.housegen.furniture import CATALOGUE
     from sim.housegen.furniture.catalogue import Style
     from sim.housegen.furniture.workbench import Workbench
-    from sim.housegen.generator import HouseConfig, generate
+    from sim.housegen.generator import generate
     from sim.houses.load import load_house
-    from sim.houses.writing import house_text
+    from sim.houses.writing import house_text, write_house
     from sim.interface import (
         GOAL_CATEGORIES,
         MPCAT40,
@@ -71,6 +72,7 @@ __all__ = [
     "load_house",
     "load_robot",
     "load_split",
+    "write_house",
 ]
 
 _MODULE_OF = {
@@ -84,7 +86,7 @@ _MODULE_OF = {
     "CameraModel": "sim.interface",
     "ConfigError": "sim.errors",
     "Episode": "sim.episodes.splits",
-    "HouseConfig": "sim.housegen.generator",
+    "HouseConfig": "sim.housegen.config",
     "NoiseConfig": "sim.sensors.noise",
     "ObjectNavEnv": "sim.env.objectnav",
     "ObjectNavError": "sim.errors",
@@ -105,6 +107,7 @@ _MODULE_OF = {
     "load_house": "sim.houses.load",
     "load_robot": "sim.robot.foreign",
     "load_split": "sim.episodes.splits",
+    "write_house": "sim.houses.writing",
 }
 
 

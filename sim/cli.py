@@ -19,6 +19,7 @@ import re
 import signal
 import sys
 import threading
+import time
 import traceback
 import types
 import typing
@@ -32,6 +33,7 @@ from msgspec import Meta
 from sim import invocation
 from sim.errors import ConfigError, ObjectNavError, debug, debugging
 from sim.files import require_writable
+from sim.reading import Seed as Seed
 from sim.reading import first_unprintable, printable, reason_of
 
 ArgsT = TypeVar("ArgsT")
@@ -47,7 +49,6 @@ class Written:
     folder: bool
 
 
-Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Count = Annotated[int, Meta(ge=1, le=10_000_000)]
 """A count, at least 1."""
 Amount = Annotated[int, Meta(ge=0, le=10_000_000)]
@@ -55,8 +56,14 @@ Amount = Annotated[int, Meta(ge=0, le=10_000_000)]
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 NotNegative = Annotated[float, Meta(ge=0.0, le=1e9)]
+OnUnlessNo = Annotated[bool, tyro.conf.arg(help_behavior_hint="")]
+"""A switch that is on by default. Its option is `--no-NAME`, so its help text says what that option does."""
 OutFile = Annotated[Path, Written(folder=False)]
 OutFolder = Annotated[Path, Written(folder=True)]
+
+
+LAST_WORDS_S = 10.0
+"""Time that threads and exit handlers have after the last line of a command."""
 
 
 class Terminated(KeyboardInterrupt):
@@ -110,6 +117,22 @@ def run(
         except KeyboardInterrupt as stop:
             print(f"\n{stopped}", file=sys.stderr)
             return 143 if isinstance(stop, Terminated) else 130
+
+
+def leave_soon(status: int) -> int:
+    """Returns the exit status of the process, which then ends after at most `LAST_WORDS_S` seconds.
+
+    Threads and exit handlers that code of a user started would otherwise keep it alive.
+    """
+
+    def leave() -> None:
+        time.sleep(LAST_WORDS_S)
+        os._exit(status)
+
+    with contextlib.suppress(OSError, ValueError):
+        sys.stdout.flush()
+    threading.Thread(target=leave, daemon=True, name="end").start()
+    return status
 
 
 def parse(args_type: type[ArgsT], argv: Sequence[str] | None = None) -> ArgsT:

@@ -79,17 +79,26 @@ def require_writable(path: Path, *, name: str, folder: bool) -> None:
         raise ConfigError(f"{name} {str(path)!r} cannot be written: {_reason(error)}.") from None
 
 
-def write_atomically(path: Path, content: bytes | str) -> None:
+def write_atomically(path: Path, content: bytes | str, *, sync: bool = False) -> None:
     """Writes a file atomically and creates its folder; text is written as UTF-8.
+
+    Args:
+        path: the file.
+        content: of the file.
+        sync: whether to wait until the file is on the disk, where a power failure cannot take it any more.
 
     Raises:
         OSError: the file cannot be written; the earlier file, if there is one, is unchanged.
     """
-    write_together({path: content})
+    write_together({path: content}, sync=sync)
 
 
-def write_together(files: Mapping[Path, bytes | str]) -> None:
-    """Writes several files, each atomically; none is replaced before all of them are complete on the disk.
+def write_together(files: Mapping[Path, bytes | str], *, sync: bool = False) -> None:
+    """Writes several files, each atomically; none is replaced before all of them are complete.
+
+    Args:
+        files: content by path.
+        sync: whether to wait until the files are on the disk.
 
     Raises:
         OSError: a file cannot be written; then no earlier file has changed.
@@ -103,14 +112,29 @@ def write_together(files: Mapping[Path, bytes | str]) -> None:
             )
             with os.fdopen(handle, "wb") as file:
                 file.write(content if isinstance(content, bytes) else content.encode("utf-8"))
+                if sync:
+                    file.flush()
+                    os.fsync(file.fileno())
             os.chmod(parts[path], 0o644)  # mkstemp gives permissions to the owner only
         for path, part in parts.items():
             os.replace(part, path)
+        for folder in {path.parent for path in files} if sync else ():
+            _sync_names(folder)
     except BaseException:  # also on Ctrl-C: the part files are removed
         for part in parts.values():
             with contextlib.suppress(OSError):
                 os.unlink(part)
         raise
+
+
+def _sync_names(folder: Path) -> None:
+    """Waits until the names of a folder's files are on the disk; some file systems cannot."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def write_picture(file: Path, picture: NDArray[np.uint8]) -> None:

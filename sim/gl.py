@@ -45,15 +45,20 @@ _rendering_pid: int | None = None
 """The process that created the first OpenGL context."""
 
 
+def is_forked() -> bool:
+    """Returns whether this process was forked from one with an OpenGL context."""
+    return _rendering_pid not in (None, os.getpid())
+
+
 def begin_rendering() -> None:
-    """Must be called before an OpenGL context is created.
+    """Must be called before an OpenGL context is created or used.
 
     Raises:
         RenderError: this process was forked from one with an OpenGL context. The threads of its driver are missing, so
             rendering would hang.
     """
     global _rendering_pid
-    if _rendering_pid not in (None, os.getpid()):
+    if is_forked():
         raise RenderError(
             "OpenGL does not survive a fork, and this process was forked from one that had rendered. Start workers "
             'with spawn; for Gymnasium: make_vec(..., vector_kwargs={"context": "spawn"}).'
@@ -82,4 +87,4 @@ def _disable_log_file() -> None:
 
 _disable_log_file()
 
-__all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "mujoco"]
+__all__ = ["INSTALL_HINT", "begin_rendering", "choose_backend", "is_forked", "mujoco"]

@@ -33,7 +33,7 @@ def command(*words: object) -> str:
     elif module is not None and module.removeprefix("sim.") in MODULES:
         if words and str(words[0]) in MODULES:
             return shlex.join([python(), "-m", f"sim.{words[0]}", *map(str, words[1:])])
-        start = [_script_beside_python()]
+        start = [beside_python(SCRIPT)]
     else:
         start = [_script()]
     return shlex.join([*start, *map(str, words)])
@@ -90,7 +90,12 @@ def _script() -> str:
     return str(typed)
 
 
-def _script_beside_python() -> str:
-    """Returns the installed command of this environment, as the user would type it."""
-    beside = Path(python()).with_name(SCRIPT)
-    return str(beside) if Path(sys.executable).with_name(SCRIPT).is_file() else SCRIPT
+def beside_python(name: str) -> str:
+    """Returns an installed program of this environment as the user would type it; its name where it is on the path."""
+    program = Path(sys.executable or "python").with_name(name)
+    found = shutil.which(name)
+    if not program.is_file() or (found is not None and Path(found) == program):
+        return name
+    with contextlib.suppress(ValueError, OSError):  # OSError: the current folder was removed
+        return str(program.relative_to(Path.cwd()))
+    return str(program)

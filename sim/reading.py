@@ -8,6 +8,7 @@ message names the file, the line, the field, what was found and what is wanted.
 from __future__ import annotations
 
 import gzip
+import json
 import os
 import re
 import stat
@@ -39,6 +40,7 @@ Metres = Annotated[float, Meta(ge=-10_000.0, le=10_000.0)]
 Number = Annotated[float, Meta(ge=-1e12, le=1e12)]
 """Any other measured number."""
 Count = Annotated[int, Meta(ge=0, le=10**12)]
+Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Name = Annotated[str, Meta(min_length=1, max_length=1000, pattern=r"^[^\x00-\x1f\x7f-\x9f\u2028\u2029]*\Z")]
 """An id or a name: text without control characters, which a terminal would obey."""
 
@@ -147,7 +149,7 @@ def read_lines(file: Path, kind: type, *, what: str, error: type[ObjectNavError]
     values = []
     for number, line in enumerate(whole.splitlines(), start=1):
         where = f"{what} '{file}', line {number}"
-        value = parse_json(line, dict[str, Any], where=where, error=error)
+        value = parse_json(_without_lone_surrogates(line), dict[str, Any], where=where, error=error)
         convert(value, kind, where=where, error=error)
         values.append(value)
     torn = f"{what} '{file}': the incomplete line {len(values) + 1} was dropped ({len(rest)} bytes)." if rest else ""
@@ -293,6 +295,16 @@ def reason_of(fault: Exception) -> str:
     if isinstance(fault, OSError) and fault.strerror:
         return fault.strerror
     return " ".join(str(fault).split()).rstrip(".") or type(fault).__name__
+
+
+def _without_lone_surrogates(line: bytes) -> bytes:
+    """Returns a line of JSON that UTF-8 can hold: version 0.1 wrote error texts with halves of surrogate pairs."""
+    if b"\\ud" not in line.lower():
+        return line
+    try:
+        return json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8", errors="replace")
+    except (ValueError, RecursionError):
+        return line  # the parser says what is wrong with it
 
 
 def _read_member(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:

@@ -8,12 +8,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from rich.console import Console
 from rich.table import Table
 
 from sim import cli
 from sim.analysis import display
 from sim.composition.agents import SPECS
+from sim.composition.isolation import RUNNER, isolation_of
 from sim.composition.options import RunOptions
+from sim.evaluation.executors import started_early
 from sim.invocation import RUN_STOPPED
 from stubborn.agents import EXPLORERS
 
@@ -27,6 +30,13 @@ def main(options: RunOptions) -> int:
     if options.list_agents:
         console.print(agent_table())
         return 0
+    apart = isolation_of(options).needed and options.workers == 1 and options.executor == "local"
+    with started_early(RUNNER if apart else None):  # it imports its modules while this process reads the options
+        return _run(options, console)
+
+
+def _run(options: RunOptions, console: Console) -> int:
+    """Runs the episodes; returns the exit status."""
     from sim.composition.environments import episodes_of  # these import MuJoCo, which a list does not need
     from sim.composition.running import report_house, run_missing
     from sim.composition.setup import resolve
@@ -41,6 +51,7 @@ def main(options: RunOptions) -> int:
     count = len(episodes)
     if options.shard is not None:
         shard = Shard.parse(options.shard)
+        shard.require_own_numbers(out)
         episodes, out = shard.select(episodes), out / shard.folder
         if not episodes:
             console.print(f"Shard {options.shard} holds none of the {display.counted(count, 'episode')}.")
@@ -67,7 +78,8 @@ def agent_table() -> Table:
 
 def entry(argv: Sequence[str] | None = None) -> int:
     """Runs the command line; returns its exit status."""
-    return cli.run(RunOptions, main, argv, stopped=RUN_STOPPED)
+    status = cli.run(RunOptions, main, argv, stopped=RUN_STOPPED)
+    return status if argv is not None else cli.leave_soon(status)
 
 
 if __name__ == "__main__":

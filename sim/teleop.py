@@ -16,17 +16,17 @@ from typing import Any, Literal
 
 from sim import cli
 from sim.analysis import display
+from sim.composition.driven import record_driven
 from sim.composition.environments import episodes_of, make_env
-from sim.composition.human import HUMAN, Cockpit, Human, Quit, judged
+from sim.composition.human import HUMAN, HUMAN_NAME, Cockpit, Human, Quit
 from sim.composition.options import RunOptions
-from sim.composition.record import identity_of, record_of
+from sim.composition.record import record_of
 from sim.composition.setup import Setup, resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError
-from sim.evaluation.last_view import write_last_view
 from sim.evaluation.results import RunDirectory
-from sim.evaluation.rollout import episode_seed, play_episode, record_episode
+from sim.evaluation.rollout import episode_seed, play_episode
 from sim.viewers.terminal import Terminal
 from sim.viewers.video import VideoRecorder
 from sim.viewers.viewer import VIEWER_IMAGES
@@ -117,7 +117,7 @@ def drive(args: Args, cockpit: Cockpit) -> tuple[Path, dict[str, Any]]:
 def run_options(args: Args) -> RunOptions:
     """Returns the options with which `stubborn run` would describe this run."""
     return RunOptions(
-        agent="human",
+        agent=HUMAN_NAME,
         semantics="gt",
         split=args.split,
         house=args.house,
@@ -177,12 +177,8 @@ def play(setup: Setup, episode: Episode, cockpit: Cockpit, content: dict[str, An
     viewers = [VideoRecorder(options.out, AgentMapPainter(human.mapper, show_route=False))] if options.video else []
     try:
         seed = episode_seed(options.seed, episode.episode_id)
-        metrics = judged(play_episode(env, human, episode, seed=seed, viewers=viewers))
-        line = identity_of(setup, episode) | metrics
-        about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
-        record_episode(env, options.out, line, about | {"versions": content["versions"]})
-        write_last_view(env, options.out, line["episode_id"])
-        return line
+        metrics = play_episode(env, human, episode, seed=seed, viewers=viewers)
+        return record_driven(setup, env, episode, metrics, content)
     finally:
         for viewer in viewers:
             viewer.close()

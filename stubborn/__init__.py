@@ -1,7 +1,7 @@
 """The Stubborn agent (Luo et al. 2022), its ablations and baselines. Nothing here imports MuJoCo.
 
-`stubborn` names what users of the agents need. A name is imported from its module when it is first used, so that
-`import stubborn` does not import torch.
+`stubborn` holds the names that users of the agents need. A name is imported from its module when it is first used, so
+that `import stubborn` does not import torch.
 """
 
 from __future__ import annotations
@@ -70,5 +70,5 @@ if not TYPE_CHECKING:  # a type checker reports names that do not exist only wit
 
 
 def __dir__() -> list[str]:
-    """Returns the names of `__all__` and what is imported already."""
+    """Returns the names of `__all__` and the names that are already imported."""
     return sorted({*globals(), *__all__})

@@ -1,7 +1,7 @@
 """The Stubborn agent (Luo, Yue, Hong, Agrawal 2022, "Stubborn: A Strong Baseline for Indoor Object Navigation").
 
-At each step it learns from its last action, enters the frame into its map, and decides. All positions are in the start
-frame of the episode: the pose is the observation's `gps` and `compass`.
+At each step the agent evaluates its last action, enters the frame into its map, and chooses an action. All positions
+are in the start frame of the episode: the pose is the observation's `gps` and `compass`.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from stubborn.planning.steering import next_action
 from stubborn.planning.untrap import Untrap, UntrapConfig
 
 _TREAD_M = 0.10
-"""Half the width of the ground ahead that must not be missing for a forward."""
+"""Half the width of the strip ahead that must have floor before the robot moves forward."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +57,7 @@ class AgentConfig:
     window_cells: int = 240
     """Edge of the local window that is planned on."""
     recentre_every_steps: int = 1
-    """1: the robot is always in the middle of the window (the paper); the published code moves it every 25 steps."""
+    """The window is moved with the robot after this many steps: 1 in the paper, 25 in the published code."""
     mapping: MappingConfig = field(default_factory=MappingConfig)
     collisions: CollisionConfig = field(default_factory=CollisionConfig)
     avoidance: CollisionAvoidance = field(default_factory=CollisionAvoidance)
@@ -107,7 +107,7 @@ class StubbornAgent:
             robot: the robot that the agent drives.
             segmenter: source of the scores. With inexact outlines the rim of the target does not count (see
                 `Mapper.add_scores`), and the agent goes nearer before it stops.
-            success: when a STOP counts.
+            success: the rule by which a STOP counts.
             verifier: judges candidates, if the seeker asks it; by default it accepts all.
             config: all other parameters, with the configurations of explorer, seeker and object layers.
             max_steps: actions of an episode; near their end the agent takes more risk.
@@ -137,7 +137,7 @@ class StubbornAgent:
         self.reset(GOAL_CATEGORIES[0], 0)
 
     def reset(self, goal: str, seed: int) -> None:
-        """Starts a new episode; `seed` is for explorers that draw at random."""
+        """Starts a new episode; `seed` is for explorers that choose at random."""
         self.goal = goal
         self.step = 0
         self.navmap = NavMap.empty(GridFrame.around_start(self.config.map_cells, self.config.cell_m))
@@ -164,15 +164,15 @@ class StubbornAgent:
         return self.last_action
 
     def overridden(self, action: Action) -> None:
-        """Learns that another action than its own is carried out; see `sim.interface.Overridable`."""
+        """Records that another action than the agent's own is carried out; see `sim.interface.Overridable`."""
         self.last_action = action
 
     def stop_confidence(self) -> float | None:
-        """Returns the confidence in the candidate that was accepted last; see `sim.interface.StatesConfidence`."""
+        """Returns the confidence in the most recently accepted candidate; see `sim.interface.StatesConfidence`."""
         return self.seeker.confidence
 
     def stop_target_xy_m(self) -> tuple[float, float] | None:
-        """Returns where the candidate that was accepted last scores highest; see `sim.interface.StatesTarget`."""
+        """Returns the place of the highest score of the last accepted candidate; see `sim.interface.StatesTarget`."""
         if self.seeker.accepted_cell is None:
             return None
         x_m, y_m = self.navmap.frame.centres(*self.seeker.accepted_cell)
@@ -227,14 +227,14 @@ class StubbornAgent:
         return next_action(self.route, pose, self.config.planning)
 
     def _kept_from_drops(self, action: Action, pose: Pose) -> Action:
-        """Returns the action, or a turn when the action is a forward over a drop: those not planned do not see it."""
+        """Returns the action, or a turn in place of a forward over a drop: actions without a route ignore drops."""
         if action is not Action.MOVE_FORWARD:
             return action
         index, ahead = cells_near_segment(self.navmap.frame, pose.xy_m, pose.ahead(FORWARD_M), _TREAD_M)
         return Action.TURN_LEFT if self.navmap.seen_drop[index][ahead].any() else action
 
     def _inspect(self, approach: Approach, pose: Pose) -> Action:
-        """Faces the candidate from a viewpoint, then judges it."""
+        """Turns to the candidate at a viewpoint, then asks the seeker for a decision on it."""
         off_rad = wrap_angle(approach.bearing_rad - pose.yaw_rad)
         if abs(off_rad) > self.config.planning.aligned_rad:
             return Action.TURN_LEFT if off_rad > 0 else Action.TURN_RIGHT

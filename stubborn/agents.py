@@ -1,4 +1,4 @@
-"""The agents by name: compositions of the same parts."""
+"""Agents by name: each is a composition of the same parts."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from stubborn.exploration.tour import INFORMED_TOUR, TourConfig
 from stubborn.mapping.object_layers import ObjectLayersConfig
 
 NO_AVOIDANCE = CollisionAvoidance(untrap=False, collision_layers=False, averse_exploration=False, visited_is_free=False)
-"""None of the paper's measures against collisions."""
+"""The configuration without the paper's measures against collisions."""
 
 ABLATION: Mapping[str, CollisionAvoidance] = MappingProxyType(
     {
@@ -61,7 +61,7 @@ EXPLORERS: Mapping[str, ExplorerConfig] = MappingProxyType(
 
 
 PLUS = AgentConfig(explorer=INFORMED_TOUR, seeker=TrackSeekerConfig())
-"""`stubborn-plus`: the paper's agent with tracks of objects and a tour over what is left to see."""
+"""`stubborn-plus`: the paper's agent with object tracks, which explores by a tour over the unseen areas."""
 
 
 PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
@@ -75,7 +75,7 @@ PRESETS: Mapping[str, tuple[str, AgentConfig]] = MappingProxyType(
             for name, row in ABLATION.items()
         },
         "stubborn-plus": (
-            "ours: tracks objects, looks before it goes, tours what is left to see (informed-tour)",
+            "ours: tracks objects, looks at doubtful ones first, explores by a tour of unseen areas (informed-tour)",
             PLUS,
         ),
         "single-frame": (
@@ -126,7 +126,7 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
         ),
     }
 )
-"""All agents that `make` knows."""
+"""All agents that `make` can build."""
 
 NAMES: tuple[str, ...] = tuple(SPECS)
 """Their names."""
@@ -151,7 +151,7 @@ def make(
         robot: the robot that the agent drives.
         segmenter: source of the scores.
         verifier: judges candidates (`stubborn.detection.verification`); None accepts all.
-        success: when a STOP counts.
+        success: the rule by which a STOP counts.
         max_steps: actions of an episode, for agents that take more risk near its end.
         options: fields of `SPECS[name].config`. `explorer` also takes a name of `EXPLORERS`.
 

@@ -1,7 +1,8 @@
-"""Files of weights: safetensors whose header holds the size of the network; written in one step, checked when read.
+"""Reads and writes files of weights: safetensors whose header holds the size of the network.
 
-The header's values are JSON. One of them, named `<family>_config`, holds the size; the others tell how the weights were
-made. Only modules that need PyTorch import this one.
+A file is written in one step and checked when it is read. The header's values are JSON. One of them, named
+`<family>_config`, holds the size; the others describe how the weights were made. Only modules that need PyTorch import
+this one.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Family(Generic[ConfigT, NetworkT]):
     made_by: str
     """The tool that writes such files."""
     half: bool = True
-    """Whether numbers are stored with 16 bits."""
+    """True: numbers are stored with 16 bits."""
 
     @property
     def key(self) -> str:
@@ -77,7 +78,7 @@ def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, ha
         file: it is replaced in one step.
         model: the network.
         header: values that JSON can hold.
-        half: store numbers with 16 bits.
+        half: True stores numbers with 16 bits.
 
     Raises:
         ConfigError: a number is not finite in the file, or the file cannot be written.
@@ -100,16 +101,16 @@ def write_weights(file: Path, model: nn.Module, header: Mapping[str, Any], *, ha
 
 
 def read_weights(file: Path) -> tuple[dict[str, Tensor], dict[str, Any]]:
-    """Returns the tensors of a safetensors file by name, and its header; values that are no JSON stay text.
+    """Returns the tensors of a safetensors file by name, and its header; values that are not JSON remain text.
 
     Raises:
         ConfigError: the file cannot be read.
     """
-    open_plain(file, what="Weights").close()  # safetensors would wait for the writer of a pipe
+    open_plain(file, what="Weights").close()  # safetensors would wait for the writer of a named pipe
     try:
         with safe_open(file, framework="pt") as stream:
             header = stream.metadata() or {}
-            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118 - no dict
+            tensors = {name: stream.get_tensor(name) for name in stream.keys()}  # noqa: SIM118 - this is not a dict
     except (SafetensorError, OSError) as error:
         raise ConfigError(f"Weights '{file}' cannot be read: {reason_of(error)}.") from None
     decoded: dict[str, Any] = {}
@@ -131,7 +132,7 @@ def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], Ne
             cannot ask for more than the file has.
 
     Raises:
-        ConfigError: for the first tensor that is missing, unknown, of another shape, or with NaN.
+        ConfigError: a tensor is missing, is unknown, has another shape, or holds NaN (the first one is named).
     """
     with torch.device("meta"), _NoInitialNumbers():
         wanted = build().state_dict()
@@ -142,7 +143,7 @@ def with_weights(file: Path, given: Mapping[str, Tensor], build: Callable[[], Ne
 
 
 class _NoInitialNumbers(TorchFunctionMode):
-    """Drops random draws and fills: without memory they do nothing, but load 80 MB of modules of PyTorch."""
+    """Skips random initialisation, which has no effect without memory but loads 80 MB of PyTorch modules."""
 
     def __torch_function__(
         self, func: Callable[..., Any], types: Any, args: tuple[Any, ...] = (), kwargs: dict[str, Any] | None = None
@@ -154,7 +155,7 @@ class _NoInitialNumbers(TorchFunctionMode):
 
 
 def _require_fit(file: Path, given: Mapping[str, Tensor], wanted: Mapping[str, Tensor]) -> None:
-    """Raises ConfigError for the first tensor that is missing, unknown, of another shape, or with NaN."""
+    """Raises ConfigError for the first tensor that is missing, is unknown, has another shape, or holds NaN."""
     for name, tensor in wanted.items():
         if name not in given:
             raise ConfigError(f"Weights '{file}' are of another network: '{name}' is missing.")

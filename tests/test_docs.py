@@ -50,7 +50,7 @@ MOST_WORDS = {
     "docs/running.md": 700,
     "docs/watching.md": 800,
     "docs/agents.md": 800,
-    "docs/gymnasium.md": 800,
+    "docs/gymnasium.md": 780,
     "docs/houses.md": 1100,
     "docs/furniture.md": 600,
     "docs/worlds.md": 700,
@@ -59,7 +59,7 @@ MOST_WORDS = {
     "docs/explorers.md": 900,
     "docs/results.md": 900,
     "docs/differences.md": 700,
-    "docs/traps.md": 250,
+    "docs/traps.md": 270,
     "docs/performance.md": 300,
     "docs/maintaining.md": 250,
 }

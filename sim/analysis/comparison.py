@@ -88,10 +88,15 @@ def differences_table(first: Run, *others: Run) -> ResultTable:
     values: dict[str, list[str]] = {}
     for number, other in enumerate(others, start=1):
         for path, a, b in config_differences(first, other):
-            values.setdefault(path, [field_text(a)] * (1 + len(others)))[number] = field_text(b)
+            values.setdefault(path, [_short_text(a)] * (1 + len(others)))[number] = _short_text(b)
     notes = () if values else ("The configurations are equal.",)
     header = ("field", *LETTERS[: 1 + len(others)])
     return ResultTable("fields", "Fields in which the runs differ", header, sorted(values.items()), notes)
+
+
+def _short_text(value: Any) -> str:
+    """Returns a value as JSON; of an object that the other run does not have, only its number of fields."""
+    return f"{len(value)} fields" if isinstance(value, Mapping) else field_text(value)
 
 
 def require_same_episodes(first: Run, *others: Run) -> list[str]:

@@ -162,6 +162,13 @@ def describe(line: Line) -> str:
     return f"{line['episode_id']}: {goal} {outcome} after {steps}, {line['wall_time_s']:.0f} s"
 
 
+def file_size(size_bytes: int) -> str:
+    """Returns the size of a file in the unit that fits it: "812 bytes", "43 kB", "1.2 MB"."""
+    if size_bytes < 1000:
+        return counted(size_bytes, "byte")
+    return f"{size_bytes / 1e3:.0f} kB" if size_bytes < 999_500 else f"{size_bytes / 1e6:.1f} MB"
+
+
 def counted(number: int, noun: str) -> str:
     """Returns a number with its noun: "1 episode", "2 episodes"."""
     return f"{number} {noun}" + "s" * (number != 1)

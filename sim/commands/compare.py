@@ -10,14 +10,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
 import tyro
 
 from sim import cli
 from sim.analysis import display
 from sim.analysis.comparison import Run, differences_table, read_run, require_same_episodes
+from sim.analysis.metrics import SPL, SUCCESS
 from sim.analysis.report.figures import METRICS
-from sim.analysis.tables import ResultTable, to_csv, to_markdown, to_rich
+from sim.analysis.tables import NOT_SIGNIFICANT, ResultTable, to_csv, to_markdown, to_rich
 from sim.evaluation.bootstrap import MIN_PAIRS
 from sim.files import write_together
 
@@ -26,10 +28,10 @@ from sim.files import write_together
 class Args:
     """Compare two runs of the same episodes."""
 
-    first: tyro.conf.Positional[Path]
+    first: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="FIRST")]
     """Folder of a run."""
-    second: tyro.conf.Positional[Path]
-    """Folder of another run on the same episodes."""
+    second: Annotated[tyro.conf.Positional[Path], tyro.conf.arg(metavar="SECOND")]
+    """Folder of another run of the same episodes; differences are SECOND minus FIRST."""
     out: cli.OutFolder | None = None
     """Folder for comparison.md and comparison.csv; nothing is written if not given."""
 
@@ -37,12 +39,14 @@ class Args:
 def main(args: Args) -> int:
     """Reads and compares the runs and prints the tables; returns the exit status."""
     first, second = read_run(args.first), read_run(args.second)
-    tables = [compare(first, second), differences_table(first, second)]
+    tables = [differences_table(first, second), compare(first, second)]
     console = display.make_console()
     for table in tables:
-        console.print(to_rich(table))
+        console.print(to_rich(table) if table.rows else "\n".join(table.notes))
+    console.print(verdict(first, second), highlight=False, soft_wrap=True)
     if args.out is not None:
-        pages = {"comparison.md": to_markdown(tables), "comparison.csv": to_csv(tables)}
+        page = f"{to_markdown([table for table in tables if table.rows])}\n{verdict(first, second)}\n"
+        pages = {"comparison.md": page, "comparison.csv": to_csv(tables)}
         write_together({args.out / name: text for name, text in pages.items()})
     return 0
 
@@ -75,3 +79,26 @@ def compare(first: Run, second: Run) -> ResultTable:
         notes.append(f"Only B succeeds in {len(gained)}: {' '.join(gained) or '-'}.")
     title = f"B - A, paired over {len(common)} episodes"
     return ResultTable("comparison", title, ("metric", "A", "B", "B - A"), rows, notes)
+
+
+def verdict(first: Run, second: Run) -> str:
+    """Returns one or two sentences: whether success and SPL differ significantly between two runs.
+
+    Raises:
+        ConfigError: the runs are of different splits, or share no episode.
+    """
+    common = require_same_episodes(first, second)
+    a, b = ([of.lines[i] for i in common] for of in (first, second))
+    sentences = []
+    for metric in (SUCCESS, SPL):
+        cell = metric.difference(a, b)
+        if not cell.verdict:
+            sentences.append(f"{metric.title}: no pairs")
+        elif cell.verdict == NOT_SIGNIFICANT:
+            few = f" (fewer than {MIN_PAIRS} pairs)" if cell.estimate.count < MIN_PAIRS else ""
+            sentences.append(f"{metric.title}: no significant difference{few}")
+        else:
+            sentences.append(f"{metric.title}: B is {cell.verdict}")
+        if cell.mean_text != "-":
+            sentences[-1] += f", {' '.join(filter(None, (cell.mean_text, cell.interval_text)))}"
+    return f"Verdict over {len(common)} episodes. {'. '.join(sentences)}."

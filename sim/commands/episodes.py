@@ -7,6 +7,9 @@
 With --house, a split is made of one house: --out gets the house in one file, its meshes and textures, its label rules
 and its episodes. `stubborn run --split runs/kitchen` then needs neither the original files nor --labels.
 
+`<name>.json` next to `<name>.xml` may fix start and goal (`sim.houses.sidecar`): the house then has one episode for
+each goal that the start reaches, or with `--recipe traps` three with different headings.
+
 The folder's name selects the recipe (`sim.episodes.recipes`): how many episodes each house has, the limits of the
 distance from start to goal, and which starts count; other folders use the default recipe, or the one of `--recipe`.
 
@@ -21,31 +24,35 @@ from __future__ import annotations
 
 import collections
 import functools
+import itertools
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from sim import cli
-from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks
+from sim.episodes.house_episodes import Ask, HouseAsks, StartDrawer, find_house_asks, turned_start
 from sim.episodes.recipes import DEFAULT_RECIPE, EPISODE_RECIPES, EpisodeRecipe
-from sim.episodes.splits import LABELS_FILE, Episode, labels_of, write_split
+from sim.episodes.splits import LABELS_FILE, Episode, house_sidecar, labels_of, write_split
 from sim.errors import EpisodeError, HouseError
 from sim.evaluation.parallel import ordered_map
-from sim.files import write_together
+from sim.files import inside, write_picture, write_together
 from sim.housegen.splits.house_list import has_house_list, read_house_list
 from sim.housegen.splits.recipes import SPLIT_VERSION
 from sim.houses.house import House
 from sim.houses.labels import read_labels
 from sim.houses.load import load_house
 from sim.houses.packing import packed
+from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, write_sidecar
 from sim.interface import ConfigError, SuccessRule
 from sim.invocation import command
 from sim.reading import read_bytes
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
+from sim.viewers.episode_map import draw_episode_map
 from sim.world.world import World
 
 Turn = tuple[int, int, Ask]
@@ -69,13 +76,15 @@ class Args:
     episodes: cli.Count | None = None
     """Number of episodes of all houses; by default the recipe's number for each house."""
     recipe: str | None = None
-    """Name of the recipe (val, test, large, hazards, train); by default the one with the folder's name."""
+    """Name of the recipe (val, test, large, hazards, train, traps); by default the one with the folder's name."""
     seed: cli.Seed = 0
     """Seed of starts and headings."""
     version: str = SPLIT_VERSION
     """Version of the split."""
     workers: cli.Count = 1
     """Number of processes."""
+    pictures: bool = True
+    """Write a map of the starts and goals of each house to pictures/ in the split's folder."""
     success: SuccessRule = field(default_factory=SuccessRule)
     """When a STOP succeeds: distances, view points and unreachable goals depend on it."""
 
@@ -88,8 +97,7 @@ def main(args: Args) -> int:
     """
     args = with_split(args)
     files, recipe = house_files(folder_of(args)), recipe_of(args)
-    count = args.episodes if args.episodes is not None else recipe.per_house * len(files)
-    if count < 1 or args.workers < 1:
+    if (args.episodes is not None and args.episodes < 1) or args.workers < 1:
         raise ConfigError("--episodes and --workers must be at least 1.")
     began_s = time.perf_counter()
     goals_found = ordered_map(functools.partial(_find_asks, args), list(files), workers=args.workers)
@@ -102,7 +110,10 @@ def main(args: Args) -> int:
             f"{len(found.unreachable)} unreachable",
             flush=True,
         )
-    order = balanced_goals({house: found.asks for house, found in goals.items()}, count)
+    most = {house: found.most for house, found in goals.items() if found.most is not None}
+    per_house = {house: min(recipe.per_house, most.get(house, recipe.per_house)) for house in files}
+    count = args.episodes if args.episodes is not None else sum(per_house.values())
+    order = balanced_goals({house: found.asks for house, found in goals.items()}, count, most)
     episodes = draw_episodes(args, order)
     write_split(
         folder_of(args),
@@ -118,7 +129,7 @@ def main(args: Args) -> int:
 def folder_of(args: Args) -> Path:
     """Returns the folder of the split; raises ConfigError where the options name none."""
     if args.split is None:
-        raise ConfigError("make_episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
+        raise ConfigError("episodes needs --split FOLDER, or --house FILE with --out FOLDER.")
     return args.split
 
 
@@ -143,6 +154,9 @@ def with_split(args: Args) -> Args:
     if args.labels is not None:
         files[args.out / LABELS_FILE] = read_bytes(args.labels, what="Label rules")
     write_together(files)
+    fixed = house_sidecar(args.house, args.labels)
+    if fixed != EMPTY_SIDECAR:
+        write_sidecar(args.out / f"{house.name}.xml", fixed)
     _require_same(house, load_house(args.out / f"{house.name}.xml", labels_path=labels_of(args.out)))
     return replace(args, split=args.out)
 
@@ -186,30 +200,53 @@ def recipe_of(args: Args) -> EpisodeRecipe:
     return EPISODE_RECIPES[args.recipe]
 
 
-def balanced_goals(asks_of: Mapping[str, Sequence[Ask]], count: int) -> list[tuple[str, Ask]]:
+def balanced_goals(
+    asks_of: Mapping[str, Sequence[Ask]], count: int, most: Mapping[str, int] | None = None
+) -> list[tuple[str, Ask]]:
     """Returns house and goal of each episode: the houses in turn, and the goal with the fewest episodes so far.
 
     The episodes of a house take turns on its storeys.
 
+    Args:
+        asks_of: the goals of each house.
+        count: number of episodes.
+        most: largest numbers of episodes of houses whose sidecar fixes the start.
+
     Raises:
-        EpisodeError: a house has no goal that can be asked for.
+        EpisodeError: a house has no goal that can be asked for, or the houses have fewer different episodes.
     """
+    most = most or {}
     for house, asks in asks_of.items():
         if not asks:
             raise EpisodeError(f"House '{house}' has no goal that can be reached from a start of the recipe.")
-    asked, asked_here = collections.Counter[str](), collections.Counter[tuple[str, str]]()
+    if len(most) == len(asks_of) and count > sum(most.values()):
+        raise EpisodeError(
+            f"The sidecars of the houses fix their starts, so that there are {sum(most.values())} different episodes, "
+            f"and {count} were asked for; give --episodes {sum(most.values())}."
+        )
+    asked, asked_here, of_house = (collections.Counter[Any]() for _ in range(3))
     order: list[tuple[str, Ask]] = []
     houses = sorted(asks_of)
-    for i in range(count):
-        house = houses[i % len(houses)]
-        storeys = sorted({ask.floor_z_m for ask in asks_of[house]})
-        storey = storeys[i // len(houses) % len(storeys)]
-        asks = [ask for ask in asks_of[house] if ask.floor_z_m == storey]
-        ask = min(asks, key=lambda a: (asked[a.goal], asked_here[house, a.goal], asks_of[house].index(a)))
-        asked[ask.goal] += 1
-        asked_here[house, ask.goal] += 1
-        order.append((house, ask))
-    return order
+    for turn in itertools.count():
+        for house in houses:
+            if len(order) == count:
+                return order
+            if of_house[house] == most.get(house):
+                continue
+            storeys = sorted({ask.floor_z_m for ask in asks_of[house]})
+            asks = [ask for ask in asks_of[house] if ask.floor_z_m == storeys[turn % len(storeys)]]
+
+            def rank(ask: Ask, house: str = house) -> tuple[int, int, int]:
+                here, everywhere = asked_here[house, ask.goal], asked[ask.goal]
+                first, second = (here, everywhere) if house in most else (everywhere, here)
+                return first, second, asks_of[house].index(ask)
+
+            ask = min(asks, key=rank)
+            asked[ask.goal] += 1
+            asked_here[house, ask.goal] += 1
+            of_house[house] += 1
+            order.append((house, ask))
+    raise AssertionError("the loop returns")
 
 
 def draw_episodes(args: Args, order: Sequence[tuple[str, Ask]]) -> list[Episode]:
@@ -236,19 +273,34 @@ def _task(args: Args, house: str) -> Task:
 
 
 def _find_asks(args: Args, house: str) -> HouseAsks:
-    return find_house_asks(_task(args, house), recipe_of(args))
+    return find_house_asks(_task(args, house), recipe_of(args), _sidecar(args, house))
+
+
+def _sidecar(args: Args, house: str) -> Sidecar:
+    """Returns the sidecar next to a house file of the split; empty if there is none."""
+    folder = folder_of(args)
+    return EMPTY_SIDECAR if has_house_list(folder) else house_sidecar(folder / f"{house}.xml", labels_of(folder))
 
 
 def _draw(args: Args, digits: int, work: tuple[int, str, list[Turn]]) -> tuple[list[tuple[int, Episode]], int]:
     """Returns the episodes of one house, each with its number, and how many do not meet the rule of the recipe."""
     number_of_house, house, turns = work
-    drawer = StartDrawer(_task(args, house), recipe_of(args), house=number_of_house, seed=args.seed)
+    task, recipe, fixed = _task(args, house), recipe_of(args), _sidecar(args, house).start
+    drawer = StartDrawer(task, recipe, house=number_of_house, seed=args.seed)
     name, episodes, relaxed = folder_of(args).resolve().name, [], 0
+    of_goal = collections.Counter[str]()
     for i, number, ask in turns:
-        drawn = drawer.draw(ask, number, np.random.default_rng([args.seed, i]))
+        if fixed is None:
+            drawn = drawer.draw(ask, number, np.random.default_rng([args.seed, i]))
+        else:
+            drawn = turned_start(task, ask, fixed, of_goal[ask.goal], recipe)
+        of_goal[ask.goal] += 1
         relaxed += not drawn.meets_rule
         episodes.append((i, Episode(f"{name}_{i:0{digits}d}", house, ask.goal, drawn.pose, drawn.distance_m)))
     drawer.close()
+    if args.pictures and episodes:
+        path = inside(folder_of(args) / "pictures", f"{house}.png", what="name of a house")
+        write_picture(path, draw_episode_map(task, [episode for _, episode in episodes]))
     return episodes, relaxed
 
 

@@ -63,7 +63,11 @@ COMMANDS: Mapping[str, Command] = {
 
 def entry(argv: Sequence[str] | None = None) -> int:
     """Runs the command line of `stubborn`; returns its exit status."""
-    words = list(sys.argv[1:] if argv is None else argv)
+    if argv is None:
+        from sim import cli
+
+        return cli.leave_soon(entry(sys.argv[1:]))
+    words = list(argv)
     name, rest = split(words)
     if name in COMMANDS and not (name in _groups() and rest and not rest[0].startswith("-")):
         return _run(name, rest)

@@ -52,12 +52,12 @@ def main(args: Args) -> int:
     console = display.make_console()
     merged = RunDirectory(out, merged_config(runs))
     try:
-        merged.drop_errors()  # a shard may have run them again
         existing = {line["episode_id"]: line for line in merged.lines}
         for episode_id, line in lines.items():
-            if episode_id not in existing:
+            before = existing.get(episode_id)
+            if before is None or (before["end_reason"] == "error" and before != line):  # run again in a shard
                 merged.append(line)
-            elif without_times(existing[episode_id]) != without_times(line):
+            elif line["end_reason"] != "error" and without_times(before) != without_times(line):
                 raise _conflict(episode_id, out, line)
         for code in merged.config["codes"]:
             merged.record_code(code)  # the folder may hold lines of an earlier merge
@@ -71,6 +71,9 @@ def main(args: Args) -> int:
     missing = max(stored["episodes"] - len(merged.lines), 0)
     message = f"{len(merged.lines)} episodes of {len(runs)} runs, {missing} missing; results in {out}"
     console.print(message, highlight=False, soft_wrap=True)
+    keys = list(dict.fromkeys(str(run.config["seed_key"]) for run in runs if run.config.get("seed_key")))
+    if len(keys) > 1:
+        console.print(f"The runs have different seed keys ({', '.join(keys)}); with --seed-key they share one.")
     if lacking := sorted(set(stored.get("only") or ()) - {line["episode_id"] for line in merged.lines}):
         console.print(f"Missing: {' '.join(lacking)}", highlight=False, soft_wrap=True)
     return 1 if missing or summary["errors"] else 0

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sim.composition.imports import import_attribute
 from sim.errors import AgentError, ConfigError, ObjectNavError
-from sim.evaluation.own_code import place_of
+from sim.evaluation.own_code import place_of, text_of
+from sim.evaluation.watch import is_stop, marked
 from sim.interface import Agent, AgentFactory, AgentSpec, Segmenter
 from stubborn import agents
+from stubborn.agent import AgentConfig
 from stubborn.detection.verification import Verifier
 from stubborn.exploration.explorer import ExplorerConfig
 
@@ -40,6 +42,8 @@ SPECS: Mapping[str, AgentSpec] = MappingProxyType(
     }
 )
 """The agents that `--agent` takes by name."""
+EXPLORERS: Mapping[str, ExplorerConfig] = agents.EXPLORERS
+"""The explorers that `--explorer` takes by name."""
 
 
 def find_agent(name: str) -> AgentSpec:
@@ -91,6 +95,11 @@ def find_explorer(name: str) -> ExplorerConfig:
     return found
 
 
+def takes_explorer(spec: AgentSpec) -> bool:
+    """Returns whether an agent explores with the explorer of `--explorer`."""
+    return isinstance(spec.config, AgentConfig)
+
+
 def build_agent(
     name: str, spec: AgentSpec, env: ObjectNavEnv, *, segmenter: Segmenter, verifier: Verifier, config: Any
 ) -> Agent:
@@ -110,9 +119,10 @@ def build_agent(
     if spec.uses_ground_truth:
         parts["truth"] = env
     try:
-        return spec.build(name, max_steps=env.task_config.max_steps, **parts)
-    except (Exception, SystemExit) as error:
-        if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
+        with marked(f"Agent '{name}', its factory"):
+            return spec.build(name, max_steps=env.task_config.max_steps, **parts)
+    except BaseException as error:
+        if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {error}{place_of(error, below=__file__)}"
+        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error

@@ -7,6 +7,9 @@ from sim.errors import ConfigError
 from sim.evaluation.parallel import Shard
 from sim.viewers import selection
 
+MOST_KEY_LETTERS = 200
+"""Longest `--seed-key`."""
+
 
 def check_options(options: RunOptions) -> None:
     """Raises ConfigError where options contradict each other or are out of range."""
@@ -20,6 +23,8 @@ def check_options(options: RunOptions) -> None:
         raise ConfigError("--only names episodes of a split; with --house, episodes are sampled.")
     if options.retry_errors and options.out is None:
         raise ConfigError("--retry-errors needs --out: the folder of the run.")
+    if options.seed_key is not None and not 1 <= len(options.seed_key) <= MOST_KEY_LETTERS:
+        raise ConfigError(f"--seed-key must have 1 to {MOST_KEY_LETTERS} letters, got {len(options.seed_key)}.")
     selection.check(options)
     if options.shard is not None:
         Shard.parse(options.shard)

@@ -12,7 +12,9 @@ from sim.composition.setup import Setup
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, Split
 from sim.errors import ConfigError
+from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES
+from sim.sensors.noise import get_noise
 from sim.sensors.sensor import Sensor
 
 
@@ -55,13 +57,39 @@ def episodes_of(setup: Setup) -> tuple[list[Episode], dict[str, Any]]:
         if options.house is None:
             episodes = _named_episodes(split, options) if options.only else _first_episodes(split, options)
         else:
-            episodes = [
-                env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{options.house.stem}_{i:04d}")
-                for i in range(options.episodes)
-            ]
+            episodes = _drawn_episodes(env, setup)
     finally:
         env.close()
     return episodes, {"name": split.name, "version": split.version, "sha256": split.sha256}
+
+
+MAX_REPEATS = 60
+"""Draws in a row that give an episode that is there already, until there is no other one."""
+
+
+def _drawn_episodes(env: ObjectNavEnv, setup: Setup) -> list[Episode]:
+    """Returns new episodes in the one house of a run; without noise they are all different.
+
+    Raises:
+        ConfigError: start and goal are fixed, or the start reaches too few goals, so that there are fewer episodes.
+    """
+    options, (house,) = setup.options, env.split.houses
+    repeats = setup.config.noise != get_noise("none") or bool(env.split.sidecar(house).noise)
+    found: dict[tuple[str, Pose] | int, Episode] = {}
+    i = last = 0
+    while len(found) < options.episodes and i - last <= MAX_REPEATS:
+        episode = env.draw_episode(np.random.default_rng([options.seed, i]), episode_id=f"{house}_{len(found):04d}")
+        key = i if repeats else (episode.goal, episode.start)
+        i += 1
+        if key not in found:
+            found[key], last = episode, i
+    if len(found) < options.episodes:
+        raise ConfigError(
+            f"House '{house}' has {len(found)} different episode{'' if len(found) == 1 else 's'} with this start and "
+            f"goal, and {options.episodes} were asked for (--episodes, by default {RunOptions.episodes}); give "
+            f"--episodes {len(found)}, or --noise."
+        )
+    return list(found.values())
 
 
 def _named_episodes(split: Split, options: RunOptions) -> list[Episode]:

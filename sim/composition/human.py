@@ -28,6 +28,8 @@ KEYS: dict[str, Action] = {
     "right": Action.TURN_RIGHT,
     "x": Action.STOP,
 }
+HUMAN_NAME = "human"
+"""The agent's name in the results of a person."""
 HELP = "arrows or wad drive  x STOP  g distance  c camera  m layout  p plan  q quit"
 CAMERAS = ("rgb", "semantic", "depth")
 LAYOUTS = ("both", "camera", "map")

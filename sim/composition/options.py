@@ -47,6 +47,8 @@ class RunOptions:
     """IDs of episodes of the split: these in place of the first N, for example a failure to film."""
     seed: cli.Seed = 0
     """Seed of agents, noise and, with --house, starts and goals."""
+    seed_key: str | None = None
+    """Key with which agents' seeds are drawn from --seed; by default a new one for each run, kept in config.json."""
     workers: cli.Count = 1
     """Number of processes, on this machine or over the cluster."""
     executor: str = "local"
@@ -54,7 +56,10 @@ class RunOptions:
     address: str | None = None
     """With --executor ray: HOST:PORT of the cluster's head; by default the cluster that this machine belongs to."""
     shard: str | None = None
-    """i/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see `stubborn merge`."""
+    """i/n, from 1/n to n/n: every n-th episode from the i-th on, into <out>/shard_i_of_n; see `stubborn merge`."""
+    step_timeout: cli.NotNegative | None = None
+    """Seconds after which a call of the agent ends its episode as an error; by default 600, and agents and other code
+    of your own run in a process apart. 0: no limit, and with one worker all runs in this process, for a debugger."""
     profile: str = "fast"
     """Rendering quality: fast or good."""
     noise: str = "none"
@@ -77,6 +82,8 @@ class RunOptions:
     """Write a Rerun file of each episode to <out>/rerun (extra `rerun`)."""
     retry_errors: bool = False
     """Run the episodes again that ended with an error in an earlier start of this run."""
+    keep_results: bool = False
+    """Resume although the code of your agent has changed: results of the earlier code are kept."""
     list_agents: bool = False
     """Print the agents with a description of each, and exit."""
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from sim.composition.imports import import_attribute
 from sim.errors import AgentError, ConfigError, ObjectNavError
-from sim.evaluation.own_code import place_of
+from sim.evaluation.own_code import place_of, text_of
+from sim.evaluation.watch import is_stop
 from sim.interface import (
     MPCAT40,
     MPCAT40_ID,
@@ -70,10 +71,10 @@ def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegm
         parameters = inspect.signature(own.make).parameters
         takes_all = any(each.kind is inspect.Parameter.VAR_KEYWORD for each in parameters.values())
         segmenter = own.make(**{key: value for key, value in given.items() if takes_all or key in parameters})
-    except (Exception, SystemExit) as error:
-        if isinstance(error, ObjectNavError) and not isinstance(error, AgentError):
+    except BaseException as error:
+        if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {' '.join(str(error).split())}{place_of(error, below=__file__)}"
+        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
         raise ConfigError(f"Segmentation '{name}' cannot be built: {told}") from error
     if not any(callable(getattr(segmenter, method, None)) for method in _METHODS[:2]):
         raise ConfigError(f"Segmentation '{name}': {type(segmenter).__name__} has no method scores or posteriors.")
@@ -97,6 +98,11 @@ class OwnSegmenter:
         self._frame: Observation | None = None
         self._done: dict[str, Any] = {}
         """Results of the frame by method and goal."""
+
+    @property
+    def names(self) -> bool:
+        """True: it names the category of each pixel."""
+        return not self._methods.isdisjoint(_METHODS[1:])
 
     def scores(self, observation: Observation, goal: str) -> Scores:
         """Returns the scores of one frame, float32 (h, w) at any whole fraction of the image's resolution.
@@ -182,8 +188,10 @@ class OwnSegmenter:
     def _ask(self, method: str, call: Callable[[], Any]) -> Any:
         try:
             return call()
-        except (Exception, SystemExit) as error:
-            told = f"{type(error).__name__}: {' '.join(str(error).split()) or 'no message'}"
+        except BaseException as error:
+            if is_stop(error):
+                raise
+            told = f"{type(error).__name__}: {text_of(error)}"
             place = place_of(error, below=__file__)
             raise AgentError(f"Segmentation '{self._name}', {method}: {told}{place}") from error
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.composition.own_segmentation import OwnSegmenter
 from sim.composition.setup import Setup
 from sim.evaluation.rollout import ask
 from sim.interface import (
@@ -32,6 +33,12 @@ class AskedSegmenter:
         self._inner = inner
         self._arrays: tuple[NDArray, ...] = ()
         """The arrays of the frame that the agent asked for last."""
+
+    @property
+    def names(self) -> bool:
+        """True: the segmenter names the category of each pixel."""
+        inner = self._inner
+        return inner.names if isinstance(inner, OwnSegmenter) else isinstance(inner, NamesCategories)
 
     @property
     def spec(self) -> SegmenterSpec:
@@ -65,6 +72,7 @@ class StatedByAgent:
 
     def __init__(self, agent: StatesSegmentation, name: str, agent_name: str) -> None:
         self.name = name
+        self.names = True
         self._agent, self._agent_name = agent, agent_name
 
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:

@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from sim.composition.isolation import own_modules
 from sim.composition.options import RunOptions
 from sim.composition.segmenters import NetworkConfig, file_sha256
 from sim.composition.setup import Setup
@@ -19,7 +20,7 @@ from sim.paths import code_hash
 from sim.robot.foreign import robot_sha256
 from sim.sensors.opengl import describe_gl
 
-NOT_RECORDED = ("list_agents", "retry_errors", "config", "config_file")
+NOT_RECORDED = ("list_agents", "retry_errors", "keep_results", "step_timeout", "config", "config_file")
 """Options that the tree itself records, or that start no run."""
 
 
@@ -48,8 +49,7 @@ def code_of(options: RunOptions) -> str:
     With an agent, explorer or segmentation of the user, whose modules are imported by now, "+" and a hash of these
     follow.
     """
-    names = [name for name in (options.agent, options.explorer, options.semantics) if name is not None]
-    own = hash_of_own(module for module, separator, _ in (name.partition(":") for name in names) if separator)
+    own = hash_of_own(own_modules(options))
     return f"{code_hash()}+{own}" if own else code_hash()
 
 

@@ -17,7 +17,9 @@ from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import ConfigError, ObjectNavError, RenderError, debug
 from sim.evaluation.last_view import write_last_view
-from sim.evaluation.rollout import episode_seed, play_episode, record_episode
+from sim.evaluation.own_code import text_of
+from sim.evaluation.rollout import agent_seed, episode_seed, play_episode, record_episode
+from sim.evaluation.watch import is_stop
 from sim.interface import Agent
 from sim.viewers import selection
 from sim.viewers.viewer import VIEWER_IMAGES, MapPainter, SeesFrames
@@ -63,10 +65,12 @@ class EpisodeRunner:
 
     def __init__(self, setup: Setup) -> None:
         give_large_blocks_pages_of_their_own()
+        setup = self._setup = setup.with_absolute_paths()  # the agent may change the folder of the process
         options = self._options = setup.options
-        self._setup = setup
         parts = build_parts(setup, watched=selection.any_selected(options))
         self._env, self._agent = parts.env, parts.agent
+        setup.require_planned(self._env.split)
+        self._house = ""
         self._viewers = selection.make(options, parts.painter, parts.seen)
         self._about = {
             "profile": options.profile,
@@ -78,14 +82,23 @@ class EpisodeRunner:
     def run(self, episode: Episode) -> dict[str, Any]:
         """Runs one episode and returns its result line."""
         return_freed_memory()
-        seed = episode_seed(self._options.seed, episode.episode_id)
+        options = self._options
         try:
+            self._require_same_house(episode.house)
             metrics = play_episode(
-                self._env, self._agent, episode, seed=seed, viewers=self._viewers, name=self._options.agent
+                self._env,
+                self._agent,
+                episode,
+                seed=episode_seed(options.seed, episode.episode_id),
+                seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+                viewers=self._viewers,
+                name=options.agent,
             )
         except (ConfigError, RenderError, OSError):  # concerns every episode: an option, OpenGL, the disk
             raise
-        except Exception as error:  # one bad house, start or agent does not end a run of many
+        except BaseException as error:  # one bad house, start or agent does not end a run of many
+            if is_stop(error):
+                raise
             return self._broken(episode, error)
         line = identity_of(self._setup, episode) | metrics
         if self._options.record and self._options.out is not None:
@@ -95,16 +108,25 @@ class EpisodeRunner:
             write_last_view(self._env, self._options.out, line["episode_id"])
         return line
 
-    def _broken(self, episode: Episode, error: Exception) -> dict[str, Any]:
+    def _require_same_house(self, house: str) -> None:
+        """Raises HouseError where the file of a house, or one that it uses, is not as it was when the run was planned.
+
+        It is looked at when the house is loaded.
+        """
+        if house != self._house:
+            self._env.split.require_unchanged(house)
+            self._house = house
+
+    def _broken(self, episode: Episode, error: BaseException) -> dict[str, Any]:
         """Returns the line of an episode that raised an error; unfinished recordings are discarded."""
         if debug():
             traceback.print_exc()
         for viewer in self._viewers:
             viewer.close()
-        told = str(error)
+        told = text_of(error)
         if not isinstance(error, ObjectNavError):
             told = f"{type(error).__name__}: {told} (unexpected; --debug shows where)"
-        return error_line(self._setup, episode, " ".join(told.split()))
+        return error_line(self._setup, episode, told)
 
     def close(self) -> None:
         """Frees the renderers; viewers discard an unfinished recording."""

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rich.console import Console
 
 from sim.analysis import display
+from sim.composition.isolation import isolation_of
 from sim.composition.options import RunOptions
 from sim.composition.record import code_of, error_line, record_of
+from sim.composition.seed_key import seed_key_of
 from sim.composition.setup import Setup
 from sim.episodes.splits import Episode, load_split
 from sim.evaluation.executors import make_executor
@@ -37,19 +40,24 @@ def run_missing(
     Raises:
         ConfigError: the folder cannot be written, or holds a run with another configuration.
     """
-    options = setup.options
+    options = replace(setup.options, seed_key=seed_key_of(setup.options))
     assert options.out is not None
-    executor = make_executor(options.executor, workers=options.workers, address=options.address)
+    setup = replace(setup, options=options, planned=split.get("sha256"))
+    executor = make_executor(
+        options.executor, workers=options.workers, address=options.address, isolation=isolation_of(options)
+    )
     record = record_of(setup, split)
     run = RunDirectory(options.out, record)
     try:
         if run.healed:
             console.print(run.healed)
         _require_own_lines(options, run, episodes)
+        again = run.errors([episode.episode_id for episode in episodes]) if options.retry_errors else set()
+        done = {line["episode_id"] for line in run.lines} - again
+        if not options.keep_results:
+            run.require_own_code(code_of(options), done)
         if options.retry_errors:
-            again = run.drop_errors({episode.episode_id for episode in episodes})
-            console.print(f"{again} episodes that ended with an error are run again.")
-        done = {line["episode_id"] for line in run.lines}
+            console.print(f"{len(again)} episodes that ended with an error are run again.")
         todo = [episode for episode in episodes if episode.episode_id not in done]
         named = setup.segmentation_name
         segmentation = f" with segmentation by {named}" if named else ""
@@ -64,9 +72,17 @@ def run_missing(
             console.print("This is the first run here: numba compiles the agent and the sensors, up to a minute.")
         spec = RunnerSpec("sim.composition.runner:EpisodeRunner", setup)
         progress = display.ProgressReport(console, total=len(todo))
-        lines = executor.run(spec, todo, on_death=lambda episode: _lost_line(setup, episode), on_start=progress.started)
-        for line in progress.over(lines) if todo else ():
-            run.append(line)
+
+        def lost(episode: Episode, reason: str) -> dict[str, Any]:
+            return error_line(setup, episode, reason)
+
+        def written() -> Iterator[dict[str, Any]]:
+            for line in executor.run(spec, todo, on_death=lost, on_start=progress.started):
+                run.append(line)  # before anything is printed, which may fail
+                yield line
+
+        for _ in progress.over(written()) if todo else ():
+            pass
         return run.lines, run.write_summary({"split": split})
     finally:
         run.discard_if_empty()
@@ -111,7 +127,3 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console
             highlight=False,
             soft_wrap=True,
         )
-
-
-def _lost_line(setup: Setup, episode: Episode) -> dict[str, Any]:
-    return error_line(setup, episode, f"House '{episode.house}': the worker died twice in this episode.")

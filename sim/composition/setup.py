@@ -10,11 +10,12 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from sim.composition.agents import find_agent, find_explorer
+from sim.composition.agents import find_agent, find_explorer, takes_explorer
 from sim.composition.checks import check_options
 from sim.composition.options import RunOptions, start_pose
 from sim.composition.segmenters import SegmentationKind, detector_config, find_segmentation
 from sim.configuration import parse_assignments, read_settings, with_fields
+from sim.episodes.splits import Split
 from sim.errors import ConfigError
 from sim.geometry.pose import Pose
 from sim.interface import TRUE_IMAGES, AgentSpec, CameraModel
@@ -25,7 +26,6 @@ from sim.sensors.noise import NoiseConfig, get_noise
 from sim.sensors.profiles import RenderProfile, get_profile
 from sim.sensors.sensor import Sensor
 from sim.task.config import TaskConfig
-from stubborn.agent import AgentConfig
 from stubborn.detection.verification import (
     ACCEPT_ALL,
     DEFAULT_KIND,
@@ -89,10 +89,26 @@ class Setup:
     verifier: Verifier
     start: Pose | None
     """With `--house`, the start of every episode; None: starts are sampled."""
+    planned: str | None = None
+    """Checksum of the split or house from which the episodes were planned; None: nothing is compared with it."""
 
     def __reduce__(self) -> tuple[Callable[..., Setup], tuple[Any, ...]]:
         """Pickles the setup as its options."""
-        return resolve, (self.options,)
+        return _resolve_planned, (self.options, self.planned)
+
+    def with_absolute_paths(self) -> Setup:
+        """Returns this setup with paths that have the same meaning after a change of the current folder."""
+        options = self.options
+        named = {name: getattr(options, name) for name in ("out", "house", "labels", "root")}
+        paths = {name: path.absolute() for name, path in named.items() if path is not None}
+        return replace(self, options=replace(options, **paths))
+
+    def require_planned(self, split: Split) -> None:
+        """Raises ConfigError where a split is not the one from which the episodes were planned."""
+        if self.planned not in (None, split.sha256):
+            raise ConfigError(
+                f"The houses or episodes of '{split.name}' have changed since this run was planned; start it again."
+            )
 
     @property
     def sensors(self) -> tuple[str | Sensor, ...]:
@@ -165,6 +181,10 @@ def resolve(options: RunOptions, spec: AgentSpec | None = None) -> Setup:
     )
 
 
+def _resolve_planned(options: RunOptions, planned: str | None) -> Setup:
+    return replace(resolve(options), planned=planned)
+
+
 def _presets(options: RunOptions, spec: AgentSpec, segmentation: SegmentationKind) -> RunConfig:
     """Returns the configuration tree before the user's settings."""
     robot, camera = (RobotConfig(), CameraModel()) if options.robot is None else load_robot(options.robot)
@@ -186,7 +206,7 @@ def _agent_config(options: RunOptions, spec: AgentSpec) -> Any:
     if options.explorer is None:
         return spec.config
     explorer = find_explorer(options.explorer)
-    if not isinstance(spec.config, AgentConfig):
+    if not takes_explorer(spec):
         raise ConfigError(f"--explorer: agent '{options.agent}' takes no explorer.")
     return replace(spec.config, explorer=explorer)
 

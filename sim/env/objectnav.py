@@ -14,9 +14,10 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from sim.configuration import as_settings
+from sim.env.chosen_split import chosen_split
 from sim.env.scene import Scene, SceneCache
 from sim.episodes.drawing import sample_episode
-from sim.episodes.splits import Episode, Split, load_split, one_house, require_start
+from sim.episodes.splits import Episode, Split, require_start
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import GOAL_CATEGORIES, SENSORS, Action, CameraModel, ConfigError, RobotModel, SuccessRule
@@ -59,6 +60,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
     Args:
         split: name of a shipped split, or a folder with the same layout.
         house: one MJCF file instead of a split; episodes are then sampled in it.
+        houses: only the episodes of these houses of the split, by name; or several MJCF files instead of a split.
         labels: label rules for a house with other names.
         root: another folder whose files the house may use, in addition to its own folder.
         goal: only episodes with this goal category.
@@ -76,6 +78,8 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         max_steps: replaces `task.max_steps`.
         camera: intrinsics and mount height.
         robot: body and drive.
+        cached_houses: number of houses that stay loaded, those that were used last. A house that is not loaded takes
+            most of a second and a loaded one about 70 MB (docs/performance.md).
 
     Raises:
         ConfigError: an unknown split, goal, sensor, profile, noise, or field of a configuration.
@@ -90,6 +94,7 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         *,
         split: str | Path = "val",
         house: str | Path | None = None,
+        houses: Sequence[str | Path] = (),
         labels: str | Path | None = None,
         root: str | Path | None = None,
         goal: str | None = None,
@@ -104,13 +109,14 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         max_steps: int | None = None,
         camera: CameraModel | Mapping[str, Any] | None = None,
         robot: RobotConfig | Mapping[str, Any] | None = None,
+        cached_houses: int = 1,
     ) -> None:
         _check_options(goal, render_mode)
-        if house is None and any(each is not None for each in (labels, root, start)):
-            raise ConfigError("labels, root and start need house: the houses of a split have their own.")
         if start is not None:
             require_start(start)
-        self.split: Split = load_split(split) if house is None else one_house(house, labels=labels, root=root)
+        self.split: Split = chosen_split(split, house, houses, labels=labels, root=root)
+        if start is not None and (self.split.episodes or len(self.split.houses) != 1):
+            raise ConfigError("start needs house: the episodes of a split have their own.")
         self.goal, self.start = goal, start
         self.sensors = resolve_sensors(sensors)
         self.truth_images: dict[str, NDArray] = {}
@@ -126,9 +132,9 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         self.observation_space = spaces.Dict({each.name: each.space(self.camera_model) for each in self.sensors})
         self.action_space = spaces.Discrete(len(Action))
         self._episodes = [episode for episode in self.split.episodes if goal in (None, episode.goal)]
-        if house is None and not self._episodes:
+        if self.split.episodes and not self._episodes:
             raise ConfigError(f"Split '{self.split.name}' has no episode with goal '{goal}'.")
-        self._scenes = SceneCache(self._make_scene)
+        self._scenes = SceneCache(self._make_scene, size=cached_houses)
         self._scene: Scene | None = None
         self._episode: Episode | None = None
         self._motion: Motion | None = None
@@ -198,14 +204,15 @@ class ObjectNavEnv(gymnasium.Env[Any, Any]):  # the observation is a dict of arr
         return observation, reward, scene.task.terminated, scene.task.truncated, self._info(motion.collided)
 
     def draw_episode(self, rng: np.random.Generator, *, episode_id: str = "drawn") -> Episode:
-        """Returns a new episode in the one house of this environment.
+        """Returns a new episode in a house of this environment, which has no episodes of a split.
 
         Goal and start are those of the environment, otherwise those of the house's sidecar, otherwise random.
 
         Raises:
             EpisodeError: the goal is not in the house or cannot be reached, or the robot does not fit at the start.
         """
-        (house,) = self.split.houses
+        houses = self.split.houses
+        house = houses[0] if len(houses) == 1 else houses[rng.integers(len(houses))]
         fixed = self.split.sidecar(house)
         goal, start = self.goal or fixed.goal, self.start or fixed.start
         return sample_episode(self._scenes.get(house).task, house, rng, goal=goal, start=start, episode_id=episode_id)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from sim.env.memory import return_freed_memory
 from sim.houses.house import House
-from sim.interface import CameraModel
+from sim.interface import CameraModel, ConfigError
 from sim.robot.config import RobotConfig
 from sim.sensors.camera import Camera
 from sim.sensors.gloss import geom_gloss
@@ -44,9 +44,18 @@ class SceneCache:
     """A cache of the scenes used last: to compile a house and compute its free space takes most of a second.
 
     It holds one scene by default, because a run goes house by house and a scene takes 40 to 80 MB.
+
+    Args:
+        make: makes the scene of a house.
+        size: number of scenes that are kept.
+
+    Raises:
+        ConfigError: the size is less than 1.
     """
 
     def __init__(self, make: Callable[[str], Scene], *, size: int = 1) -> None:
+        if not isinstance(size, int) or size < 1:
+            raise ConfigError(f"cached_houses must be a whole number from 1 on, got {size!r}.")
         self._make = make
         self._size = size
         self._scenes: OrderedDict[str, Scene] = OrderedDict()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,8 @@ from sim.episodes.recipes import EpisodeRecipe
 from sim.episodes.start_rules import Lookout, quadrant_headings, start_cells
 from sim.errors import EpisodeError
 from sim.geometry.pose import Pose
+from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar
+from sim.interface import wrap_angle
 from sim.task.objectnav import Task
 
 MAX_REDRAWS = 20
@@ -43,7 +45,9 @@ class HouseAsks:
     unreachable: tuple[str, ...]
     """Names of goal instances that cannot be reached from the largest free space of their storey."""
     asks: tuple[Ask, ...]
-    """Goals with enough starts by the rule of the recipe."""
+    """Goals with enough starts by the rule of the recipe, or those that the sidecar and its start allow."""
+    most: int | None = None
+    """Number of different episodes that it can have; None: any number."""
 
 
 class DrawnStart(NamedTuple):
@@ -54,10 +58,18 @@ class DrawnStart(NamedTuple):
     meets_rule: bool
 
 
-def find_house_asks(task: Task, recipe: EpisodeRecipe) -> HouseAsks:
+def find_house_asks(task: Task, recipe: EpisodeRecipe, fixed: Sidecar = EMPTY_SIDECAR) -> HouseAsks:
     """Returns the goals of all storeys of a house, and those that an episode can ask for by a recipe.
 
     Where no goal of a house with the rule `hazard` has enough starts, all goals can be asked for.
+
+    Args:
+        task: of the house.
+        recipe: of the split.
+        fixed: its goal is the only one; its start replaces the rule of the recipe.
+
+    Raises:
+        EpisodeError: the goal or the start of the sidecar is not possible.
     """
     listed: dict[str, list[habitat.Json]] = {}
     unreachable: list[str] = []
@@ -68,12 +80,45 @@ def find_house_asks(task: Task, recipe: EpisodeRecipe) -> HouseAsks:
         for goal, instances in found.listed.items():
             listed.setdefault(goal, []).extend(instances)
             reachable.append(Ask(goal, floor_z_m, len(instances)))
+    if fixed.goal is not None:
+        reachable = [ask for ask in reachable if ask.goal == fixed.goal]
+        listed = {goal: instances for goal, instances in listed.items() if goal == fixed.goal}
+        _require(reachable, task, f"asks for '{fixed.goal}', of which no instance can be reached")
+    if fixed.start is not None:
+        task.world.reset(fixed.start)
+        asks = [ask for ask in reachable if _leads_to(task, ask, fixed.start)]
+        _require(asks, task, "has a start from which no goal can be reached")
+        return HouseAsks(listed, tuple(unreachable), tuple(asks), most=len(asks) * len(recipe.turns_rad))
     asks = reachable
     if recipe.rule != "any":
         asks = [ask for ask in reachable if start_cells(task, *ask[:2], recipe, ask.instances) is not None]
     if recipe.rule == "hazard" and not asks:
         asks = reachable
     return HouseAsks(listed, tuple(unreachable), tuple(asks))
+
+
+def _leads_to(task: Task, ask: Ask, start: Pose) -> bool:
+    """Returns whether there is a path from a start to a goal of its storey."""
+    same_storey = abs(ask.floor_z_m - start.floor_z_m) < task.config.success.same_storey_m
+    return same_storey and task.distance_from(ask.goal, start) is not None
+
+
+def _require(asks: Sequence[Ask], task: Task, fault: str) -> None:
+    """Raises EpisodeError where the sidecar of a house leaves no goal."""
+    if not asks:
+        raise EpisodeError(f"House '{task.world.house.name}': its sidecar {fault}.")
+
+
+def turned_start(task: Task, ask: Ask, start: Pose, number: int, recipe: EpisodeRecipe) -> DrawnStart:
+    """Returns the start that a sidecar fixes, turned for the episode with this number of those with its goal.
+
+    Raises:
+        EpisodeError: the robot does not fit there.
+    """
+    yaw_rad = round(wrap_angle(start.yaw_rad + recipe.turns_rad[number % len(recipe.turns_rad)]), 4)
+    pose = replace(start, yaw_rad=yaw_rad)
+    task.world.reset(pose)
+    return DrawnStart(pose, task.distance_from(ask.goal, pose), meets_rule=True)
 
 
 class StartDrawer:

@@ -6,6 +6,7 @@
 | large | 30 | `hidden` | 12 to 60, 6 to 60 for the only reachable instance of its category |
 | hazards | 30 | `hazard` | 2 to 30 |
 | train | 10 | `any` | 2 to 30 |
+| traps | 3 | `any` | the start of the sidecar with three headings |
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+START_TURNS_RAD = (0.0, 1.8, -2.3)
+"""Headings of the episodes of a trap relative to its sidecar's: towards the goal, to the left, back to the right."""
 Rule = Literal["any", "hidden", "hazard"]
 """The starts that a split allows, in addition to the limits of the distance:
 
@@ -40,6 +43,8 @@ class EpisodeRecipe:
     """Largest geodesic distance; 30 m are 120 forwards, so 500 steps suffice with the turns."""
     view_points: int = 8
     """Largest number of view points of a goal instance in the files."""
+    turns_rad: tuple[float, ...] = (0.0,)
+    """Turns of a start that the sidecar of a house fixes; each is an episode of its own."""
 
     def min_distance_for(self, instances: int) -> float:
         """Returns the least distance to a goal with this number of reachable instances."""
@@ -58,6 +63,7 @@ EPISODE_RECIPES: Mapping[str, EpisodeRecipe] = MappingProxyType(
         ),
         "hazards": EpisodeRecipe(per_house=30, rule="hazard"),
         "train": EpisodeRecipe(per_house=10, view_points=2),
+        "traps": EpisodeRecipe(per_house=3, turns_rad=START_TURNS_RAD),
     }
 )
 """Recipes by name of the split."""

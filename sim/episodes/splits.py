@@ -14,9 +14,10 @@ from __future__ import annotations
 import difflib
 import hashlib
 import json
+import os
 import reprlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -27,14 +28,17 @@ from sim.geometry.pose import Pose
 from sim.housegen.splits.house_list import HouseList, has_house_list, read_house_list
 from sim.houses.house import House
 from sim.houses.load import load_house
+from sim.houses.references import files_of
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, sidecar_path
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.invocation import command
 from sim.paths import assets_dir
-from sim.reading import Name, first_unprintable, printable, read_json
+from sim.reading import Name, first_unprintable, open_plain, printable, read_bytes, read_json
 
 UNREACHABLE_FILE = "unreachable.json"
 LABELS_FILE = "labels.json"
+_MOST_BYTES = 256 << 20
+"""Largest house file."""
 FARTHEST_M = 10_000.0
 """Largest coordinate of a start."""
 
@@ -80,6 +84,8 @@ class Split:
     """Another folder whose files the houses may use, in addition to the split's folder."""
     house_list: HouseList | None = None
     """Generates the houses of a split that is shipped as a list."""
+    house_sums: Mapping[str, str] = field(default_factory=dict)
+    """Checksum of each house with its sidecar and the files that it uses; listed houses have theirs in the list."""
 
     @property
     def houses(self) -> tuple[str, ...]:
@@ -105,15 +111,18 @@ class Split:
         """
         return load_house(self.house_file(name), labels_path=self.labels_path, root=self.root)
 
+    def require_unchanged(self, name: str) -> None:
+        """Raises HouseError where a house, its sidecar or a file that it uses has changed since this split was read."""
+        if name in self.house_sums and house_sum(self.house_file(name)) != self.house_sums[name]:
+            raise HouseError(f"House '{name}': its files have changed since this run was planned; start the run again.")
+
     def sidecar(self, house: str) -> Sidecar:
         """Returns the settings that a house's sidecar fixes; empty if there is no sidecar, or if it holds label rules.
 
         Raises:
             HouseError: the file violates the format of `sim.houses.sidecar`.
         """
-        path = self.house_paths[house]
-        is_rules = self.labels_path is not None and self.labels_path.resolve() == sidecar_path(path).resolve()
-        return EMPTY_SIDECAR if is_rules else read_sidecar(path)
+        return house_sidecar(self.house_paths[house], self.labels_path)
 
     def episode(self, episode_id: str) -> Episode:
         """Returns the episode with an id.
@@ -127,6 +136,16 @@ class Split:
         near = difflib.get_close_matches(str(episode_id), [episode.episode_id for episode in self.episodes], n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise EpisodeError(f"Split '{self.name}' has no episode '{episode_id}'.{hint}")
+
+
+def house_sidecar(house_file: Path, labels_path: Path | None) -> Sidecar:
+    """Returns the sidecar of a house file; empty if there is none, or if the file holds the label rules.
+
+    Raises:
+        HouseError: the file violates the format of `sim.houses.sidecar`.
+    """
+    is_rules = labels_path is not None and labels_path.resolve() == sidecar_path(house_file).resolve()
+    return EMPTY_SIDECAR if is_rules else read_sidecar(house_file)
 
 
 def shipped_splits() -> tuple[str, ...]:
@@ -155,25 +174,68 @@ def load_split(name_or_path: str | Path) -> Split:
 
 
 def one_house(path: str | Path, *, labels: str | Path | None = None, root: str | Path | None = None) -> Split:
-    """Returns a split of one house file, without episodes.
+    """Returns a split of one house file, without episodes; see `split_of_files`."""
+    return split_of_files((path,), labels=labels, root=root)
+
+
+def split_of_files(
+    paths: Sequence[str | Path], *, labels: str | Path | None = None, root: str | Path | None = None
+) -> Split:
+    """Returns a split of some house files, without episodes.
 
     Args:
-        path: the file.
-        labels: its label rules.
-        root: another folder whose files it may use, in addition to its own folder.
+        paths: the files; each name is that of one house.
+        labels: label rules of all houses.
+        root: another folder whose files they may use, in addition to their own folders.
 
     Raises:
+        ConfigError: two files have one name.
         HouseError: there is no such file.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise HouseError(f"House '{path}': there is no such file.")
     labels_path = None if labels is None else Path(labels)
-    digest = hashlib.sha256(path.read_bytes() + _sidecar_bytes(path))
+    files, sums = dict[str, Path](), dict[str, str]()
+    for path in map(Path, paths):
+        if not path.is_file():
+            raise HouseError(f"House '{path}': there is no such file.")
+        if path.stem in files:
+            raise ConfigError(f"The houses '{files[path.stem]}' and '{path}' have one name; rename one of them.")
+        files[path.stem], sums[path.stem] = path, house_sum(path)
+    rules = b""
     if labels_path is not None and labels_path.is_file():
-        digest.update(labels_path.read_bytes())
+        rules = read_bytes(labels_path, what="Label rules", error=HouseError)
     allowed = None if root is None else Path(root)
-    return Split(path.stem, "one-house", digest.hexdigest(), {path.stem: path}, (), labels_path, allowed)
+    if len(files) > 1:
+        digest = hashlib.sha256("".join(sums.values()).encode() + rules).hexdigest()
+        return Split("houses", "houses", digest, files, (), labels_path, allowed, house_sums=sums)
+    ((name, path),) = files.items()
+    digest = house_sum(path, with_also=rules) if rules else sums[name]
+    return Split(name, "one-house", digest, files, (), labels_path, allowed, house_sums=sums)
+
+
+def house_sum(path: Path, *, with_also: bytes = b"") -> str:
+    """Returns the checksum of a house file with its sidecar and the files that it uses (SHA-256, hexadecimal).
+
+    Args:
+        path: the house file.
+        with_also: further content that counts.
+
+    Raises:
+        HouseError: a file cannot be read.
+    """
+    digest = hashlib.sha256(read_bytes(path, what="House", error=HouseError, most=_MOST_BYTES) + _sidecar_bytes(path))
+    digest.update(with_also)
+    for file in files_of(path):  # none for a file that stands alone, whose checksum is that of version 0.1
+        name = os.path.relpath(file, path.resolve().parent)
+        digest.update(name.encode(errors="replace") + _sum_of_file(file))
+    return digest.hexdigest()
+
+
+def _sum_of_file(file: Path) -> bytes:
+    digest = hashlib.sha256()
+    with open_plain(file, what="File of a house", error=HouseError) as stream:
+        while block := stream.read(1 << 20):
+            digest.update(block)
+    return digest.digest()
 
 
 def write_split(
@@ -271,11 +333,13 @@ def _read_split(folder: Path) -> Split:
             f"Split '{folder}' has episodes of version {version} but a list of houses of version {house_list.version}: "
             f"generate both again (`{command('houses', 'generate')}`, `{command('episodes')}`)."
         )
-    sums = dict(house_list.sha256 if house_list else _file_sums(houses))
+    house_sums = {} if house_list else {name: house_sum(path) for name, path in houses.items()}
+    sums = dict(house_list.sha256 if house_list else house_sums)
     labels = labels_of(folder)
     if labels is not None:
         sums[LABELS_FILE] = hashlib.sha256(labels.read_bytes()).hexdigest()
-    return Split(folder.name, version, _sha256(sums, ordered), houses, ordered, labels, house_list=house_list)
+    digest = _sha256(sums, ordered)
+    return Split(folder.name, version, digest, houses, ordered, labels, house_list=house_list, house_sums=house_sums)
 
 
 def _episodes_of(file: Path) -> list[Episode]:
@@ -296,14 +360,9 @@ def _sha256(sums: Mapping[str, str], episodes: Sequence[Episode]) -> str:
     return digest.hexdigest()
 
 
-def _file_sums(houses: Mapping[str, Path]) -> dict[str, str]:
-    """Returns the checksum of each house file with its sidecar."""
-    return {name: hashlib.sha256(path.read_bytes() + _sidecar_bytes(path)).hexdigest() for name, path in houses.items()}
-
-
 def _sidecar_bytes(house_file: Path) -> bytes:
     file = sidecar_path(house_file)
-    return file.read_bytes() if file.is_file() else b""
+    return read_bytes(file, what="Sidecar", error=HouseError) if file.is_file() else b""
 
 
 def _to_habitat(split: str, episode: Episode) -> dict[str, Any]:

@@ -7,19 +7,29 @@ An `Executor` takes items and yields result lines; a worker that dies is handled
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import importlib
+import io
 import multiprocessing as mp
 import os
+import signal
+import sys
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any, Protocol
 
 from sim.errors import ConfigError
+from sim.evaluation.watch import TICK_S, Calls, watched_as
 from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_here, run_in_pool
 
 EXECUTORS = ("local", "ray")
 """Names of `--executor`."""
+LAST_WORDS_S = 5.0
+"""Time that a process has to end, with its threads and exit handlers; then it is killed."""
+_PR_SET_PDEATHSIG = 1  # sys/prctl.h
 
 
 class Executor(Protocol):
@@ -30,7 +40,7 @@ class Executor(Protocol):
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT], Any],
+        on_death: Callable[[ItemT, str], Any],
         on_start: Callable[[ItemT], None] | None = None,
     ) -> Iterator[Any]:
         """Yields a result line for each item, in the order in which the items end.
@@ -38,7 +48,7 @@ class Executor(Protocol):
         Args:
             spec: how each worker builds its runner.
             items: the work.
-            on_death: returns the line of an item whose worker died twice.
+            on_death: returns the line of an item that its workers did not survive, from the item and the reason.
             on_start: called in this process when an item begins.
 
         Raises:
@@ -48,13 +58,16 @@ class Executor(Protocol):
         ...
 
 
-def make_executor(name: str, *, workers: int, address: str | None = None) -> Executor:
+def make_executor(
+    name: str, *, workers: int, address: str | None = None, isolation: Isolation | None = None
+) -> Executor:
     """Returns the executor with this name, one of `EXECUTORS`.
 
     Args:
         name: `local` or `ray`.
         workers: number of processes, on this machine or over the cluster.
         address: of the Ray cluster; None: the cluster that this machine belongs to.
+        isolation: which code needs a process of its own; None: none does.
 
     Raises:
         ConfigError: an unknown name, options that contradict each other, no `ray` installed, or no cluster there.
@@ -63,13 +76,24 @@ def make_executor(name: str, *, workers: int, address: str | None = None) -> Exe
         raise ConfigError(f"Unknown --executor '{name}'. There is: {', '.join(EXECUTORS)}.")
     if workers < 1:
         raise ConfigError(f"--workers must be at least 1, got {workers}.")
+    isolation = isolation or Isolation()
     if name == "local":
         if address is not None:
             raise ConfigError(f"--address '{address}' needs --executor ray.")
-        return Processes(workers)
+        return Processes(workers, isolation)
     from sim.evaluation.executors_ray import RayCluster  # an extra
 
-    return RayCluster.connect(address, workers=workers)
+    return RayCluster.connect(address, workers=workers, isolation=isolation)
+
+
+@dataclass(frozen=True)
+class Isolation:
+    """Whether items need a process other than this one, and how long a call of the agent may take there."""
+
+    needed: bool = False
+    """True: also a single worker is a process of its own, which can crash or hang without harm to this one."""
+    limit_s: float = 0.0
+    """Longest time of a call of the agent (`sim.evaluation.watch`); 0: no limit."""
 
 
 @dataclass(frozen=True)
@@ -77,49 +101,106 @@ class Processes:
     """Processes of this machine; they are spawned, because OpenGL does not survive a fork. 1: this process."""
 
     workers: int = 1
+    isolation: Isolation = Isolation()
 
     def run(
         self,
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT], Any],
+        on_death: Callable[[ItemT, str], Any],
         on_start: Callable[[ItemT], None] | None = None,
     ) -> Iterator[Any]:
         """See `Executor`."""
-        if self.workers == 1 or len(items) <= 1:
+        if self.workers == 1 and not self.isolation.needed:
             yield from run_here(spec, items, on_start=on_start)
         else:
-            pool = ProcessPool(spec, threads=max(1, _processors() // self.workers))
+            threads = max(1, _processors() // self.workers)
+            pool = ProcessPool(spec, threads=threads, limit_s=self.isolation.limit_s)
             yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
 
 
 class _Process:
-    """A spawned process at the other end of a pipe; see `sim.evaluation.workers.Worker`."""
+    """A spawned process at the other end of a pipe; see `sim.evaluation.workers.Worker`.
 
-    def __init__(self, spec: RunnerSpec, *, threads: int) -> None:
+    Args:
+        threads: see `ProcessPool`.
+        preload: a module that it imports at once.
+    """
+
+    def __init__(self, *, threads: int, preload: str) -> None:
         context = mp.get_context("spawn")
         self.connection, child_connection = context.Pipe()
-        self.process = context.Process(target=_worker_main, args=(spec, child_connection), daemon=True)
+        self.calls = Calls(context, limit_s=0.0)
+        from_main_thread = threading.current_thread() is threading.main_thread()
+        args = (child_connection, self.calls, preload, from_main_thread)
+        self.process = context.Process(target=_worker_main, args=args, daemon=True)
         with _environment(OMP_NUM_THREADS=str(threads)):  # libraries read it when they are imported
             self.process.start()
         self.busy = True
+        self.loss = ""
+        """Why this process was killed; "": it was not."""
         child_connection.close()
+
+    def begin(self, spec: RunnerSpec, *, limit_s: float) -> None:
+        """Sends it the recipe of its runner; it then reports that it is ready."""
+        self.calls.limit_s = limit_s
+        self.calls.rest()
+        self.connection.send(spec)
 
     def send(self, item: Any) -> None:
         self.busy = True
+        self.calls.rest()
         with contextlib.suppress(OSError):  # it died while idle: `receive` finds the pipe closed
             self.connection.send(item)
 
     def receive(self) -> Any:
         try:
             message = self.connection.recv()
-        except (EOFError, OSError):
-            self.process.join()
-            self.connection.close()
-            raise WorkerLost(f"its process ended with status {self.process.exitcode}") from None
+        except Exception:  # the pipe was closed, or code of a user wrote to it
+            where, killed = self.calls.where, self.loss
+            self.end(within_s=LAST_WORDS_S)
+            at = f"{where}: its process" if where else "The process of the worker"
+            loss = killed or f"{at} ended with status {self.process.exitcode}"
+            raise WorkerLost(loss, final=bool(killed)) from None
         self.busy = False
         return message
+
+    def is_overdue(self) -> bool:
+        """Kills the process if it has been silent for too long; returns whether it was."""
+        self.loss = self.loss or (self.calls.overdue() if self.busy else "")
+        if self.loss:
+            self.process.kill()
+        return bool(self.loss)
+
+    def end(self, *, within_s: float) -> None:
+        """Waits for the end of the process, and kills it if its threads and exit handlers do not return."""
+        self.process.join(within_s)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+        self.connection.close()
+
+
+_spare: _Process | None = None
+"""A process that was started before its work is known."""
+
+
+@contextlib.contextmanager
+def started_early(preload: str | None) -> Iterator[None]:
+    """Starts one process, which a `ProcessPool` inside the `with` block uses; it imports modules in the meantime.
+
+    Args:
+        preload: the module that it imports; None: no process is started.
+    """
+    global _spare
+    _spare = None if preload is None else _Process(threads=_processors(), preload=preload)
+    try:
+        yield
+    finally:
+        unused, _spare = _spare, None
+        if unused is not None:
+            unused.end(within_s=0.0)
 
 
 class ProcessPool:
@@ -129,28 +210,72 @@ class ProcessPool:
         spec: how each process builds its runner.
         threads: number of threads of NumPy and PyTorch in each process, unless `OMP_NUM_THREADS` is set. Without a
             limit each process would use all processors, and the processes would wait for each other.
+        limit_s: longest time of a call of the agent; 0: no limit.
     """
 
-    def __init__(self, spec: RunnerSpec, *, threads: int = 1) -> None:
+    def __init__(self, spec: RunnerSpec, *, threads: int = 1, limit_s: float = 0.0) -> None:
         self._spec = spec
         self._threads = threads
+        self._limit_s = limit_s
 
     def start(self) -> _Process:
-        """Spawns one process."""
-        return _Process(self._spec, threads=self._threads)
+        """Spawns one process, or takes the one that was started early."""
+        global _spare
+        early, _spare = _spare if self._threads == _processors() else None, None
+        started = early or _Process(threads=self._threads, preload=self._spec.entry.partition(":")[0])
+        with contextlib.suppress(OSError):  # it died: `receive` finds the pipe closed
+            started.begin(self._spec, limit_s=self._limit_s)
+        return started
 
     def wait(self, workers: Sequence[_Process]) -> list[_Process]:
-        """Returns the workers with a message in their pipe, or whose pipe is closed."""
-        ready = wait([worker.connection for worker in workers])
-        return [worker for worker in workers if worker.connection in ready]
+        """Returns the workers with a message in their pipe, whose pipe is closed, or that were killed as too slow."""
+        while True:
+            ready = wait([worker.connection for worker in workers], TICK_S if self._limit_s else None)
+            if found := [worker for worker in workers if worker.connection in ready or worker.is_overdue()]:
+                return found
 
     def stop(self, workers: Sequence[_Process]) -> None:
-        """Terminates busy workers and lets idle ones exit, since they may hold a renderer."""
+        """Terminates busy workers and lets idle ones exit, since they may hold a renderer; kills those that do not."""
         for worker in workers:
             worker.process.terminate() if worker.busy else worker.send(None)
+        until_s = time.monotonic() + LAST_WORDS_S
         for worker in workers:
-            worker.process.join()
-            worker.connection.close()
+            worker.end(within_s=max(0.0, until_s - time.monotonic()))
+
+
+class Supervisor:
+    """Runs items in one process of its own, for the actor of a cluster; see `sim.evaluation.workers.ItemRunner`.
+
+    Args:
+        spec: how the process builds its runner.
+        limit_s: longest time of a call of the agent; 0: no limit.
+    """
+
+    def __init__(self, spec: RunnerSpec, *, limit_s: float) -> None:
+        self._pool = ProcessPool(spec, limit_s=limit_s)
+        self._process: _Process | None = None
+
+    def run(self, item: Any) -> Any:
+        """Returns the item's line, the exception that it raised, or a `WorkerLost` where the process ended."""
+        try:
+            if self._process is None:
+                self._process = self._pool.start()
+                self._answer(self._process)
+            self._process.send(item)
+            return self._answer(self._process)
+        except WorkerLost as loss:
+            self._process = None
+            return loss
+
+    def close(self) -> None:
+        """Ends the process."""
+        if self._process is not None:
+            self._pool.stop([self._process])
+            self._process = None
+
+    def _answer(self, process: _Process) -> Any:
+        self._pool.wait([process])
+        return process.receive()
 
 
 def _processors() -> int:
@@ -170,23 +295,44 @@ def _environment(**defaults: str) -> Iterator[None]:
             del os.environ[name]
 
 
-def _end_with_parent() -> None:
-    """Ends this worker as soon as the process that started it is gone, also in the middle of an episode."""
+def _end_with_parent(*, by_kernel: bool) -> None:
+    """Ends this worker as soon as the process that started it is gone, also in the middle of an episode.
+
+    A thread sees to it. A worker that has stopped runs no thread, so that Linux ends it.
+
+    Args:
+        by_kernel: whether Linux may; it would also end the worker with the thread that started it.
+    """
+    if by_kernel:
+        with contextlib.suppress(OSError, AttributeError):  # not Linux
+            ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
     parent = mp.parent_process()
-    if parent is not None:
-        wait([parent.sentinel])
-        os._exit(1)
+
+    def watch() -> None:
+        if parent is not None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True, name="parent").start()
 
 
-def _worker_main(spec: RunnerSpec, connection: Connection) -> None:
+def _worker_main(connection: Connection, calls: Calls, preload: str, from_main_thread: bool) -> None:
     """Reports that the worker is ready and runs items until None arrives or the parent process is gone."""
-    runner = ItemRunner(spec)
-    threading.Thread(target=_end_with_parent, daemon=True, name="parent").start()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the one that started them ends them
+    _end_with_parent(by_kernel=from_main_thread)
+    watched_as(calls)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(line_buffering=True)  # what an agent prints is not lost if it is killed
+    with contextlib.suppress(Exception):  # `ItemRunner` reports it
+        importlib.import_module(preload)
+    runner: ItemRunner | None = None
     try:
+        runner = ItemRunner(connection.recv())
         connection.send(None)
         while (item := connection.recv()) is not None:
             connection.send(runner.run(item))
-    except (EOFError, OSError, KeyboardInterrupt):
+    except (EOFError, OSError):
         return
     finally:
-        runner.close()
+        if runner is not None:
+            runner.close()

@@ -16,7 +16,9 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from typing import Any
 
+from sim import invocation
 from sim.errors import ConfigError, WorkersError
+from sim.evaluation.executors import Isolation, Supervisor
 from sim.evaluation.workers import ItemRunner, ItemT, RunnerSpec, WorkerLost, run_in_pool
 from sim.paths import code_hash
 
@@ -36,14 +38,16 @@ class RayCluster:
     """Workers with one processor each, on any machine of a cluster that has one free."""
 
     workers: int
+    isolation: Isolation
 
     @classmethod
-    def connect(cls, address: str | None = None, *, workers: int) -> RayCluster:
+    def connect(cls, address: str | None = None, *, workers: int, isolation: Isolation | None = None) -> RayCluster:
         """Joins a cluster, once per process.
 
         Args:
             address: `HOST:PORT` of its head; None: the cluster that this machine belongs to.
             workers: largest number of workers; those without a free processor do not start.
+            isolation: whether code of a user needs a process of its own on each machine; None: it does not.
 
         Raises:
             ConfigError: there is no cluster.
@@ -54,49 +58,50 @@ class RayCluster:
                 ray.init(address=address or "auto", log_to_driver=False, logging_level=logging.ERROR)
             except (OSError, RuntimeError, ValueError) as error:  # ConnectionError, or an error of gRPC
                 reason = str(error).strip().split("\n")[0]
+                start = f"{invocation.beside_python('ray')} start"
                 raise ConfigError(
                     f"No Ray cluster answers at --address {address or 'auto'} ({reason}). Start one with "
-                    "`ray start --head` and join it from other machines with `ray start --address HOST:6379`."
+                    f"`{start} --head` and join it from other machines with `{start} --address HOST:6379`."
                 ) from None
-        return cls(workers)
+        return cls(workers, isolation or Isolation())
 
     def run(
         self,
         spec: RunnerSpec,
         items: Sequence[ItemT],
         *,
-        on_death: Callable[[ItemT], Any],
+        on_death: Callable[[ItemT, str], Any],
         on_start: Callable[[ItemT], None] | None = None,
     ) -> Iterator[Any]:
         """See `sim.evaluation.executors.Executor`."""
-        pool = _ActorPool(spec)
+        pool = _ActorPool(spec, self.isolation)
         yield from run_in_pool(pool, items, max_workers=self.workers, on_death=on_death, on_start=on_start)
 
 
 class WorkerActor:
     """The actor that runs items on a machine of the cluster."""
 
-    def __init__(self, spec: RunnerSpec, folder: str) -> None:
+    def __init__(self, spec: RunnerSpec, folder: str, isolation: Isolation) -> None:
         if os.path.isdir(folder):
             os.chdir(folder)
-        self._runner = ItemRunner(spec)
+        self._runner = Supervisor(spec, limit_s=isolation.limit_s) if isolation.needed else ItemRunner(spec)
 
     def versions(self) -> dict[str, str]:
         """Returns the versions that must be the same on all machines."""
         return _versions()
 
     def run(self, item: Any) -> Any:
-        """See `ItemRunner.run`."""
+        """See `ItemRunner.run`; it also returns a `WorkerLost`."""
         return self._runner.run(item)
 
 
 class _Actor:
     """See `sim.evaluation.workers.Worker`."""
 
-    def __init__(self, spec: RunnerSpec) -> None:
+    def __init__(self, spec: RunnerSpec, isolation: Isolation) -> None:
         # A lost actor is replaced by `sim.evaluation.workers`, which knows its item.
         options = {"num_cpus": 1, "max_restarts": 0, "max_task_retries": 0, "scheduling_strategy": "SPREAD"}
-        self.actor: Any = ray.remote(WorkerActor).options(**options).remote(spec, os.getcwd())
+        self.actor: Any = ray.remote(WorkerActor).options(**options).remote(spec, os.getcwd(), isolation)
         self.answer: Any = self.actor.versions.remote()
         self.ready = False
 
@@ -113,17 +118,21 @@ class _Actor:
         if not self.ready:
             _require_same(message)
             self.ready = True
+        if isinstance(message, WorkerLost):  # the process of the actor, which another actor replaces
+            with contextlib.suppress(RayError):
+                ray.kill(self.actor)
+            raise message
         return message
 
 
 class _ActorPool:
     """See `sim.evaluation.workers.WorkerPool`."""
 
-    def __init__(self, spec: RunnerSpec) -> None:
-        self._spec = spec
+    def __init__(self, spec: RunnerSpec, isolation: Isolation) -> None:
+        self._spec, self._isolation = spec, isolation
 
     def start(self) -> _Actor:
-        return _Actor(self._spec)
+        return _Actor(self._spec, self._isolation)
 
     def wait(self, workers: Sequence[_Actor]) -> list[_Actor]:
         answers = {worker.answer: worker for worker in workers}

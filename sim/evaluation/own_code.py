@@ -10,6 +10,10 @@ import traceback
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from sim.reading import printable
+
+MOST_LETTERS = 2000
+"""Longest text of an error in results and messages."""
 _OURS = tuple(Path(__file__).resolve().parents[2] / name for name in ("sim", "stubborn"))
 _LIBRARIES = tuple(Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib", "purelib", "platlib"))
 
@@ -35,6 +39,21 @@ def place_of(error: BaseException, *, below: str) -> str:
     return ""
 
 
+def text_of(error: BaseException) -> str:
+    """Returns an error's message in one line of at most `MOST_LETTERS`, whatever the class of the error does."""
+    try:
+        text = str(error)
+    except BaseException as fault:
+        return f"its message cannot be read ({type(fault).__name__})"
+    return one_line(text) or "no message"
+
+
+def one_line(text: str, most: int = MOST_LETTERS) -> str:
+    """Returns a text in one line that a terminal, JSON and UTF-8 can hold; of a long text the beginning."""
+    cut = f" ... ({len(text)} letters)" if len(text) > most else ""
+    return printable(" ".join(text[:most].split())) + cut
+
+
 def hash_of_own(modules: Iterable[str]) -> str:
     """Returns 12 hex digits, a hash of modules of a user and of all that they import from the same source folder.
 
@@ -48,7 +67,7 @@ def hash_of_own(modules: Iterable[str]) -> str:
     """
     contents: dict[str, bytes] = {}
     for name in modules:
-        file = Path(getattr(sys.modules[name], "__file__", None) or "<none>").resolve()
+        file = Path(getattr(sys.modules.get(name), "__file__", None) or "<none>").resolve()
         if file.suffix == ".py" and file.is_file() and _is_users(file):
             root = file.parents[name.count(".") + (file.name == "__init__.py")]
             _read_with_imports(file, root, contents)

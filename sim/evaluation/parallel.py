@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, TypeVar
 
 from sim.errors import ConfigError, WorkersError
@@ -20,6 +21,7 @@ class Shard:
     """Every `count`-th item from item `index` on: the part of the work that one of several machines does."""
 
     index: int = 0
+    """From 0 on; users and names of folders number shards from 1 on."""
     count: int = 1
 
     @classmethod
@@ -29,15 +31,23 @@ class Shard:
         Raises:
             ConfigError: the text does not have this form, or there is no such shard.
         """
-        match = re.fullmatch(r"(\d+)/(\d+)", text)
-        if match is None or not int(match[1]) < int(match[2]):
-            raise ConfigError(f'--shard must be "i/n" with 0 <= i < n, got "{text}".')
-        return cls(int(match[1]), int(match[2]))
+        match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", text)
+        if match is None or not 1 <= int(match[1]) <= int(match[2]):
+            raise ConfigError(f'--shard must be "i/n" with 1 <= i <= n (1/2 and 2/2 are all of 2), got "{text}".')
+        return cls(int(match[1]) - 1, int(match[2]))
 
     @property
     def folder(self) -> str:
         """Name of the folder for the results of this shard, inside the folder of the whole."""
-        return f"shard_{self.index}_of_{self.count}"
+        return f"shard_{self.index + 1}_of_{self.count}"
+
+    def require_own_numbers(self, whole: Path) -> None:
+        """Raises ConfigError where the folder of the whole run holds shards that are numbered from 0."""
+        if (whole / f"shard_0_of_{self.count}").exists():
+            raise ConfigError(
+                f"--out '{whole}' holds shards of version 0.1, which are numbered from 0 to {self.count - 1}; give "
+                "another --out, or finish them with that version. `stubborn merge` reads them."
+            )
 
     def contains(self, number: int) -> bool:
         """Returns True if the item with this number is in the shard."""
@@ -69,7 +79,7 @@ def ordered_map(
         WorkersError: a worker died twice on the same item.
         Exception: any exception that `function` raised.
     """
-    executor = executor or Processes(workers)
+    executor = executor or Processes(workers if len(items) > 1 else 1)
     numbered = [_NumberedItem(number, item) for number, item in enumerate(items)]
     early: dict[int, ResultT] = {}
     following = 0
@@ -112,5 +122,6 @@ class FunctionRunner:
         """Does nothing: no state is kept."""
 
 
-def _give_up(numbered: _NumberedItem) -> Any:
+def _give_up(numbered: _NumberedItem, reason: str) -> Any:
+    del reason
     raise WorkersError(f"The worker died twice on {numbered.item}.")

@@ -1,6 +1,6 @@
 """The files of a run: `config.json`, `results.jsonl` (one line per episode) and `summary.json`.
 
-One process writes and flushes each line as its episode ends. A killed run leaves at most one incomplete line, the last,
+One process writes each line to the disk as its episode ends. A killed run leaves at most one incomplete line, the last,
 which is removed when the run is resumed.
 """
 
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import hashlib
 import json
 import os
 from collections import Counter
@@ -22,7 +23,7 @@ from sim.errors import ConfigError
 from sim.evaluation.bootstrap import estimate
 from sim.evaluation.config_fields import ABSENT, differing_fields, field_text, is_same_file
 from sim.files import write_atomically
-from sim.reading import Count, Lines, Name, Number, convert, read_json, read_lines
+from sim.reading import Count, Lines, Name, Number, Seed, convert, read_json, read_lines
 
 SUMMARY_METRICS = (
     "success", "spl", "soft_spl", "distance_to_goal", "gt_explored", "never_seen", "steps_to_first_sight",
@@ -37,8 +38,8 @@ PLACEMENT_OPTIONS = ("executor", "address", "shard")
 """Options that say where episodes are run; they change no result."""
 VIEWER_OPTIONS = ("video", "view", "rerun", "rerun_save")
 """Options that start viewers; they change no result."""
-WITHOUT_EFFECT = frozenset({"workers", "out", "record", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
-"""Entries of the config that change no result."""
+WITHOUT_EFFECT = frozenset({"workers", "out", "record", "seed_key", *PLACEMENT_OPTIONS, *VIEWER_OPTIONS})
+"""Entries of the config that change no result, or differ between all runs by chance (`seed_key`)."""
 NOT_COMPARED = WITHOUT_EFFECT | {"versions", "codes", "episodes", "only", "settings", "segmentation"}
 """Entries of the config in which a resumed run may differ; with more episodes it runs the additional ones.
 
@@ -62,7 +63,7 @@ class ResultLine(msgspec.Struct):
     success: Annotated[float, msgspec.Meta(ge=0.0, le=1.0)] | bool
     agent: str = ""
     semantics: str = ""
-    seed: Count = 0
+    seed: Seed = 0
     failure: str | None = None
     error: str | None = None
     spl: Measured = None
@@ -81,6 +82,7 @@ class ResultLine(msgspec.Struct):
     stop_confidence: Measured = None
     stop_target_xy_m: tuple[Number, Number] | None = None
     stop_target_to_goal_m: Measured = None
+    stop_target_category: str | None = None
     wall_time_s: Measured = None
     steps_per_s: Measured = None
 
@@ -114,7 +116,8 @@ class RunRecord(msgspec.Struct):
     weights: str | None = None
     goal: str | None = None
     noise: str | None = None
-    seed: Count | None = None
+    seed: Seed | None = None
+    seed_key: str | None = None
     episodes: Count | None = None
     split_identity: SplitIdentity | None = None
     versions: dict[str, str] = {}
@@ -133,6 +136,8 @@ class RunDirectory:
     """Type of the lines."""
 
     def __post_init__(self) -> None:
+        self.path = self.path.absolute()  # an agent may change the current folder
+        self._file = self.path / "results.jsonl"
         existed = self.path.exists()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
@@ -149,7 +154,8 @@ class RunDirectory:
         try:
             self._write_or_compare_config()
             self.lines: list[dict[str, Any]] = self._read_and_heal()
-            self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
+            self._places = {line["episode_id"]: place for place, line in enumerate(self.lines)}
+            self._open(self._file.read_bytes() if self._file.exists() else b"")
         except BaseException:
             self._lock.close()
             raise
@@ -164,24 +170,30 @@ class RunDirectory:
             with contextlib.suppress(OSError):  # it does not exist, or holds other files
                 folder.rmdir()
 
-    def drop_errors(self, episode_ids: Collection[str] | None = None) -> int:
-        """Removes the lines of episodes that ended with an error, so that they are run again; returns their number.
+    def errors(self, episode_ids: Collection[str]) -> set[str]:
+        """Returns those of the episodes whose line here is an error. `append` replaces it, so that no line is lost."""
+        return {line["episode_id"] for line in self.lines if line.get("end_reason") == "error"} & set(episode_ids)
 
-        Those of `episode_ids` only, if they are given.
+    def require_own_code(self, code: str, kept: Collection[str]) -> None:
+        """Raises ConfigError where other code of the user than this one ran the episodes that are kept.
+
+        Args:
+            code: a hash of the code, "+" and a hash of the user's code; without "+" there is no such code.
+            kept: ids of the episodes.
         """
-        kept = [
-            line
-            for line in self.lines
-            if line["end_reason"] != "error" or (episode_ids is not None and line["episode_id"] not in episode_ids)
-        ]
-        dropped = len(self.lines) - len(kept)
-        if dropped:
-            self._results.close()
-            text = "".join(json.dumps(line, allow_nan=False) + "\n" for line in kept)
-            write_atomically(self.path / "results.jsonl", text)
-            self._results = (self.path / "results.jsonl").open("a", encoding="utf-8")
-            self.lines = kept
-        return dropped
+        if not kept:
+            return
+        existing = read_record(self.path / "config.json")
+        codes = existing.get("codes") or [existing.get("versions", {}).get("code", "")]
+        before = [each.partition("+")[2] for each in codes if each]
+        now = code.partition("+")[2]
+        if now and all(before) and before and now not in before:
+            number = f"{len(kept)} episode" + "s" * (len(kept) != 1)
+            raise ConfigError(
+                f"Your code ({self.config.get('agent')}) has changed since it ran {number} in --out '{self.path}' "
+                f"(code {before[-1]}, now {now}). To run all episodes with the new code, give another --out; to keep "
+                "these results and run only the missing episodes with the new code, add --keep-results."
+            )
 
     def require_of(self, episodes: Mapping[str, tuple[str, str]]) -> None:
         """Raises ConfigError if a line belongs to no episode, or to one with another house or goal.
@@ -218,11 +230,59 @@ class RunDirectory:
         return found.values
 
     def append(self, line: Mapping[str, Any]) -> None:
-        """Writes one result line and syncs it to disk."""
-        self._results.write(json.dumps(line, allow_nan=False) + "\n")
+        """Writes one result line and syncs it to disk; it replaces the line of an earlier error in the same episode.
+
+        Raises:
+            ConfigError: another program removed or changed the results.
+        """
+        self._require_untouched(new=str(line["episode_id"]))
+        line, place = dict(line), self._places.get(line["episode_id"])
+        if place is None or self.lines[place].get("end_reason") != "error":
+            self._places[line["episode_id"]] = len(self.lines)
+            self.lines.append(line)
+            self._write(_as_bytes(line))
+        else:
+            self.lines[place] = line
+            self._results.close()
+            content = b"".join(map(_as_bytes, self.lines))
+            write_atomically(self._file, content, sync=True)
+            self._open(content)
+        self._require_untouched(new="")
+
+    def _open(self, content: bytes) -> None:
+        """Opens the results for more lines; `content` is what they hold."""
+        self._results = self._file.open("ab")
+        self._bytes, self._digest = len(content), hashlib.sha256(content)
+
+    def _write(self, content: bytes) -> None:
+        self._results.write(content)
         self._results.flush()
         os.fsync(self._results.fileno())
-        self.lines.append(dict(line))
+        self._bytes += len(content)
+        self._digest.update(content)
+
+    def _require_untouched(self, *, new: str = "", content: bool = False) -> None:
+        """Raises ConfigError where the results on the disk are not those that this process wrote.
+
+        Args:
+            new: id of the episode whose line is to be written; "": none.
+            content: whether to compare the content too, not only the size.
+        """
+        try:
+            size = self._file.stat().st_size
+            same = size == self._bytes
+            if same and content:
+                same = hashlib.sha256(self._file.read_bytes()).digest() == self._digest.digest()
+            found = f"was changed by another program: it has {size} bytes, and this run wrote {self._bytes}"
+        except OSError:
+            same, found = False, "was removed by another program"
+        if not same:
+            ids = [line["episode_id"] for line in self.lines] + [new] * bool(new)
+            named = f"'{ids[0]}' to '{ids[-1]}'" if len(ids) > 1 else "".join(f"'{each}'" for each in ids)
+            raise ConfigError(
+                f"While the run wrote to it, '{self._file}' {found}. The results of {len(ids)} episodes are lost or "
+                f"may be damaged ({named}); run them again with another --out."
+            )
 
     def record_code(self, code: str) -> list[str]:
         """Adds a hash of the code to `codes` in config.json: it runs the episodes from here on.
@@ -253,7 +313,12 @@ class RunDirectory:
         }
 
     def write_summary(self, extra: Mapping[str, Any]) -> dict[str, Any]:
-        """Averages all lines, writes `summary.json` and returns its content."""
+        """Averages all lines, writes `summary.json` and returns its content.
+
+        Raises:
+            ConfigError: another program removed or changed the results.
+        """
+        self._require_untouched(content=True)
         summary = {**extra, **summarise(self.lines)}
         _write_json(self.path / "summary.json", summary)
         return summary
@@ -270,17 +335,22 @@ class RunDirectory:
             if (self.path / "results.jsonl").exists():
                 raise ConfigError(f"--out '{self.path}' has results but no config.json; choose another folder.")
             self._created.append(file)
-            _write_json(file, config)
+            _write_json(file, config)  # it is on the disk before the first line
             return
         existing = read_record(file)
         for path, before, now in differing_fields(existing, config):
             unset = all(value is None or value is ABSENT for value in (before, now))
             if path.partition(".")[0] not in NOT_COMPARED and not unset and not is_same_file(path, existing, config):
+                version = existing.get("versions", {}).get("stubborn-objectnav")
+                older = version != config.get("versions", {}).get("stubborn-objectnav") and version is not None
                 raise ConfigError(
-                    f"--out '{self.path}' holds a run with {path} = {field_text(before)}, this run has "
-                    f"{field_text(now)}; choose another folder, or resume the run with the same options."
+                    f"--out '{self.path}' holds a run{f' of version {version}' if older else ''} with "
+                    f"{path} = {field_text(before)}, this run has {field_text(now)}; choose another folder, or resume "
+                    "the run with the same options."
                 )
         changed = {}
+        if existing.get("seed_key") is None and config.get("seed_key") is not None:
+            changed["seed_key"] = config["seed_key"]  # a run of version 0.1 has none
         if (config.get("episodes") or 0) > (existing.get("episodes") or 0):
             changed["episodes"] = config["episodes"]
         before, now = (list(record.get("only") or ()) for record in (existing, config))
@@ -332,8 +402,12 @@ def summarise(lines: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     return summary
 
 
+def _as_bytes(line: Mapping[str, Any]) -> bytes:
+    return (json.dumps(line, allow_nan=False) + "\n").encode()
+
+
 def _write_json(file: Path, content: Mapping[str, Any]) -> None:
-    write_atomically(file, json.dumps(content, indent=2, allow_nan=False) + "\n")
+    write_atomically(file, json.dumps(content, indent=2, allow_nan=False) + "\n", sync=True)
 
 
 def read_record(file: Path) -> dict[str, Any]:

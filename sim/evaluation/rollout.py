@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import reprlib
 import time
@@ -17,7 +18,8 @@ import numpy as np
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
 from sim.errors import AgentError, PhysicsError, debug
-from sim.evaluation.own_code import place_of
+from sim.evaluation.own_code import MOST_LETTERS, one_line, place_of, text_of
+from sim.evaluation.watch import is_stop, marked
 from sim.geometry.pose import Pose
 from sim.interface import Action, Agent, Observation, StatesConfidence, StatesTarget
 from sim.task.trajectory import FARTHEST_M, trajectory_file, write_trajectory
@@ -30,8 +32,17 @@ OnStep = Callable[[int, Agent, dict[str, Any]], None]
 
 
 def episode_seed(seed: int, episode_id: str) -> int:
-    """Returns the agent's seed for an episode; it depends only on the run's seed and the episode's id."""
+    """Returns the environment's seed for an episode; it depends only on the run's seed and the episode's id."""
     return int(np.random.SeedSequence([seed, zlib.crc32(episode_id.encode())]).generate_state(1)[0])
+
+
+def agent_seed(seed: int, episode_id: str, key: str) -> int:
+    """Returns the agent's seed for an episode, in [0, 2**32): a hash with the key of the run, which no agent gets.
+
+    Without the key the seed would name the episode, since those of public splits are known.
+    """
+    secret = hashlib.sha256(key.encode()).digest()
+    return int.from_bytes(hashlib.blake2b(f"{seed}/{episode_id}".encode(), key=secret, digest_size=4).digest(), "big")
 
 
 def play_episode(
@@ -40,6 +51,7 @@ def play_episode(
     episode: Episode,
     *,
     seed: int,
+    seed_of_agent: int | None = None,
     on_step: OnStep | None = None,
     viewers: Sequence[Viewer] = (),
     name: str | None = None,
@@ -50,7 +62,8 @@ def play_episode(
         env: the environment.
         agent: the agent.
         episode: the episode.
-        seed: of environment and agent.
+        seed: of the environment.
+        seed_of_agent: of the agent; None: that of the environment.
         on_step: called after each step.
         viewers: informed of each step; they change nothing.
         name: the agent's name in messages; that of its class when None.
@@ -64,7 +77,7 @@ def play_episode(
     """
     name = type(agent).__name__ if name is None else name
     observation, info = env.reset(seed=seed, options={"episode": episode})
-    ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed))
+    ask(f"Agent '{name}', reset", lambda: agent.reset(episode.goal, seed if seed_of_agent is None else seed_of_agent))
     for viewer in viewers:
         viewer.begin(env)
     began_s = time.perf_counter()
@@ -158,14 +171,17 @@ def ask(where: str, call: Callable[[], Any]) -> Any:
         AgentError: it raised an error, or called `exit`; the message begins with `where` and ends with file and line.
     """
     try:
-        return call()
+        with marked(where):
+            return call()
     except AgentError as error:  # of a part of the agent, which names its own line
         raise AgentError(f"{where}: {error}") from error
-    except (Exception, SystemExit) as error:
+    except BaseException as error:  # also `SystemExit`, `CancelledError` and classes of the user
+        if is_stop(error):
+            raise
         if debug():
             traceback.print_exc()
-        told = " ".join(str(error).split()) or "no message"
-        raise AgentError(f"{where}: {type(error).__name__}: {told}{place_of(error, below=__file__)}") from error
+        told = f"{type(error).__name__}: {text_of(error)}"
+        raise AgentError(f"{where}: {told}{place_of(error, below=__file__)}") from error
 
 
 def next_action(agent: Agent, observation: Observation, where: str) -> Action:
@@ -247,7 +263,7 @@ def record_episode(env: ObjectNavEnv, run: Path, line: Mapping[str, Any], about:
 def broken_metrics(error: str) -> dict[str, Any]:
     """Returns the entries of a result line for an episode that ended with an error."""
     zero = {"success": 0.0, "spl": 0.0, "soft_spl": 0.0, "failure": "misc"}
-    return zero | {"end_reason": "error", "error": error}
+    return zero | {"end_reason": "error", "error": one_line(error, 2 * MOST_LETTERS)}
 
 
 def _plain(value: Any) -> Any:

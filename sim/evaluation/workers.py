@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
 from sim.errors import WorkersError
+from sim.evaluation.own_code import text_of
 
 _log = logging.getLogger(__name__)
 ItemT = TypeVar("ItemT", bound="WorkItem")
@@ -71,7 +72,24 @@ class RunnerSpec:
 
 
 class WorkerLost(Exception):
-    """A worker died; the message gives the reason where it is known."""
+    """A worker died; the message gives the reason where it is known.
+
+    Args:
+        reason: a sentence without its end.
+        final: whether its item is not tried once more.
+    """
+
+    def __init__(self, reason: str, *, final: bool = False) -> None:
+        super().__init__(reason)
+        self.final = final
+
+    def __reduce__(self) -> tuple[Callable[..., WorkerLost], tuple[str, bool]]:
+        """Pickles both arguments."""
+        return _lost, (str(self), self.final)
+
+
+def _lost(reason: str, final: bool) -> WorkerLost:
+    return WorkerLost(reason, final=final)
 
 
 class Worker(Protocol):
@@ -123,13 +141,22 @@ class ItemRunner:
             if self._runner is None:
                 self._runner = self._spec.build()
             return self._runner.run(item)
-        except Exception as error:
-            return error
+        except BaseException as error:  # `GeneratorExit` and the like come from code of a user
+            return _sendable(error)
 
     def close(self) -> None:
         """Closes the runner, if it was built."""
         if self._runner is not None:
             self._runner.close()
+
+
+def _sendable(error: BaseException) -> BaseException:
+    """Returns an error if it survives pickling; else its text, since errors of users may have any arguments."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return WorkersError(f"{type(error).__name__}: {text_of(error)}")
+    return error
 
 
 def run_here(
@@ -151,7 +178,7 @@ def run_in_pool(
     items: Sequence[ItemT],
     *,
     max_workers: int,
-    on_death: Callable[[ItemT], Any],
+    on_death: Callable[[ItemT, str], Any],
     on_start: Callable[[ItemT], None] | None = None,
 ) -> Iterator[Any]:
     """Yields a result line for each item, in the order in which the items end.
@@ -160,7 +187,8 @@ def run_in_pool(
         pool: starts the workers.
         items: the work.
         max_workers: largest number of workers at a time.
-        on_death: returns the line of an item whose worker died `MAX_TRIES` times.
+        on_death: returns the line of an item whose worker died `MAX_TRIES` times, or that took too long, from the item
+            and the reason.
         on_start: called when a worker gets an item.
 
     Raises:
@@ -216,7 +244,7 @@ class _Scheduler(Generic[ItemT]):
     pool: WorkerPool[Any]
     queue: _Queue[ItemT]
     max_workers: int
-    on_death: Callable[[ItemT], Any]
+    on_death: Callable[[ItemT, str], Any]
     on_start: Callable[[ItemT], None] | None = None
     slots: list[_WorkerSlot[ItemT]] = field(default_factory=list)
     tries: dict[str, int] = field(default_factory=dict)
@@ -236,6 +264,7 @@ class _Scheduler(Generic[ItemT]):
         for slot in self.slots:
             if slot.idle:
                 self._assign(slot)
+                self._say_start(slot)
         starting = sum(not slot.ready for slot in self.slots)
         for _ in range(min(self.max_workers - len(self.slots), len(self.queue.items) - starting)):
             self.slots.append(_WorkerSlot(self.pool.start()))
@@ -246,8 +275,11 @@ class _Scheduler(Generic[ItemT]):
         if slot.item is not None:
             slot.house = slot.item.house
             slot.worker.send(slot.item)
-            if self.on_start is not None:
-                self.on_start(slot.item)
+
+    def _say_start(self, slot: _WorkerSlot[ItemT]) -> None:
+        """Calls `on_start` for the item that a worker got."""
+        if self.on_start is not None and slot.item is not None:
+            self.on_start(slot.item)
 
     def _receive(self, slot: _WorkerSlot[ItemT]) -> Iterator[Any]:
         """Handles one message of a worker: that it is ready, a line, or its death."""
@@ -264,6 +296,7 @@ class _Scheduler(Generic[ItemT]):
             raise message
         if was_ready:
             yield message
+        self._say_start(slot)  # after the line of the item before it
 
     def _retry_or_fail(self, slot: _WorkerSlot[ItemT], loss: WorkerLost) -> Iterator[Any]:
         """Puts the item of a dead worker back into the queue, or yields its error line."""
@@ -275,7 +308,9 @@ class _Scheduler(Generic[ItemT]):
             return
         self.tries[item.episode_id] = self.tries.get(item.episode_id, 0) + 1
         _log.warning("A worker was lost in '%s' (%s).", item.episode_id, loss)
-        if self.tries[item.episode_id] < MAX_TRIES:
+        if loss.final:
+            yield self.on_death(item, f"{loss}.")
+        elif self.tries[item.episode_id] < MAX_TRIES:
             self.queue.items.insert(0, item)
         else:
-            yield self.on_death(item)
+            yield self.on_death(item, f"{loss}; {MAX_TRIES} workers were lost in this episode.")

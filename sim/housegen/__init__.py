@@ -12,15 +12,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sim.housegen.config import HouseConfig
     from sim.housegen.generator import generate
 
-__all__ = ["generate"]
+__all__ = ["HouseConfig", "generate"]
 
 
 def __getattr__(name: str) -> Any:
-    """Returns `generate`, imported on first use: recipes and house lists need no furniture."""
-    if name == "generate":
-        from sim.housegen.generator import generate
+    """Returns `generate` or `HouseConfig`, imported on first use: recipes and house lists need no furniture."""
+    if name in __all__:
+        from sim.housegen import generator
 
-        return generate
+        return getattr(generator, name)
     raise AttributeError(f"module '{__name__}' has no attribute '{name}'")

@@ -8,24 +8,27 @@ the number of tries is limited and reported.
 from __future__ import annotations
 
 import copy
+import dataclasses
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from sim.errors import ConfigError, HouseError
 from sim.gl import mujoco
+from sim.housegen.config import POOL_STREAM, HouseConfig
 from sim.housegen.floor_plan import FloorPlan, PlanError, draw_floor_plan
-from sim.housegen.floor_plan.rooms import PLAN_AREA_M2, PLAN_KINDS, ROOM_RULES, PlanKind, draw_plan_kind
+from sim.housegen.floor_plan.rooms import PLAN_AREA_M2, PLAN_KINDS, PlanKind, draw_plan_kind
 from sim.housegen.furnishing import FurnishError, furnish
 from sim.housegen.furnishing.furniture_source import FurnitureSource
 from sim.housegen.furnishing.placement import RoomLayout
 from sim.housegen.furnishing.placement.surfaces import supports_items
 from sim.housegen.furniture import CATALOGUE
 from sim.housegen.furniture.catalogue import Catalogue
-from sim.housegen.furniture.item import Item, Pool
-from sim.housegen.hazards import FAMILIES, PlacedHazard, draw_hazards
+from sim.housegen.furniture.item import Item
+from sim.housegen.hazards import PlacedHazard, draw_hazards
 from sim.housegen.mjcf.builder import HouseBuilder
 from sim.housegen.mjcf.merging import Assembler
 from sim.housegen.mjcf.placed import Lamp, PlacedItem, RoomBox
@@ -40,10 +43,15 @@ from sim.world.check import check_house
 GENERATOR_VERSION = 3
 """Increased whenever the same seed gives another house."""
 MAX_TRIES = 12
+MAX_REASONS = 3
+"""Reasons that the error of a seed without a house lists."""
+MAX_AREA_ERROR = 0.05
+"""Largest relative difference between the requested floor area and that of the rooms."""
+DRAWN_AREAS = (0.92, 1.1)
+"""Range of the areas for which plans are drawn until one has the requested area, relative to it."""
 MAX_PLAN_TRIES = 60
 MAX_STAIRS_TRIES = 12
 """Plans that are drawn until an upper storey of enough rooms fits on one; each takes about 20 ms."""
-AREA_M2 = (50.0, 800.0)
 MAX_BYTES = 395_000
 """Largest size of the file of a house of up to `USUAL_M2`."""
 USUAL_M2, BYTES_PER_M2 = 230.0, 1_400
@@ -58,55 +66,6 @@ STOREYS_BYTES, MAX_STOREYS_BYTES = 1.4, 1_300_000
 """The file of a house with two storeys may be larger by this factor, up to this size."""
 BYTES_PER_GEOM = (200, 130, 100, 80, 50)
 """Bytes by which the file may grow for each geom saved; the next value is tried where the file is too large."""
-_POOL_STREAM = {"train": 0, "heldout": 1, "wide": 2}
-
-
-@dataclass(frozen=True, kw_only=True)
-class HouseConfig:
-    """Requirements for a generated house; a field that is None is drawn from the seed."""
-
-    pool: Pool = "train"
-    kind: PlanKind | None = None
-    area_m2: float | None = None
-    """Approximate floor area, to the middle of the walls."""
-    clutter: float | None = None
-    """0 without small objects, 1 with many."""
-    rooms: tuple[str, ...] = ()
-    """Kinds of private rooms (gym, office, laundry ...) that it has if the area allows."""
-    name: str = "house"
-    """The model's name in the file."""
-    movable: bool = False
-    """Light chairs, stools, plants and gym equipment get free joints (`sim.housegen.mjcf.movables`)."""
-    storeys: int = 1
-    """1, or 2: some rooms again above, with a flight of stairs between (needs the room kind `stair_hall`)."""
-    hazards: tuple[str, ...] = ()
-    """Families of hazards (`sim.housegen.hazards.FAMILIES`) that are placed where paths lead."""
-    hazard_count: int | None = None
-    """Number of hazards; it depends on the area when None."""
-    any_size: bool = False
-    """Whether the file may have any size, as the files of the pool `wide` may: imported models are large."""
-
-    def __post_init__(self) -> None:
-        if self.pool not in _POOL_STREAM:
-            raise ConfigError(f"HouseConfig.pool must be one of {', '.join(_POOL_STREAM)}, got '{self.pool}'.")
-        if self.kind is not None and self.kind not in PLAN_KINDS:
-            raise ConfigError(f"HouseConfig.kind must be one of {', '.join(PLAN_KINDS)}, got '{self.kind}'.")
-        unknown = [room for room in self.rooms if room not in ROOM_RULES]
-        if unknown:
-            raise ConfigError(f"HouseConfig.rooms: no room kind '{unknown[0]}'. There is: {', '.join(ROOM_RULES)}.")
-        unknown = [family for family in self.hazards if family not in FAMILIES]
-        if unknown:
-            raise ConfigError(f"HouseConfig.hazards: no hazards '{unknown[0]}'. There is: {', '.join(FAMILIES)}.")
-        if self.area_m2 is not None and not AREA_M2[0] <= self.area_m2 <= AREA_M2[1]:
-            raise ConfigError(
-                f"HouseConfig.area_m2 must lie in {AREA_M2[0]:.0f}-{AREA_M2[1]:.0f} m2, got {self.area_m2}."
-            )
-        if self.storeys not in (1, 2):
-            raise ConfigError(f"HouseConfig.storeys must be 1 or 2, got {self.storeys}.")
-        if self.storeys == 2 and "stair_hall" not in self.rooms:
-            raise ConfigError("HouseConfig.storeys = 2 needs 'stair_hall' among HouseConfig.rooms.")
-        if self.clutter is not None and not 0.0 <= self.clutter <= 1.0:
-            raise ConfigError(f"HouseConfig.clutter must lie in [0, 1], got {self.clutter}.")
 
 
 @dataclass(frozen=True)
@@ -124,33 +83,28 @@ class GeneratedHouse:
 
 
 def generate(
-    seed: int,
-    *,
-    pool: Pool = "train",
-    kind: PlanKind | None = None,
-    area_m2: float | None = None,
-    clutter: float | None = None,
-    movable: bool = False,
-    catalogue: Catalogue = CATALOGUE,
+    seed: int, config: HouseConfig | None = None, *, catalogue: Catalogue = CATALOGUE, **fields: Any
 ) -> mujoco.MjSpec:
     """Returns the specification of a new home; the same seed and version give the same bytes of `to_xml()`.
 
+    `generate(7, kind="flat", rooms=("gym",))` is short for `generate(7, HouseConfig(kind="flat", rooms=("gym",)))`.
+    `sim.write_house` writes the home into a folder.
+
     Args:
         seed: any whole number from 0 on.
-        pool: styles, sizes, colours and textures that may appear; "train" and "heldout" share none, "wide" has those of
-            train and more styles.
-        kind: kind of floor plan; drawn when None.
-        area_m2: floor area, 50-800; drawn when None.
-        clutter: number of small objects (books, crockery, shoes, toys ...), from 0 (none) to 1 (many); drawn when None.
-        movable: whether light furniture can be pushed.
+        config: requirements; a field that is None is drawn from the seed.
         catalogue: the styles of furniture that may be drawn.
+        **fields: fields of `HouseConfig`, which replace those of `config`.
 
     Raises:
-        ConfigError: a value is not allowed.
+        ConfigError: a field does not exist, or a value is not allowed.
         HouseError: no try within the bound gave a house without a fault.
     """
-    config = HouseConfig(pool=pool, kind=kind, area_m2=area_m2, clutter=clutter, movable=movable)
-    return generate_house(seed, config, catalogue).spec
+    unknown = sorted(set(fields) - {each.name for each in dataclasses.fields(HouseConfig)})
+    if unknown:
+        there_is = ", ".join(each.name for each in dataclasses.fields(HouseConfig))
+        raise ConfigError(f"generate has no option '{unknown[0]}'. There is: {there_is}.")
+    return generate_house(seed, replace(config or HouseConfig(), **fields), catalogue).spec
 
 
 def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Catalogue = CATALOGUE) -> GeneratedHouse:
@@ -170,7 +124,7 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
         raise ConfigError(f"A house's seed must be 0 or more, got {seed}.")
     rejects: list[str] = []
     for attempt in range(MAX_TRIES):
-        rng = np.random.default_rng([seed, _POOL_STREAM[config.pool], attempt])
+        rng = np.random.default_rng([seed, POOL_STREAM[config.pool], attempt])
         try:
             draft = _draw_house(rng, config, catalogue)
         except (PlanError, FurnishError) as error:
@@ -187,7 +141,8 @@ def generate_house(seed: int, config: HouseConfig | None = None, catalogue: Cata
             geoms = len(built.spec.geoms)
             return GeneratedHouse(built.spec, draft.plan, geoms, attempt + 1, tuple(rejects), built.styles)
         rejects.append("; ".join(faults))
-    raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {' | '.join(rejects)}")
+    reasons = "; ".join(f"{reason} ({count} x)" for reason, count in Counter(rejects).most_common(MAX_REASONS))
+    raise HouseError(f"Seed {seed} gave no house without faults in {MAX_TRIES} tries: {reasons}.")
 
 
 @dataclass(frozen=True)
@@ -251,14 +206,14 @@ def _draw_storeys(
     Raises:
         PlanError: no plan fits, or the stairs fit into none.
     """
-    plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
+    plan, openings = _draw_plan(rng, kind, area_m2, config)
     if config.storeys == 1:
         return plan, openings, None
     for _ in range(MAX_STAIRS_TRIES - 1):
         try:
             stairs = draw_stairs(rng, plan, openings)
         except PlanError:
-            plan, openings = _draw_plan(rng, kind, area_m2, config.rooms)
+            plan, openings = _draw_plan(rng, kind, area_m2, config)
         else:
             return plan, stairs.lower_openings, stairs
     stairs = draw_stairs(rng, plan, openings)
@@ -266,21 +221,37 @@ def _draw_storeys(
 
 
 def _draw_plan(
-    rng: np.random.Generator, kind: PlanKind, area_m2: float, rooms: tuple[str, ...]
+    rng: np.random.Generator, kind: PlanKind, area_m2: float, config: HouseConfig
 ) -> tuple[FloorPlan, tuple[Opening, ...]]:
     """Returns a plan and the openings in its walls; many plans are drawn before one fits.
 
     Raises:
         PlanError: none fits.
     """
-    for _ in range(MAX_PLAN_TRIES - 1):
+    given = config.exact and config.area_m2 is not None
+    rooms, error = config.wanted_rooms, PlanError("no plan was drawn")
+    for _ in range(MAX_PLAN_TRIES):
         try:
-            plan = draw_floor_plan(rng, kind, area_m2, rooms)
+            drawn_m2 = area_m2 * float(rng.uniform(*DRAWN_AREAS)) if given else area_m2
+            plan = draw_floor_plan(rng, kind, drawn_m2, rooms)
+            if config.exact:
+                _require_as_asked(plan, area_m2 if given else None, rooms)
             return plan, cut_openings(rng, plan)
-        except PlanError:
-            continue
-    plan = draw_floor_plan(rng, kind, area_m2, rooms)
-    return plan, cut_openings(rng, plan)
+        except PlanError as fault:
+            error = fault
+    raise error
+
+
+def _require_as_asked(plan: FloorPlan, area_m2: float | None, rooms: tuple[str, ...]) -> None:
+    """Raises PlanError where a plan lacks a room, or its area differs by too much from the one that was asked for."""
+    missing = Counter(rooms) - Counter(room.kind for room in plan.rooms)
+    if missing:
+        raise PlanError(f"no place for {next(iter(missing))}")
+    inner_m2 = sum(room.rect.grown(-HALF_WALL_M).area_m2 for room in plan.rooms)
+    if area_m2 is None:
+        return
+    if max(abs(plan.area_m2 - area_m2), abs(inner_m2 - area_m2)) > MAX_AREA_ERROR * area_m2:
+        raise PlanError(f"no plan has {area_m2:.0f} m2")
 
 
 def max_bytes(area_m2: float) -> int:

@@ -12,6 +12,7 @@ from sim.gl import mujoco
 from sim.houses.foreign import make_walls_solid, remove_unsupported, void_notes
 from sim.houses.house import House
 from sim.houses.labels import Labels, collidable_geoms, describe_geom, read_labels
+from sim.houses.light import add_light
 from sim.houses.mjcf import read_spec, require_sizes
 from sim.houses.references import require_root
 from sim.interface import MPCAT40_ID
@@ -52,6 +53,7 @@ def load_house(path: Path, *, labels_path: Path | None = None, root: Path | None
         require_sizes(model)
         house = House(path.stem, spec, rules, path)
         labels = _validated(house, model)
+        notes += add_light(spec)
     except HouseError as error:
         raise HouseError(f"House '{path}': {error}") from None
     if rules is not None:

@@ -48,6 +48,11 @@ _LENGTHS: Mapping[str, tuple[str, ...]] = {
     "user": ("dim",),
 }  # fmt: skip
 """Attributes whose product is the length of an array."""
+_BEARERS = frozenset((
+    "site", "joint", "tendon", "actuator", "body", "body1", "body2", "geom1", "geom2", "subtree1", "subtree2",
+    "objname",
+))  # fmt: skip
+"""Attributes by which a sensor names the element that it belongs to."""
 _LENGTHS_ANYWHERE = ("nsample",)
 _NAMES = frozenset((
     "name", "class", "childclass", "material", "mesh", "texture", "hfield", "file", "target", "body", "body1", "body2",
@@ -135,6 +140,8 @@ class _Scan:
         self._files = 0
         self._elements = 0.0
         self._factors = [1.0]
+        self._tags: list[str] = []
+        self._copies = self._loose_sensors = 0.0
 
     def count(self, path: Path) -> None:
         """Counts a file; raises an error where that is too much."""
@@ -144,7 +151,7 @@ class _Scan:
         content = read_bytes(path, what="its file", error=self._error)
         parser = expat.ParserCreate()
         parser.StartElementHandler = lambda tag, values: self._start(path, tag, values, content, parser)
-        parser.EndElementHandler = lambda tag: self._factors.pop()
+        parser.EndElementHandler = lambda tag: (self._factors.pop(), self._tags.pop())
         parser.StartDoctypeDeclHandler = lambda *_: self._refuse("a document type is not allowed in MJCF.")
         try:
             parser.Parse(content, True)
@@ -166,8 +173,12 @@ class _Scan:
         if tag == "mesh" and "builtin" in values:
             factor *= max(1.0, math.prod(max(1.0, number) for number in _numbers(values.get("params", ""))) / 1000.0)
         self._elements += factor - self._factors[-1]
+        self._copies += factor if tag == "replicate" else 0.0
+        self._loose_sensors += self._tags[-1:] == ["sensor"] and _BEARERS.isdisjoint(values)
         self._factors.append(factor)
-        if self._elements > MAX_ELEMENTS:
+        self._tags.append(tag)
+        # With each copy that `replicate` makes, MuJoCo doubles the sensors that belong to no element.
+        if self._elements + self._loose_sensors * 2.0 ** min(self._copies, 60.0) > MAX_ELEMENTS:
             self._refuse(f"{printable(where)}: the file has more than {MAX_ELEMENTS} elements with all copies.")
         if tag in ("include", "model", "flexcomp") and values.get("file"):
             self._require_name(values["file"], content, parser.CurrentByteIndex)

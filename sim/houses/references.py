@@ -9,6 +9,8 @@ user allows more with `--root FOLDER`, for packages whose files lie in folders n
 from __future__ import annotations
 
 import os
+import re
+import stat
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +18,19 @@ from pathlib import Path
 from sim.errors import HouseError, ObjectNavError
 from sim.gl import mujoco
 from sim.paths import assets_dir
-from sim.reading import printable
+from sim.reading import printable, read_bytes
 
 SHARED_TEXTURES = "textures"
 """Name of the folder, next to a split's folder, that all its houses may use."""
+MOST_FILES = 10_000
+"""Files of a house whose checksums are computed."""
+_MOST_FOLDERS = 20
+_MOST_BYTES = 64 << 20
+_VALUE = rb"""\s*=\s*(?P<value>"[^"]*"|'[^']*')"""
+_FILE = re.compile(rb"\bfile\w*" + _VALUE)
+_FOLDER = re.compile(rb"\b(?:mesh|texture|asset)dir" + _VALUE)
+_ASSETS = frozenset((".png", ".jpg", ".jpeg", ".obj", ".stl", ".msh", ".ktx", ".bin", ".skn"))
+"""Suffixes of files that include no other."""
 MOST_LEVELS_UP = 3
 """A folder that a refusal proposes for `--root` is at most this many levels above the file."""
 
@@ -116,3 +127,50 @@ def require_root(root: Path | None) -> None:
     """Raises a HouseError where the folder of `--root` does not exist."""
     if root is not None and not root.is_dir():
         raise HouseError(f"--root '{root}': there is no such folder.")
+
+
+def files_of(house_file: Path) -> list[Path]:
+    """Returns the files that an MJCF file uses, with those of its included files, sorted; shipped ones do not count.
+
+    The text is searched for names of files, and MuJoCo is not asked: the result may hold a file that is not used, and
+    what a file may not read (`Allowed`) is left out.
+    """
+    shipped, house_file = assets_dir().resolve(), house_file.resolve()
+    read: set[Path] = set()
+    found = {house_file}
+    names: dict[str, None] = {}
+    folders: dict[str, None] = {"": None}
+    bases: dict[Path, None] = {}
+    while waiting := [file for file in sorted(found - read) if file.suffix.lower() not in _ASSETS]:
+        for file in waiting:
+            read.add(file)
+            bases[file.parent] = None
+            text = _content(file)
+            names.update(dict.fromkeys(_values(_FILE, text)))
+            folders.update(dict.fromkeys(_values(_FOLDER, text)))
+        for base in list(bases)[:_MOST_FOLDERS]:  # next to the first file, or next to the one that names it
+            for folder in list(folders)[:_MOST_FOLDERS]:
+                for name in list(names)[:MOST_FILES]:
+                    for each in {name, name.replace("\\", "/").rpartition("/")[2]}:
+                        path = path_as_read(base, folder, each)
+                        if _is_plain(path) and not path.is_relative_to(shipped):
+                            found.add(path)
+    return sorted(found - {house_file})
+
+
+def _content(file: Path) -> bytes:
+    try:
+        return read_bytes(file, what="File", most=_MOST_BYTES)
+    except ObjectNavError:
+        return b""  # `read_spec` refuses it
+
+
+def _values(attribute: re.Pattern[bytes], text: bytes) -> list[str]:
+    return [match["value"][1:-1].decode(errors="replace") for match in attribute.finditer(text)]
+
+
+def _is_plain(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except (OSError, ValueError):
+        return False

@@ -1,10 +1,16 @@
-"""Writes a house as compact XML: the output of MuJoCo without redundant attributes and digits."""
+"""Writes a house as compact XML, which is the output of MuJoCo without redundant digits, and with its textures."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
+from sim.errors import HouseError
+from sim.files import inside, write_together
 from sim.gl import mujoco
+from sim.houses.load import load_house
+from sim.houses.references import SHARED_TEXTURES, asset_path
+from sim.reading import read_bytes, reason_of
 
 _IDENTITY_QUAT = ' quat="1 0 0 0"'
 _QUAT = re.compile(r' quat="([^"]*)"')
@@ -25,6 +31,38 @@ def house_text(spec: mujoco.MjSpec, textures: str | None = None) -> str:
         text = text.replace(f'texturedir="{spec.texturedir}"', f'texturedir="{textures}"', 1)
     text = _QUAT.sub(_short_quat, text.replace(_IDENTITY_QUAT, ""))
     return _INDENT.sub("\n", _LEADING_ZERO.sub(".", text))
+
+
+def write_house(spec: mujoco.MjSpec, folder: str | Path, name: str | None = None) -> Path:
+    """Writes a generated house with its textures into a folder; returns the file `<name>.xml`, for `--house`.
+
+    Several houses share the folder `textures` in it. `stubborn episodes --split` makes the folder a split.
+
+    Args:
+        spec: what `sim.generate` returned, also after changes of yours.
+        folder: it is created if it is missing.
+        name: name of the house; that of the model if None.
+
+    Raises:
+        HouseError: the specification has files other than textures, or violates the house format.
+        ConfigError: the name is not that of a file, or the folder cannot be written.
+    """
+    folder, name = Path(folder), name or spec.modelname
+    if any(asset.file for asset in (*spec.meshes, *spec.hfields, *spec.skins)):
+        raise HouseError(f"House '{name}' has meshes in files, which write_house does not copy.")
+    path = inside(folder, f"{name}.xml", what="name of a house")
+    try:
+        spec.compile()
+    except ValueError as error:
+        raise HouseError(f"House '{name}' does not compile: {reason_of(error)}.") from None
+    files: dict[Path, bytes | str] = {path: house_text(spec, SHARED_TEXTURES)}
+    for texture in spec.textures:
+        for file in (each for each in (texture.file, *texture.cubefiles) if each):
+            source = asset_path(spec, Path(spec.modelfiledir), file, texture=True)
+            files[folder / SHARED_TEXTURES / file] = read_bytes(source, what="Texture", error=HouseError)
+    write_together(files)
+    load_house(path)
+    return path
 
 
 def _short_quat(found: re.Match[str]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.geometry.pose import Pose
-from sim.gl import mujoco
+from sim.gl import begin_rendering, mujoco
 from sim.houses.labels import Labels, rendered_geoms
 from sim.interface import SENSORS, CameraModel, ConfigError
 from sim.sensors.lamp_maps import MAP_PX, LampMaps
@@ -101,6 +101,7 @@ class Camera:
 
         Raises:
             ConfigError: an unknown sensor.
+            RenderError: this process was forked from the one that made this camera.
         """
         unknown = [name for name in sensors if name not in (*SENSORS, "geom")]
         if unknown:
@@ -108,6 +109,7 @@ class Camera:
         images: dict[str, NDArray] = {}
         if not sensors:
             return images
+        begin_rendering()
         self._gl.make_current()
         eye_m, axes = _camera_frame(pose, self.camera)
         visible = self._visibility.visible(data, eye_m, pose.yaw_rad) if self.cull else self._visual_ids

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.errors import RenderError
-from sim.gl import INSTALL_HINT, begin_rendering, mujoco
+from sim.gl import INSTALL_HINT, begin_rendering, is_forked, mujoco
 from sim.interface import CameraModel
 from sim.sensors.image_kernels import look_up_ids, to_metres
 from sim.sensors.profiles import RenderProfile
@@ -62,7 +62,9 @@ def make_frame_buffer(model: mujoco.MjModel, camera: CameraModel, profile: Rende
 
 
 def free_contexts(gl: mujoco.GLContext, frame_buffers: set[mujoco.MjrContext]) -> None:
-    """Frees frame buffers and their OpenGL context."""
+    """Frees frame buffers and their OpenGL context; a forked process leaves them to the one that made them."""
+    if is_forked():
+        return
     gl.make_current()  # freeing deletes objects of the current context
     for frame_buffer in frame_buffers:
         frame_buffer.free()

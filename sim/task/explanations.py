@@ -99,7 +99,7 @@ def explain_end(line: Line, goal: str, rule: SuccessRule, nearest_m: float | Non
     if line.get("end_reason") == "fallen":
         return Outcome(False, headline, "The robot drove over an edge and fell.")
     if line.get("end_reason") == "stop":
-        stop = _success(line, goal, rule, nearest_m) if found else _wrong_stop(line, goal, rule, nearest_m, detects)
+        stop = _success(line, goal, nearest_m) if found else _wrong_stop(line, goal, rule, nearest_m, detects)
         return Outcome(found, headline, stop)
     left_m = line.get("distance_to_goal")
     cause = _CAUSES.get(line.get("failure") or "", "The goal was in sight.")
@@ -107,27 +107,26 @@ def explain_end(line: Line, goal: str, rule: SuccessRule, nearest_m: float | Non
     return Outcome(False, headline, f"All {steps} are used up. {cause}{left}")
 
 
-def _success(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None) -> str:
+def _success(line: Line, goal: str, nearest_m: float | None) -> str:
     shortest_m = line.get("shortest_path")
-    near = "" if nearest_m is None else f"the nearest {in_words(goal)} is {nearest_m:.2f} m away and in sight; "
-    driven = f"Driven: {line['path_length']:.1f} m"
-    shortest = "" if shortest_m is None else f"; shortest path: {shortest_m:.1f} m; SPL {line['spl']:.2f}"
-    return f"The STOP counts: {near}at most {rule.distance_m:g} m is allowed. {driven}{shortest}."
+    near = "" if nearest_m is None else f": the nearest {in_words(goal)} is {nearest_m:.2f} m away and in sight"
+    shortest = "" if shortest_m is None else f" The shortest path is {shortest_m:.1f} m (SPL {line['spl']:.2f})."
+    return f"The STOP counts{near}. The robot drove {line['path_length']:.1f} m.{shortest}"
 
 
 def _wrong_stop(line: Line, goal: str, rule: SuccessRule, nearest_m: float | None, detects: bool) -> str:
-    name, off_m = in_words(goal), line.get("stop_target_to_goal_m")
+    name = in_words(goal)
     mistaken = detects and line.get("failure") == "false_detection"
     if nearest_m is None:
         return f"The STOP does not count: there is no {name} on this storey."
-    if mistaken and off_m is not None:
-        return f"False detection: the agent stopped for something {off_m:.1f} m from the nearest {name}."
+    if mistaken and (target := _stop_target(line, name)):
+        return f"False detection: the agent stopped {target}."
     if nearest_m <= rule.distance_m:
         return f"The STOP does not count: the nearest {name} is {nearest_m:.2f} m away, but a wall or a door hides it."
-    far = f"the nearest {name} is {nearest_m:.1f} m away, and at most {rule.distance_m:g} m counts"
+    far = f"the nearest {name} is {nearest_m:.1f} m away"
     if mistaken:
         return f"False detection: the agent took another object for the {name}; {far}."
-    return f"The STOP came too early: {far}."
+    return f"The STOP came too early: {far}. At most {rule.distance_m:g} m counts."
 
 
 @dataclass(frozen=True)
@@ -188,13 +187,14 @@ def marks(line: Line, trajectory: Trajectory) -> list[Mark]:
 
 def _found(line: Line, trajectory: Trajectory) -> str:
     shortest_m = line.get("shortest_path")
-    shortest = f"; the shortest path is {shortest_m:.1f} m" if shortest_m is not None else ""
-    return f"Found: stopped after {trajectory.num_steps} steps and {_driven(trajectory)}{shortest}."
+    shortest = f" The shortest path is {shortest_m:.1f} m." if shortest_m is not None else ""
+    return f"Found: stopped after {trajectory.num_steps} steps and {_driven(trajectory)}.{shortest}"
 
 
 def _false_detection(line: Line, trajectory: Trajectory) -> str:
-    distance = f"{_target(_goal(line), trajectory)}{_distance_to_instance(_goal(line), trajectory)}"
-    return f"Called STOP at step {trajectory.num_steps}{distance}. {_view(line, trajectory)}"
+    target = _stop_target(line, _goal(line), trajectory)
+    place = f" {target}" if target else f": {_distance_to_instance(_goal(line), trajectory)}"
+    return f"Called STOP at step {trajectory.num_steps}{place}. {_view(line, trajectory)}"
 
 
 def _missed_detection(line: Line, trajectory: Trajectory) -> str:
@@ -271,16 +271,20 @@ def _distance_to_instance(goal: str, trajectory: Trajectory) -> str:
     nearest_m = trajectory.nearest_instance_m
     if nearest_m is None:
         return f"no {goal} is on this storey"
-    if trajectory.stop_target_xy_m is not None:
-        return f"the robot is {nearest_m:.1f} m from the nearest {goal}"
-    limit = f", which is more than {STOPPED_AT_GOAL_M:g} m" if nearest_m > STOPPED_AT_GOAL_M else ""
-    return f"the nearest {goal} is {nearest_m:.1f} m away{limit}"
+    too_far = trajectory.stop_target_xy_m is None and nearest_m > STOPPED_AT_GOAL_M
+    return f"the nearest {goal} is {nearest_m:.1f} m away{', too far for a stop at it' if too_far else ''}"
 
 
-def _target(goal: str, trajectory: Trajectory) -> str:
-    """Returns how far the object for which the agent stopped is from the goal, if that is known; the colon after it."""
-    off_m = trajectory.stop_target_to_goal_m
-    return ": " if off_m is None else f" for something {off_m:.1f} m from the nearest {goal}; "
+def _stop_target(line: Line, goal: str, trajectory: Trajectory | None = None) -> str:
+    """Returns for which object the agent stopped: "at a sofa, 1.8 m from the nearest chair"; "" if it stated none."""
+    off_m = line.get("stop_target_to_goal_m")
+    category = line.get("stop_target_category")
+    if trajectory is not None:  # that of an old file may know less than the line, and the reverse
+        off_m = trajectory.stop_target_to_goal_m if off_m is None else off_m
+        category = category or trajectory.stop_target_category
+    if off_m is None:
+        return ""
+    return f"{f'at {with_article(category)},' if category else 'for something'} {off_m:.1f} m from the nearest {goal}"
 
 
 def _end(line: Line, trajectory: Trajectory) -> str:

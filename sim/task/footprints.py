@@ -34,6 +34,13 @@ class Floor(NamedTuple):
     plan: ConvexPolygon | None
 
 
+class _Placed(NamedTuple):
+    """The positions and rotations of an instance's geoms, and its footprint there."""
+
+    place: bytes
+    footprint: Footprint | None
+
+
 @dataclass(frozen=True, eq=False)
 class Footprint:
     """The union of the plan projections of an instance's rendered geoms."""
@@ -61,6 +68,35 @@ class Footprint:
         for part in self.parts if candidates.size else ():
             inside[candidates] |= part.contains(xy_m[candidates])
         return inside
+
+
+class Footprints:
+    """Footprints of the instances of one model, each computed again only after the instance has moved.
+
+    Args:
+        model: compiled world.
+        floors: of the house.
+    """
+
+    def __init__(self, model: mujoco.MjModel, floors: Sequence[Floor] = ()) -> None:
+        self._model, self._floors = model, floors
+        self._at_first: dict[tuple[int, ...], _Placed] = {}
+        self._at_last: dict[tuple[int, ...], _Placed] = {}
+
+    def of(self, data: mujoco.MjData, instance: Instance) -> Footprint | None:
+        """Returns the footprint of an instance in a state, kinematics computed; None where nothing of it is rendered.
+
+        The first state of each instance is kept, which is the one of the house file, and the last one.
+        """
+        geoms = instance.geom_ids
+        place = data.geom_xpos[list(geoms)].tobytes() + data.geom_xmat[list(geoms)].tobytes()
+        for known in (self._at_first, self._at_last):
+            if geoms in known and known[geoms].place == place:
+                return known[geoms].footprint
+        placed = _Placed(place, footprint_of(self._model, data, instance, self._floors))
+        self._at_first.setdefault(geoms, placed)
+        self._at_last[geoms] = placed
+        return placed.footprint
 
 
 def footprint_of(

@@ -17,10 +17,12 @@ from sim.gl import mujoco
 from sim.houses.labels import rendered_geoms
 from sim.interface import GOAL_CATEGORIES, CameraModel, SuccessRule
 from sim.task.seen_floor import SeenFloor, floor_cells
-from sim.task.success import GoalRegion, Surroundings
+from sim.task.success import SIGHT_BLOCKERS, GoalRegion, Surroundings
 from sim.world.freespace import FreeSpace
 from sim.world.plan import floor_polygons
 from sim.world.world import World
+
+_NO_OBJECTS = frozenset({"void", "floor", "ceiling"})
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +123,46 @@ class GroundTruth:
         """
         return self._region_now(goal, floor_z_m).nearest_m(x_m, y_m)
 
+    def category_at(self, x_m: float, y_m: float, floor_z_m: float, *, goal: str, within_m: float) -> str | None:
+        """Returns the category of the object at a place of a storey, with objects where they are now in the world.
+
+        Args:
+            x_m: place in the world.
+            y_m: place in the world.
+            floor_z_m: height of the storey's floor.
+            goal: category that counts first, because outlines overlap: a cushion lies on a sofa.
+            within_m: largest distance in plan from the place to the footprint of the object.
+
+        Returns:
+            The goal if an instance is near enough, else the category of the nearest object, of objects at the same
+            distance the smallest. A wall, a door or a window counts only where there is no other object. None: there
+            is nothing.
+        """
+        off_m = self.nearest_now_m(goal, x_m, y_m, floor_z_m)
+        if off_m is not None and off_m <= within_m:
+            return goal
+        world, place = self.world, np.array([[x_m, y_m]])
+        found: list[tuple[bool, float, float, str]] = []
+        for instance in world.labels.instances:
+            if instance.category in _NO_OBJECTS or not self._may_be_within(instance.geom_ids, x_m, y_m, within_m):
+                continue
+            footprint = self._surroundings_of(floor_z_m).footprints.of(world.data, instance)
+            if footprint is None or abs(footprint.floor_z_m - floor_z_m) >= self.success.same_storey_m:
+                continue
+            distance_m = 0.0 if footprint.contains(place)[0] else float(footprint.boundary_m.query(place)[0][0])
+            if distance_m <= within_m:
+                x0, y0, x1, y1 = footprint.bounds_m
+                is_structure = instance.category in SIGHT_BLOCKERS
+                found.append((is_structure, distance_m, (x1 - x0) * (y1 - y0), instance.category))
+        return min(found)[-1] if found else None
+
+    def _may_be_within(self, geoms: tuple[int, ...], x_m: float, y_m: float, within_m: float) -> bool:
+        """Returns False where the bounding spheres of all geoms are farther in plan from a place than a distance."""
+        model, data = self.world.model, self.world.data
+        radius_m = np.where(model.geom_rbound[list(geoms)] > 0.0, model.geom_rbound[list(geoms)], np.inf)
+        off_m = np.hypot(*(data.geom_xpos[list(geoms), :2] - (x_m, y_m)).T)
+        return bool(np.any(off_m - radius_m <= within_m))
+
     def _region_now(self, goal: str, floor_z_m: float) -> GoalRegion:
         if self._may_have_moved(goal):
             return self._existing(self._region(goal, floor_z_m, self.world.data))
@@ -129,20 +171,22 @@ class GroundTruth:
     def _region(self, goal: str, floor_z_m: float, data: mujoco.MjData) -> GoalRegion:
         if goal not in GOAL_CATEGORIES:
             raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+        return GoalRegion(
+            data,
+            self.world.labels,
+            goal,
+            surroundings=self._surroundings_of(floor_z_m),
+            success=self.success,
+            floor_z_m=floor_z_m,
+        )
+
+    def _surroundings_of(self, floor_z_m: float) -> Surroundings:
         world = self.world
         if floor_z_m not in self._surroundings:
             self._surroundings[floor_z_m] = Surroundings.of(
                 world.model, self._at_rest, world.labels, sight_height_m=self._sight_height_m, floor_z_m=floor_z_m
             )
-        return GoalRegion(
-            world.model,
-            data,
-            world.labels,
-            goal,
-            surroundings=self._surroundings[floor_z_m],
-            success=self.success,
-            floor_z_m=floor_z_m,
-        )
+        return self._surroundings[floor_z_m]
 
     def _existing(self, region: GoalRegion) -> GoalRegion:
         """Returns the region; raises EpisodeError where no storey of the house has an instance."""

@@ -15,7 +15,7 @@ from sim.interface import Action, CameraModel
 from sim.robot.drive import Motion
 from sim.task import metrics
 from sim.task.config import TaskConfig
-from sim.task.failures import Cause, cause_of_failure
+from sim.task.failures import TARGET_ON_GOAL_M, Cause, cause_of_failure
 from sim.task.ground_truth import GroundTruth
 from sim.task.seen_floor import SeenFloor
 from sim.task.trajectory import Recorder, Trajectory
@@ -52,6 +52,7 @@ class _Record:
     """Set at the end; see `sim.task.trajectory`."""
     stop_target_xy_m: tuple[float, float] | None = None
     stop_target_to_goal_m: float | None = None
+    stop_target_category: str | None = None
     failure: Cause | None = None
 
 
@@ -145,6 +146,9 @@ class Task:
         record, floor_z_m = self._running, self.world.pose.floor_z_m
         record.stop_target_xy_m = x_m, y_m
         record.stop_target_to_goal_m = self.truth.nearest_now_m(record.goal, x_m, y_m, floor_z_m)
+        record.stop_target_category = self.truth.category_at(
+            x_m, y_m, floor_z_m, goal=record.goal, within_m=TARGET_ON_GOAL_M
+        )
 
     @property
     def goal(self) -> str:
@@ -226,12 +230,13 @@ class Task:
         }
 
     def stop_target(self) -> dict[str, Any]:
-        """Returns the place for which the agent stopped and its distance to the goal, as in a result line."""
+        """Returns the entries of a result line on the place for which the agent stopped."""
         record = self._running
         place = record.stop_target_xy_m
         return {
             "stop_target_xy_m": None if place is None else list(place),
             "stop_target_to_goal_m": record.stop_target_to_goal_m,
+            "stop_target_category": record.stop_target_category,
         }
 
     def trajectory(self) -> Trajectory:
@@ -243,6 +248,7 @@ class Task:
             nearest_instance_m=record.nearest_instance_m,
             stop_target_xy_m=record.stop_target_xy_m,
             stop_target_to_goal_m=record.stop_target_to_goal_m,
+            stop_target_category=record.stop_target_category,
         )
 
     def _end(self, reason: EndReason) -> None:

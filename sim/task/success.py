@@ -19,7 +19,7 @@ from sim.gl import mujoco
 from sim.houses.geoms import geom_polytope, geoms_between, mesh_triangles
 from sim.houses.labels import Labels, rendered_geoms
 from sim.interface import MPCAT40_ID, SuccessRule
-from sim.task.footprints import Floor, Footprint, footprint_of, house_floors, is_hollow
+from sim.task.footprints import Footprint, Footprints, house_floors, is_hollow
 from sim.world.freespace import FreeSpace
 
 SIGHT_BLOCKERS = ("wall", "door", "window")
@@ -28,9 +28,9 @@ SIGHT_BLOCKERS = ("wall", "door", "window")
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """Geometry that does not depend on the goal: floors of the house, and the obstacles to sight on one storey."""
+    """Geometry that does not depend on the goal: all footprints, and the obstacles to sight on one storey."""
 
-    floors: tuple[Floor, ...]
+    footprints: Footprints
     blockers: tuple[ConvexPolygon, ...]
 
     @classmethod
@@ -53,7 +53,7 @@ class Surroundings:
             floor_z_m: height of the storey's floor.
         """
         blockers = sight_blockers(model, data, labels, floor_z_m + sight_height_m)
-        return cls(house_floors(model, data, labels), blockers)
+        return cls(Footprints(model, house_floors(model, data, labels)), blockers)
 
 
 class GoalRegion:
@@ -61,7 +61,6 @@ class GoalRegion:
 
     def __init__(
         self,
-        model: mujoco.MjModel,
         data: mujoco.MjData,
         labels: Labels,
         goal: str,
@@ -73,8 +72,7 @@ class GoalRegion:
         """Computes the footprints of a category; kinematics of `data` must be computed.
 
         Args:
-            model: compiled world.
-            data: its state.
+            data: state of the compiled world.
             labels: category and instance of each geom.
             goal: the category.
             surroundings: of the same storey.
@@ -84,7 +82,7 @@ class GoalRegion:
         self.goal = goal
         self.distance_m = success.distance_m
         self._blockers = surroundings.blockers
-        everywhere = [footprint_of(model, data, instance, surroundings.floors) for instance in labels.of_category(goal)]
+        everywhere = [surroundings.footprints.of(data, instance) for instance in labels.of_category(goal)]
         self.exists = any(footprint is not None for footprint in everywhere)
         """True: some storey of the house has an instance."""
         self.footprints = tuple(

@@ -64,6 +64,8 @@ class Trajectory:
     """Place in the world for which the agent stopped, as it stated; None: no STOP, or it stated none."""
     stop_target_to_goal_m: float | None = None
     """Metres in plan from that place to the nearest instance, walls ignored; None: no place, or storey has none."""
+    stop_target_category: str | None = None
+    """Category of the object at that place; None: no place, no object, or a file of an older version."""
     about: Mapping[str, Any] = field(default_factory=dict)
     """Identity of the episode, and its scores; JSON types."""
 
@@ -101,6 +103,7 @@ _ARRAYS: Mapping[str, tuple[type, int, int]] = {
 """Dtype, number of axes, and number of entries beyond the number of actions."""
 _SCALARS = (
     "goal_on_storey", "nearest_instance_m", "success", "end_reason", "stop_target_xy_m", "stop_target_to_goal_m",
+    "stop_target_category",
 )  # fmt: skip
 
 
@@ -133,6 +136,7 @@ class Recorder:
         nearest_instance_m: float | None = None,
         stop_target_xy_m: tuple[float, float] | None = None,
         stop_target_to_goal_m: float | None = None,
+        stop_target_category: str | None = None,
     ) -> Trajectory:
         """Returns the trajectory so far."""
         stops = [
@@ -156,6 +160,7 @@ class Recorder:
             end_reason=end_reason,
             stop_target_xy_m=stop_target_xy_m,
             stop_target_to_goal_m=stop_target_to_goal_m,
+            stop_target_category=stop_target_category,
         )
 
 
@@ -219,6 +224,7 @@ class _Scalars(msgspec.Struct):
     end_reason: Literal["stop", "max_steps", "fallen", "error"] | None
     stop_target_xy_m: tuple[Number, Number] | None = None  # older versions write neither
     stop_target_to_goal_m: Number | None = None
+    stop_target_category: str | None = None
 
 
 class _Header(msgspec.Struct):

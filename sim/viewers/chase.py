@@ -1,22 +1,25 @@
 """Renders the robot in third person: from behind and above, with everything between it and the eye cut away.
 
+Obstacles that no camera renders, such as panes of glass, are tinted where they stand in front of what is visible.
 The near plane lies just before the robot, so that no wall or ceiling hides it, and the room ahead stays whole. Colours
 are shaded as those of the robot's camera (`sim.sensors.shading`).
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import weakref
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.env.scene import Scene
 from sim.geometry.pose import Pose
 from sim.gl import mujoco
-from sim.houses.labels import geoms_of, rendered_geoms
-from sim.interface import CameraModel
+from sim.houses.labels import RENDERED_GROUPS, collidable_geoms, geoms_of, opacity, rendered_geoms
+from sim.interface import MPCAT40_ID, CameraModel
 from sim.robot.body import PREFIX
 from sim.sensors.lamps import Lamps
 from sim.sensors.occlusion import Visibility
@@ -25,6 +28,7 @@ from sim.sensors.profiles import get_profile
 from sim.sensors.scene import GeomScene
 from sim.sensors.shading import make_shading
 from sim.viewers.viewer import Colour
+from sim.world.world import World
 
 BEHIND_M, ABOVE_M = 1.9, 1.95
 """Position of the eye relative to the robot's position on the floor."""
@@ -35,6 +39,16 @@ CUT_M = 0.45
 FAR_M = 9.0
 """Geoms farther from the eye than this are left out."""
 HFOV_RAD = math.radians(70.0)
+HIDDEN: Colour = (40, 170, 240)
+"""Tint of obstacles that no camera renders."""
+_TINT, _IN_FRONT_M = 0.4, 0.06
+"""Share of the tint, and how far before the visible surface an invisible one must be."""
+_COVER_M = 0.12
+"""A point of an invisible geom with a visible surface within this distance is no invisible obstacle: it is a part of
+visible furniture that only collides."""
+_AXES = np.vstack([np.eye(3), -np.eye(3)])
+_SPECK_PX = 12
+"""Outlines around less than this area are not drawn."""
 OUTSIDE: Colour = (36, 40, 48)
 """Colour of pixels that show nothing: the outside of the house."""
 _DARK, _LENS, _ARROW = (0.10, 0.12, 0.16, 1.0), (0.35, 0.75, 1.0, 1.0), (0.13, 0.35, 0.80, 1.0)
@@ -70,8 +84,8 @@ class ChaseView:
         robot = np.flatnonzero(geoms_of(model, PREFIX))
         visual = rendered_geoms(model)
         self._geoms = np.union1d(np.flatnonzero(visual), robot)
-        self._reach_m = FAR_M + np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[self._geoms]
-        self._scene = GeomScene(model, unhidden=robot.tolist())
+        self._hidden = np.setdiff1d(np.flatnonzero(_hidden_obstacles(scene.world)), robot)
+        self._scene = GeomScene(model, unhidden=[*robot.tolist(), *self._hidden.tolist()])
         self._lamps = Lamps(model, Visibility(model, visual, self._size, Z_NEAR_M), np.flatnonzero(visual))
         self._shading = make_shading(model, self._size, profile)
         up = math.tan(0.5 * self._size.vfov_rad)
@@ -84,23 +98,60 @@ class ChaseView:
         robot_m = np.array([pose.x_m, pose.y_m, pose.floor_z_m + 0.5 * self._world.robot.height_m])
         near_m = max(Z_NEAR_M, float((robot_m - eye_m) @ axes[0]) - CUT_M)
         self._gl.make_current()
-        offset = data.geom_xpos[self._geoms] - eye_m
-        near_enough = np.linalg.norm(offset, axis=1) < self._reach_m
-        bound = self._world.model.geom_rbound[self._geoms]
-        ahead = (offset @ axes[0] + bound > near_m) | (bound <= 0.0)
+        shown, hidden = (self._in_range(geoms, eye_m, axes, near_m) for geoms in (self._geoms, self._hidden))
         lamps = self._lamps.choose(data, robot_m, axes[0] * np.array([1.0, 1.0, 0.0]))
         self._lamps.switch_on(lamps)
-        self._scene.fill(data, self._geoms[near_enough & ahead], eye_m, axes, self._slopes, near_m)
+        self._scene.fill(data, shown, eye_m, axes, self._slopes, near_m)
         self._lamps.restore()
         self._mark_front(pose)
-        return self._drawn(near_m, eye_m, axes)
+        picture, inverse = self._drawn(near_m, eye_m, axes)
+        if hidden.size:
+            self._tint(picture, inverse, hidden, near_m, eye_m, axes)
+        return picture
 
     def close(self) -> None:
         """Frees the renderer."""
         self._finalizer()
 
-    def _drawn(self, near_m: float, eye_m: NDArray, axes: NDArray) -> NDArray[np.uint8]:
-        """Returns the picture of the filled scene."""
+    def _in_range(self, geoms: NDArray[np.intp], eye_m: NDArray, axes: NDArray, near_m: float) -> NDArray[np.intp]:
+        """Returns those of some geoms that are near enough to be drawn and not behind the near plane."""
+        model, offset = self._world.model, self._world.data.geom_xpos[geoms] - eye_m
+        bound = np.where(model.geom_rbound > 0.0, model.geom_rbound, np.inf)[geoms]
+        return geoms[(np.linalg.norm(offset, axis=1) < FAR_M + bound) & (offset @ axes[0] + bound > near_m)]
+
+    def _tint(
+        self,
+        picture: NDArray[np.uint8],
+        inverse: NDArray[np.float32],
+        hidden: NDArray[np.intp],
+        near_m: float,
+        eye_m: NDArray,
+        axes: NDArray,
+    ) -> None:
+        """Tints invisible obstacles that stand before what is visible, and draws their edges.
+
+        Args:
+            picture: (h, w, 3); changed in place.
+            inverse: (h, w) inverse of the visible depth, 1 / m.
+            hidden: ids of invisible geoms.
+            near_m: near plane.
+            eye_m: (3,) optical centre.
+            axes: (3, 3) the camera's axes.
+        """
+        self._scene.fill(self._world.data, hidden, eye_m, axes, self._slopes, near_m)
+        mujoco.mjr_restoreBuffer(self._context)
+        mujoco.mjr_render(self._rect, self._scene.scene, self._context)
+        mujoco.mjr_readPixels(None, self._depth, self._rect, self._context)
+        there = self._depth[::-1] > 0.0
+        before = self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
+        mask = there & (1.0 / before < 1.0 / inverse - _IN_FRONT_M)
+        tint = np.array(HIDDEN, np.float32)
+        picture[mask] = ((1.0 - _TINT) * picture[mask] + _TINT * tint).astype(np.uint8)
+        outlines, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+        cv2.drawContours(picture, [each for each in outlines if cv2.contourArea(each) > _SPECK_PX], -1, HIDDEN, 1)
+
+    def _drawn(self, near_m: float, eye_m: NDArray, axes: NDArray) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """Returns the picture of the filled scene, and the inverse of its depth (h, w) in 1 / m."""
         flags = self._scene.scene.flags
         flags[:] = 0
         flags[mujoco.mjtRndFlag.mjRND_CULL_FACE] = 1
@@ -113,7 +164,7 @@ class ChaseView:
         if self._shading is not None:
             picture = self._shading.apply(self._color, raw, self._world.data, None, eye_m, axes, None)
         picture[raw[::-1] <= 0.0] = OUTSIDE
-        return picture
+        return picture, self._depth[::-1] * np.float32(_depth_slope(near_m)) + np.float32(1.0 / Z_FAR_M)
 
     def _mark_front(self, pose: Pose) -> None:
         """Adds a band with a lens and an arrow to the robot, which show where its front is."""
@@ -137,6 +188,32 @@ class ChaseView:
         mujoco.mjv_initGeom(geom, kind, np.array(size), at_m, np.eye(3).ravel(), np.array(rgba, np.float32))
         scene.ngeom += 1
         return geom
+
+
+def _hidden_obstacles(world: World) -> NDArray[np.bool_]:
+    """Returns (ngeom,) True for obstacles that no camera renders; floors and ceilings are none."""
+    model, labels = world.model, world.labels
+    flat = np.isin(labels.geom_category, [MPCAT40_ID["floor"], MPCAT40_ID["ceiling"]])
+    hidden = collidable_geoms(model) & ~rendered_geoms(model) & (opacity(model) > 0.0) & ~flat
+    for geom in np.flatnonzero(hidden).tolist():
+        hidden[geom] = _covered_share(world, geom) < 0.5
+    return hidden
+
+
+def _covered_share(world: World, geom: int) -> float:
+    """Returns the share of nine points of a geom, across its two longest sides, that have a visible surface nearby."""
+    model, data = world.model, world.data
+    middle, half = model.geom_aabb[geom, :3], model.geom_aabb[geom, 3:].copy()
+    half[int(np.argmin(half))] = 0.0
+    steps = np.unique(np.array(list(itertools.product((-0.6, 0.0, 0.6), repeat=3))) * half, axis=0)
+    points = data.geom_xpos[geom] + (middle + steps) @ data.geom_xmat[geom].reshape(3, 3).T
+    groups = np.array([group < RENDERED_GROUPS for group in range(6)], np.uint8)
+    hit, far_m = np.zeros(len(_AXES), np.int32), np.zeros(len(_AXES))
+    covered = 0
+    for point in points:
+        mujoco.mj_multiRay(model, data, point, _AXES.ravel(), groups, 1, -1, hit, far_m, None, len(_AXES), _COVER_M)
+        covered += bool(np.any((hit >= 0) & (far_m <= _COVER_M)))  # the cutoff only leaves geoms out
+    return covered / len(points)
 
 
 def _depth_slope(near_m: float) -> float:

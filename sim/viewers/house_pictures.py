@@ -52,6 +52,8 @@ NEAREST_LOOK_M = 1.0
 LOOK_SIZES = 1.2
 """The best distance from the middle of an object: this many times its size, and `NEAREST_LOOK_M` more."""
 HIDDEN_GROUP = 3
+QUADS = 28
+"""Squares along an edge of a flat geom, at whose corners light is computed: with few, lamps draw diamonds on floors."""
 CEILING_M = 2.5
 """Height of a storey without rooms."""
 _STRUCTURE = tuple(MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling", "door", "window"))
@@ -162,28 +164,29 @@ def _outlined(picture: Picture, text: str, left_base: tuple[int, int], line_px: 
 
 
 def storeys(house: House) -> list[House]:
-    """Returns a house from the ground up to each of its storeys, the lowest first."""
+    """Returns each storey of a house alone, the lowest first."""
     spec = house.spec
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     floors_m = sorted({round(room.floor_z_m, 2) for room in read_rooms(model)})
     cut = []
-    for above_m in floors_m[1:]:
+    limits_m = [-math.inf, *(floor_m - STOREY_GAP_M for floor_m in floors_m[1:]), math.inf]
+    for low_m, high_m in itertools.pairwise(limits_m):
         storey = spec.copy()
-        above = data.geom_xpos[:, 2] > above_m - STOREY_GAP_M
+        other = (data.geom_xpos[:, 2] <= low_m) | (data.geom_xpos[:, 2] > high_m)
         for body in list(storey.worldbody.bodies):
             geoms = np.flatnonzero(model.geom_bodyid == model.body(body.name).id)
-            if geoms.size and above[geoms].all():
+            if geoms.size and other[geoms].all():
                 storey.delete(body)
         for geom in list(storey.worldbody.geoms):
-            if geom.pos[2] > above_m - STOREY_GAP_M:
+            if not low_m < geom.pos[2] <= high_m:
                 storey.delete(geom)
         for site in list(storey.worldbody.sites):
-            if site.pos[2] > above_m:
+            if not low_m < site.pos[2] <= high_m:
                 storey.delete(site)
         cut.append(replace(house, spec=storey))
-    return [*cut, house]
+    return cut if len(cut) > 1 else [house]
 
 
 def draw_views(house: House, columns: int = 3) -> Picture | None:
@@ -364,6 +367,7 @@ def render_all(
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     model.vis.global_.fovy = fovy_deg
     model.vis.quality.shadowsize = 0
+    model.vis.quality.numquads = QUADS
     model.stat.extent = EXTENT_M
     model.vis.map.znear, model.vis.map.zfar = (plane_m / EXTENT_M for plane_m in near_far_m)
     data = mujoco.MjData(model)

@@ -4,14 +4,15 @@
     | Looking for a chair          step 48 / 500   turn left   [collision] |
     +-----------------------------------+---------------------+-----------+
     | camera, 640 x 480                 | the robot in        | depth     |
-    |                                   | third person        | in sight  |
+    |                                   | third person        | score     |
     |                                   +----------------+----+-----------+
     |                                   | the agent's    | the true       |
     +-----------+-----------+-----------+ map            | plan           |
-    | the       | score of  | true      +----------------+----------------+
-    | agent's   | the goal  | segments  | legends, state of the agent     |
+    | agent's   | true      | colours   +----------------+----------------+
+    | segments  | segments  | in sight  | legends, state of the agent     |
     +-----------+-----------+-----------+---------------------------------+
 
+Without a map of the agent the plan has the room of both; without a segmentation its pictures are left out.
 A text that is too wide for its place is written smaller.
 """
 
@@ -52,12 +53,14 @@ MIN_SHARE = 0.0005
 _HEADER_PX = 40
 _CAMERA = (8, 60, 640, 480)  # left, top, width, height
 _SMALL = (204, 153)
-_SMALL_TOP, _SMALL_LEFT = 562, (8, 226, 444)
+_SMALL_TOP, _SMALL_LEFT = 562, (8, 226)
 _CHASE = (656, 60, *CHASE_PX)
 _DEPTH = (1068, 60, 204, 153)
-_NAMES = (1068, 220, 204, 90)
+_LOW_DEPTH, _SCORE = (1068, 60, 204, 112), (1068, 198, 204, 112)
+_NAMES_PX = 104
+"""Width of a column of names of categories."""
 _MAPS_TOP, _MAP_LEFT, _PLAN_LEFT = 334, 656, 976
-_LEGEND_TOP, _ROW_PX, _COLUMNS = _MAPS_TOP + MAP_PX + 5, 14, 3
+_LEGEND_TOP, _ROW_PX, _COLUMN_PX = _MAPS_TOP + MAP_PX + 5, 14, 98
 _STATE_TOP = 691
 _FLASH_PX = 7
 
@@ -80,9 +83,11 @@ class FrameComposer:
         goal: category that the episode asks for.
         camera: the range of depth.
         plan_legend: names and colours of the true plan.
-        map_legend: names and colours of the agent's map; empty without one.
+        map_legend: names and colours of the agent's map; None: the agent has no map.
+        scores: whether the agent has a segmentation, which scores the goal.
+        names: whether that segmentation names categories.
         max_steps: number of actions that the episode allows.
-        segmentation: name of the segmentation that the agent acts on; "": none, and its panels are left out.
+        segmentation: name of the agent's segmentation.
     """
 
     def __init__(
@@ -91,11 +96,21 @@ class FrameComposer:
         camera: CameraModel,
         *,
         plan_legend: tuple[tuple[str, Colour], ...],
-        map_legend: tuple[tuple[str, Colour], ...] = (),
+        map_legend: tuple[tuple[str, Colour], ...] | None = None,
+        scores: bool = False,
+        names: bool = False,
         max_steps: int = 500,
         segmentation: str = "",
     ) -> None:
-        self.goal, self._camera, self._max_steps, self._segmentation = goal, camera, max_steps, segmentation
+        self.goal, self._camera, self._max_steps = goal, camera, max_steps
+        self._depth = _LOW_DEPTH if scores else _DEPTH
+        self._segments = ("predicted", "true") if names else ("true",)
+        self._plan_left = _MAP_LEFT if map_legend is None else _PLAN_LEFT
+        self.plan_px = WIDTH_PX - 8 - self._plan_left, MAP_PX
+        """Width and height of the plan."""
+        module, own, last = segmentation.rpartition(":")
+        named = f"by {module.rpartition('.')[2]}:{last}" if own else f"segmentation ({segmentation})"
+        captions = {"predicted": named, "true": "segmentation (true)"}
         self._ground = np.full((HEIGHT_PX, WIDTH_PX, 3), PAPER, np.uint8)
         frame = self._ground
         frame[:_HEADER_PX] = HEADER
@@ -103,14 +118,14 @@ class FrameComposer:
         for box, title in (
             (_CAMERA, "camera of the robot"),
             (_CHASE, "third person"),
-            ((_SMALL_LEFT[2], _SMALL_TOP, *_SMALL), "segmentation (true)"),
-            ((_PLAN_LEFT, _MAPS_TOP, MAP_PX, MAP_PX), "plan (true)"),
+            *((self._segment_box(name), captions[name]) for name in self._segments),
+            ((self._plan_left, _MAPS_TOP, *self.plan_px), "plan (true)"),
         ):
             self._caption(frame, title, box)
         self._caption(frame, "depth", (*_DEPTH[:2], 60, _DEPTH[3]))
         _depth_scale(frame, camera)
-        _legend(frame, plan_legend, _PLAN_LEFT)
-        _legend(frame, map_legend, _MAP_LEFT)
+        _legend(frame, plan_legend, self._plan_left, self.plan_px[0])
+        _legend(frame, map_legend or (), _MAP_LEFT, MAP_PX)
 
     def compose(
         self,
@@ -122,19 +137,15 @@ class FrameComposer:
         perceived: Perceived | None = None,
     ) -> Picture:
         """Returns the frame without the outcome of the action, uint8 RGB (720, 1280, 3)."""
-        frame, semantic = self._ground.copy(), moment.images["semantic"]
+        frame = self._ground.copy()
         _put(frame, moment.seen("rgb"), _CAMERA)
         self._segmentations(frame, moment, perceived)
-        _put(frame, colour_depth(_resized(moment.seen("depth"), _DEPTH), self._camera), _DEPTH)
-        self._names(frame, semantic)
+        _put(frame, colour_depth(_resized(moment.seen("depth"), self._depth), self._camera), self._depth)
         if chase is not None:
             _put(frame, chase, _CHASE)
-        frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, _PLAN_LEFT : _PLAN_LEFT + MAP_PX] = plan
-        box = (_MAP_LEFT, _MAPS_TOP, MAP_PX, MAP_PX)
-        if map_panel is None:
-            self._empty(frame, "this agent shows no map", box)
-        else:
-            self._caption(frame, map_panel.title, box)
+        frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, self._plan_left : self._plan_left + self.plan_px[0]] = plan
+        if map_panel is not None:
+            self._caption(frame, map_panel.title, (_MAP_LEFT, _MAPS_TOP, MAP_PX, MAP_PX))
             frame[_MAPS_TOP : _MAPS_TOP + MAP_PX, _MAP_LEFT : _MAP_LEFT + MAP_PX] = map_panel.image
             for row, words in enumerate(wrapped(map_panel.words, MAP_PX, 13)[:2]):
                 write(frame, words, (_MAP_LEFT, _STATE_TOP + 12 + 15 * row), MAP_PX, 13, INK)
@@ -148,8 +159,8 @@ class FrameComposer:
         distance_m, count = info["distance_to_goal"], info["collisions"]
         to_go = "no path to the goal" if distance_m is None else f"{distance_m:.1f} m to go"
         collisions = f"{count} collision" + ("" if count == 1 else "s")
-        write(frame, f"driven {info['path_length']:.1f} m, {to_go}", (_PLAN_LEFT, _STATE_TOP + 3), MAP_PX, 14, INK)
-        write(frame, collisions, (_PLAN_LEFT, _STATE_TOP + 20), MAP_PX, 14, ALARM if info["collided"] else INK)
+        write(frame, f"driven {info['path_length']:.1f} m, {to_go}", (self._plan_left, _STATE_TOP + 3), MAP_PX, 14, INK)
+        write(frame, collisions, (self._plan_left, _STATE_TOP + 20), MAP_PX, 14, ALARM if info["collided"] else INK)
         if info["collided"]:
             self._flash(frame)
 
@@ -170,41 +181,39 @@ class FrameComposer:
             write(frame, words, (left + 24, base + 4 + 25 * row), width - 48, 18, WHITE)
 
     def _segmentations(self, frame: Picture, moment: Moment, perceived: Perceived | None) -> None:
-        """Draws the segmentation that the agent acts on, its score of the goal, and the true segmentation."""
-        boxes = [(left, _SMALL_TOP, *_SMALL) for left in _SMALL_LEFT]
-        _put(frame, segmentation_picture(_resized(moment.images["semantic"], boxes[2]), self.goal), boxes[2])
-        if not self._segmentation:
-            return
-        module, own, name = self._segmentation.rpartition(":")
-        named = f"by {module.rpartition('.')[2]}:{name}" if own else f"segmentation ({name})"
-        self._caption(frame, named, boxes[0])
-        if perceived is None:
-            self._empty(frame, "not used in this step", boxes[0])
-            self._empty(frame, "not used in this step", boxes[1])
-            return
-        if perceived.categories is None:
-            self._empty(frame, "names no categories", boxes[0])
-        else:
-            _put(frame, segmentation_picture(_resized(perceived.categories, boxes[0]), self.goal), boxes[0])
-        if perceived.scores is None:
-            self._empty(frame, "no score", boxes[1])
-            return
-        target = perceived.scores.target
-        self._caption(frame, f"score of the goal, at most {float(target.max()):.2f}", boxes[1])
-        _put(frame, score_picture(_fitted(moment.seen("rgb"), boxes[1]), target), boxes[1])
+        """Draws the predicted and the true segmentation with the names of their colours, and the score of the goal."""
+        shown = {"true": moment.images["semantic"]}
+        if perceived is not None and perceived.categories is not None:
+            shown["predicted"] = perceived.categories
+        small = {name: _resized(shown[name], self._segment_box(name)) for name in self._segments if name in shown}
+        for name, segments in small.items():
+            _put(frame, segmentation_picture(segments, self.goal), self._segment_box(name))
+        self._names(frame, list(small.values()))
+        if "predicted" in self._segments and "predicted" not in small:
+            left, top, width, height = self._segment_box("predicted")
+            write(frame, "not used in this step", (left + 12, top + height // 2), width - 24, 14, PALE)
+        if perceived is not None and perceived.scores is not None:
+            target = perceived.scores.target
+            self._caption(frame, f"score of the goal, at most {float(target.max()):.2f}", _SCORE)
+            _put(frame, score_picture(_fitted(moment.seen("rgb"), _SCORE), target), _SCORE)
 
-    def _names(self, frame: Picture, semantic: NDArray[np.uint8]) -> None:
-        """Writes names and colours of the visible categories, in two columns in a fixed order."""
-        left, top, width, height = _NAMES
-        rows, goal_id = height // _ROW_PX, MPCAT40_ID[self.goal]
-        for place, category in enumerate(names_in_sight(semantic, self.goal)[: 2 * rows]):
-            x, y = left + (place // rows) * (width // 2), top + (place % rows) * _ROW_PX
+    def _segment_box(self, name: str) -> tuple[int, int, int, int]:
+        return (_SMALL_LEFT[self._segments.index(name)], _SMALL_TOP, *_SMALL)
+
+    def _names(self, frame: Picture, segments: list[NDArray[np.uint8]]) -> None:
+        """Writes names and colours of the categories in the segmentations next to them, in columns in a fixed order."""
+        left = _SMALL_LEFT[len(self._segments) - 1] + _SMALL[0] + 12
+        columns = (_CAMERA[0] + _CAMERA[2] - left) // _NAMES_PX
+        rows, goal_id = _SMALL[1] // _ROW_PX, MPCAT40_ID[self.goal]
+        together = np.concatenate([each.ravel() for each in segments])
+        for place, category in enumerate(names_in_sight(together, self.goal)[: columns * rows]):
+            x, y = left + (place // rows) * _NAMES_PX, _SMALL_TOP + (place % rows) * _ROW_PX
             red, green, blue = PALETTE[category].tolist()
             is_goal = category == goal_id
             _swatch(frame, x, y, (red, green, blue), GOAL if is_goal else PALE)
             name = in_words(MPCAT40[category])
             colour, weight = (GOAL, BOLD) if is_goal else (INK, NORMAL)
-            write(frame, name, (x + 15, y + 10), width // 2 - 18, 12, colour, weight)
+            write(frame, name, (x + 15, y + 10), _NAMES_PX - 18, 12, colour, weight)
 
     def _flash(self, frame: Picture) -> None:
         """Marks a collision: a red frame around the camera's picture, and a badge in the header."""
@@ -217,11 +226,6 @@ class FrameComposer:
         wide = text_width("collision", 18, BOLD)
         cv2.rectangle(frame, (WIDTH_PX - 36 - wide, 6), (WIDTH_PX - 12, _HEADER_PX - 6), ALARM, cv2.FILLED)
         write(frame, "collision", (WIDTH_PX - 24 - wide, 26), wide + 12, 18, WHITE, BOLD)
-
-    def _empty(self, frame: Picture, words: str, box: tuple[int, int, int, int]) -> None:
-        left, top, width, height = box
-        frame[top : top + height, left : left + width] = (228, 228, 226)
-        write(frame, words, (left + 12, top + height // 2), width - 24, 14, PALE)
 
     def _caption(self, frame: Picture, words: str, box: tuple[int, int, int, int]) -> None:
         left, top, width, _ = box
@@ -301,14 +305,13 @@ def _depth_scale(frame: Picture, camera: CameraModel) -> None:
     write(frame, far, (last + 4, base), 24, 12, PALE)
 
 
-def _legend(frame: Picture, legend: tuple[tuple[str, Colour], ...], left: int) -> None:
+def _legend(frame: Picture, legend: tuple[tuple[str, Colour], ...], left: int, width: int) -> None:
     """Writes the legend of a map below it, in columns."""
-    rows = -(-len(legend) // _COLUMNS)
-    column_px = MAP_PX // _COLUMNS
+    rows = max(1, -(-len(legend) // (width // _COLUMN_PX)))
     for place, (name, colour) in enumerate(legend):
-        x, y = left + (place // rows) * column_px, _LEGEND_TOP + (place % rows) * _ROW_PX
+        x, y = left + (place // rows) * _COLUMN_PX, _LEGEND_TOP + (place % rows) * _ROW_PX
         _swatch(frame, x, y, colour, PALE)
-        write(frame, name, (x + 15, y + 9), column_px - 17, 12, INK)
+        write(frame, name, (x + 15, y + 9), _COLUMN_PX - 17, 12, INK)
 
 
 def _swatch(frame: Picture, left: int, top: int, colour: Colour, rim: Colour) -> None:

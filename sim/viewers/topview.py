@@ -14,24 +14,32 @@ from sim.viewers.viewer import Colour
 from sim.world.freespace import FreeSpace
 from sim.world.storeys import LEVEL_M
 
-BLOCKED: Colour = (214, 214, 214)
-OBSTACLE: Colour = (120, 124, 132)
+BLOCKED: Colour = (226, 214, 196)
+OUTSIDE: Colour = (240, 240, 238)
+OBSTACLE: Colour = (62, 66, 77)
 FREE: Colour = (252, 252, 250)
 SUCCEEDS: Colour = (205, 236, 196)
 INSTANCE: Colour = (56, 158, 80)
 PATH: Colour = (32, 84, 190)
-SHORTEST: Colour = (240, 140, 20)
-STOPPED: Colour = (204, 65, 37)
+SHORTEST: Colour = (146, 64, 176)
+STOPPED: Colour = (204, 45, 37)
 ROBOT: Colour = (20, 20, 20)
-WHOLE_HOUSE_M = 14.0
-"""A storey of at most this width and depth is shown whole, of a larger one where the robot can drive, and the goals."""
-_MARGIN_CELLS = 8
+_MARGIN_M = 0.2
 _STEP_CELLS = np.array([[math.sqrt(2), 1, math.sqrt(2)], [1, np.inf, 1], [math.sqrt(2), 1, math.sqrt(2)]])
 """Length of a step to each neighbour of a cell; infinite for the cell itself."""
 
 
 class TopView:
-    """A `MapPainter` of the storey that the robot stands on, from above, with x to the right and y up."""
+    """A `MapPainter` of the storey that the robot stands on, from above.
+
+    The colours of `legend` have the same meaning in the agent's map (`stubborn.drawing.map_painter`), where both have
+    them.
+
+    Args:
+        env: the environment of the episodes.
+        heading_up: turn the plan so that the heading of the start is up, as in the map of an agent. Otherwise x is to
+            the right and y up.
+    """
 
     legend = (
         ("goal", INSTANCE),
@@ -43,26 +51,29 @@ class TopView:
         ("too narrow", BLOCKED),
     )
 
-    def __init__(self, env: ObjectNavEnv) -> None:
-        self._env = env
+    def __init__(self, env: ObjectNavEnv, *, heading_up: bool = False) -> None:
+        self._env, self._heading_up = env, heading_up
         self._key: tuple[object, ...] = ()
         self._ground = np.zeros((1, 1, 3), np.uint8)
+        self._to_px = np.zeros((2, 3))
+        """Affine map from metres to pixels."""
 
     def words(self) -> str:
         """Returns "": the agent's intention is not known."""
         return ""
 
     def paint(self, size_px: int) -> NDArray[np.uint8]:
-        """Returns an RGB image (size_px, size_px, 3) with the house in the middle, as large as fits.
+        """Returns an RGB image (size_px, size_px, 3) with the whole storey in the middle, as large as fits."""
+        return self.draw(size_px, size_px)
 
-        Of a house larger than `WHOLE_HOUSE_M` it shows the part where the robot can drive, and the goal.
-        """
+    def draw(self, width_px: int, height_px: int) -> NDArray[np.uint8]:
+        """Returns an RGB image (height_px, width_px, 3) with the whole storey in the middle, as large as fits."""
         scene = self._env.scene
         world, task = scene.world, scene.task
         pose = world.pose
-        key = (scene, task.goal, task.start, pose.floor_z_m, size_px)
+        key = (scene, task.goal, task.start, pose.floor_z_m, width_px, height_px)
         if key != self._key:
-            self._key, self._ground = key, self._paint_ground(task.goal, pose.floor_z_m, size_px)
+            self._key, self._ground = key, self._paint_ground(task.goal, pose.floor_z_m, (width_px, height_px))
         image = self._ground.copy()
         trajectory = task.trajectory()
         path = self._pixels(trajectory.positions_m)
@@ -79,52 +90,73 @@ class TopView:
         cv2.polylines(image, [pointer], True, (255, 255, 255), 1, cv2.LINE_AA)
         return image
 
-    def _paint_ground(self, goal: str, floor_z_m: float, size_px: int) -> NDArray[np.uint8]:
-        """Returns the picture without the robot, and stores its scale and offset."""
-        truth = self._env.scene.task.truth
+    @property
+    def _scale(self) -> float:
+        """Pixels of a metre."""
+        return float(np.hypot(*self._to_px[:, 0]))
+
+    def _paint_ground(self, goal: str, floor_z_m: float, size_px: tuple[int, int]) -> NDArray[np.uint8]:
+        """Returns the picture without the robot, and stores its map from metres to pixels."""
+        task = self._env.scene.task
+        truth, start = task.truth, task.start
         space, target = truth.space(floor_z_m), truth.target(goal, floor_z_m)
+        turn_rad = 0.5 * math.pi - start.yaw_rad if self._heading_up else 0.0
+        self._to_px = _fitted(whole_storey_m(space, target), turn_rad, size_px)
         cells = np.where(space.free[..., None], np.array(FREE), np.array(BLOCKED)).astype(np.uint8)
+        cells[~space.free & ~_near_free(space)] = OUTSIDE
         cells[target.reached] = SUCCEEDS
-        rows, cols = shown_cells(space, target)
-        row, col, part = rows.start, cols.start, cells[rows, cols]
-        px_cell = size_px / max(part.shape[:2])
-        width, height = min(round(part.shape[1] * px_cell), size_px), min(round(part.shape[0] * px_cell), size_px)
-        self._scale = px_cell / space.frame.cell_m
-        self._corner_m = np.asarray(space.frame.origin_xy_m) + np.array([col, row]) * space.frame.cell_m
-        self._offset_px = np.array([(size_px - width) // 2, (size_px + height) // 2])
-        image = np.full((size_px, size_px, 3), BLOCKED, np.uint8)
-        top, left = (size_px - height) // 2, (size_px - width) // 2
-        enlarged = cv2.resize(part[::-1], (width, height), interpolation=cv2.INTER_NEAREST)
-        image[top : top + height, left : left + width] = enlarged
+        image = cv2.warpAffine(
+            cells, self._from_cells(space), size_px, flags=cv2.INTER_NEAREST, borderValue=OUTSIDE
+        ).astype(np.uint8)
         for obstacle in space.obstacles:
             cv2.fillConvexPoly(image, self._pixels(obstacle.vertices_m), OBSTACLE, cv2.LINE_AA)
         for footprint in target.region.footprints:
             for piece in footprint.parts:
                 cv2.fillConvexPoly(image, self._pixels(piece.vertices_m), INSTANCE, cv2.LINE_AA)
-        start = self._env.scene.task.start
         if abs(start.floor_z_m - floor_z_m) < LEVEL_M:
             way = self._pixels(shortest_path_m(space, target, (start.x_m, start.y_m)))
             cv2.polylines(image, [way.reshape(-1, 1, 2)], False, SHORTEST, 2, cv2.LINE_AA)
             cv2.circle(image, way[0].tolist(), 4, SHORTEST, cv2.FILLED, cv2.LINE_AA)
         return image
 
+    def _from_cells(self, space: FreeSpace) -> NDArray[np.float64]:
+        """Returns the affine map (2, 3) from column and row of a cell to pixels."""
+        cell_m, middle_m = space.frame.cell_m, np.asarray(space.frame.origin_xy_m) + 0.5 * space.frame.cell_m
+        return np.column_stack([self._to_px[:, :2] * cell_m, self._to_px[:, :2] @ middle_m + self._to_px[:, 2]])
+
     def _pixels(self, points_m: NDArray[np.floating]) -> NDArray[np.int32]:
         """Returns (n, 2) column and row of points (n, 2) in the world."""
-        off = (np.asarray(points_m, np.float64) - self._corner_m) * self._scale * (1.0, -1.0)
-        return (off + self._offset_px).round().astype(np.int32)
+        return (np.asarray(points_m, np.float64) @ self._to_px[:, :2].T + self._to_px[:, 2]).round().astype(np.int32)
 
 
-def shown_cells(space: FreeSpace, target: Target) -> tuple[slice, slice]:
-    """Returns rows and columns of the part of a storey that the plan shows: all of it, or free space and goals."""
-    if max(space.frame.shape) * space.frame.cell_m <= WHOLE_HOUSE_M:
-        return slice(0, space.frame.shape[0]), slice(0, space.frame.shape[1])
-    free = np.argwhere(space.free)
-    pieces_m = [piece.vertices_m for footprint in target.region.footprints for piece in footprint.parts]
-    goals = [space.frame.to_cells(vertices_m) for vertices_m in pieces_m]
-    needed = np.vstack([free.min(axis=0), free.max(axis=0), *goals])
-    low = np.maximum(needed.min(axis=0) - _MARGIN_CELLS, 0).tolist()
-    high = np.minimum(needed.max(axis=0) + 1 + _MARGIN_CELLS, space.frame.shape).tolist()
-    return slice(low[0], high[0]), slice(low[1], high[1])
+def whole_storey_m(space: FreeSpace, target: Target) -> NDArray[np.float64]:
+    """Returns corners (n, 2) in the world of all that is on a storey: free space, obstacles and goals."""
+    frame = space.frame
+    free = frame.to_metres(np.argwhere(space.free))
+    pieces = [piece for footprint in target.region.footprints for piece in footprint.parts]
+    low = np.array(frame.origin_xy_m)
+    high = low + np.array(frame.shape)[::-1] * frame.cell_m
+    vertices = np.vstack([free, *(each.vertices_m for each in (*space.obstacles, *pieces))])
+    vertices = np.clip(vertices, low, high) if len(vertices) else np.stack([low, high])  # a terrain may be endless
+    return cv2.convexHull(vertices.astype(np.float32)).reshape(-1, 2).astype(np.float64)
+
+
+def _near_free(space: FreeSpace) -> NDArray[np.bool_]:
+    """Returns (rows, cols) the cells that the robot covers when its centre is in free space."""
+    reach = math.ceil(space.radius_m / space.frame.cell_m) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
+    return cv2.dilate(space.free.astype(np.uint8), kernel).astype(np.bool_)
+
+
+def _fitted(points_m: NDArray[np.float64], turn_rad: float, size_px: tuple[int, int]) -> NDArray[np.float64]:
+    """Returns the affine map (2, 3) from metres to pixels that turns points (n, 2) and fits them into a picture."""
+    c, s = math.cos(turn_rad), math.sin(turn_rad)
+    turned = points_m @ np.array([[c, s], [-s, c]])
+    low, high = turned.min(axis=0) - _MARGIN_M, turned.max(axis=0) + _MARGIN_M
+    scale = float(np.min(np.array(size_px) / (high - low)))
+    linear = scale * np.array([[c, -s], [-s, -c]])
+    middle = scale * 0.5 * (low + high) * (1.0, -1.0)
+    return np.column_stack([linear, 0.5 * np.array(size_px) - middle])
 
 
 def shortest_path_m(space: FreeSpace, target: Target, start_m: tuple[float, float]) -> NDArray[np.float64]:

@@ -157,12 +157,14 @@ class VideoRecorder:
             self._free_chase()
             width, height = overlay.CHASE_PX
             self._scene, self._chase = env.scene, ChaseView(env.scene, width_px=width, height_px=height)
-        self._env, self._frame, self._plan = env, None, TopView(env)
+        self._env, self._frame, self._plan = env, None, TopView(env, heading_up=self._painter is not None)
         self._composer = overlay.FrameComposer(
             env.episode.goal,
             env.camera_model,
             plan_legend=self._plan.legend,
-            map_legend=self._painter.legend if self._painter else (),
+            map_legend=None if self._painter is None else self._painter.legend,
+            scores=self._seen is not None,
+            names=self._seen is not None and self._seen.names,
             max_steps=env.task_config.max_steps,
             segmentation=self._seen.name if self._seen is not None else "",
         )
@@ -175,7 +177,7 @@ class VideoRecorder:
         goal = self._env.episode.goal
         self._frame = self._composer.compose(
             moment,
-            plan=self._plan.paint(overlay.MAP_PX),
+            plan=self._plan.draw(*self._composer.plan_px),
             map_panel=self._agent_map(),
             chase=self._chase.render(),
             perceived=self._seen.perceived(moment.observation, goal) if self._seen is not None else None,

@@ -73,6 +73,11 @@ class SeesFrames(Protocol):
         """Returns its name, such as "rednet" or "ground truth"."""
         ...
 
+    @property
+    def names(self) -> bool:
+        """Returns whether it names the category of each pixel."""
+        ...
+
     def perceived(self, observation: Observation, goal: str) -> Perceived | None:
         """Returns the segmentation of a frame before the environment moves on; None: the agent did not use it."""
         ...

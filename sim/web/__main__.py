@@ -8,18 +8,23 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import logging
 import socket
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import Meta
 
 from sim import cli, invocation
 from sim.analysis import display
-from sim.errors import ConfigError
+from sim.errors import ConfigError, debug
+from sim.reading import printable
+
+if TYPE_CHECKING:
+    from sim.web.choices import Offer
 
 HERE = frozenset(("127.0.0.1", "localhost", "::1"))
 """Names of this machine for itself."""
@@ -35,14 +40,36 @@ class Args:
     """Address to listen on. Every person with access to it can see and drive the robot: there is no password."""
     name: tuple[str, ...] = ()
     """Further names or addresses under which browsers reach this machine; needed with --host 0.0.0.0."""
+    agent: tuple[str, ...] = ()
+    """Your agents, as package.module:NAME; the page offers them beside those of --list-agents."""
+    explorer: tuple[str, ...] = ()
+    """Your explorers, as package.module:NAME."""
+    semantics: tuple[str, ...] = ()
+    """Your segmentations."""
+    split: tuple[str, ...] = ()
+    """Further splits: folders laid out like one."""
+    house: tuple[Path, ...] = ()
+    """House files, in which episodes are drawn."""
+    labels: Path | None = None
+    """With --house: a JSON file {"regex over names": "category"} for houses that have other names."""
+    root: Path | None = None
+    """With --house: another folder whose files the houses may use, in addition to their own folder."""
     weights: Path | None = None
     """Your network in place of the shipped one, for segmentation by rednet."""
-    semantics: tuple[str, ...] = ()
-    """Segmentations of your own, package.module:NAME ..., to choose on the page."""
+    robot: Path | None = None
+    """Replaces the default robot: an MJCF file with its sidecar next to it (docs/worlds.md)."""
+    seed: cli.Seed = 0
+    """Seed of agents, noise and, with --house, starts and goals."""
+    profile: str = "fast"
+    """Rendering quality: fast or good."""
+    noise: str = "none"
+    """Noise of sensors and drive: none, realsense or harsh."""
     config: tuple[str, ...] = ()
-    """Their options, detector.FIELD=VALUE ..."""
+    """FIELD=VALUE ...: fields of the configuration, as for a run."""
+    config_file: Path | None = None
+    """A TOML or JSON file of such fields; --config is applied after it."""
     runs: Path = Path("runs")
-    """Folder of the runs that the page shows."""
+    """Folder of the runs that the page shows, and to which episodes driven by hand are recorded."""
 
 
 def main(args: Args) -> int:
@@ -50,28 +77,24 @@ def main(args: Args) -> int:
     missing = [name for name in ("starlette", "uvicorn", "websockets") if importlib.util.find_spec(name) is None]
     if missing:
         raise ConfigError(f"{invocation.program()} needs {', '.join(missing)}: pip install -e '.[web]'.")
-    if args.weights is not None:
-        from sim.composition.segmenters import weights_file
-
-        weights_file(args.weights)
-    if args.semantics:
-        from sim.composition.segmenters import find_segmentation
-
-        own = {name: find_segmentation(name, None).description for name in args.semantics}
-    else:
-        own = {}
     listening = _listen(args.host, args.port)  # before the imports, which take seconds
     import uvicorn
 
-    from sim.web.catalogue import Runs
+    from sim.web.choices import Choices
+    from sim.web.driven import DrivenRuns
+    from sim.web.runs import Runs
     from sim.web.server import MAX_MESSAGE_BYTES, Hub, make_app
+
+    choices, folder = Choices(offer(args)), args.runs.absolute()
 
     port = listening.getsockname()[1]
     hosts = HERE | {args.host, *args.name} - {"0.0.0.0", "::"}
-    app = make_app(Hub(args.weights, args.config), Runs(args.runs), hosts=hosts, segmentations=own)
+    app = make_app(Hub(DrivenRuns(folder)), choices, Runs(folder), hosts=hosts)
     config = uvicorn.Config(
         app, log_level="warning", access_log=False, ws_max_size=MAX_MESSAGE_BYTES, timeout_graceful_shutdown=1
     )
+    for name in ("uvicorn.error", "asyncio", "sim.web.server"):
+        logging.getLogger(name).addFilter(in_one_line)
     names = sorted(hosts - HERE) or ["127.0.0.1"]
     addresses = ", ".join(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
     display.make_console().print(
@@ -81,6 +104,48 @@ def main(args: Args) -> int:
     with contextlib.suppress(KeyboardInterrupt):
         uvicorn.Server(config).run(sockets=[listening])
     return 0
+
+
+def in_one_line(record: logging.LogRecord) -> bool:
+    """Replaces the traceback of a log record by the error, unless --debug is given: clients can cause it."""
+    if record.exc_info and not debug():
+        error = record.exc_info[1]
+        told = " ".join(f"{record.getMessage()} {type(error).__name__}: {error}".split())
+        record.msg, record.args, record.exc_info, record.exc_text = printable(told), (), None, None
+    return True
+
+
+def offer(args: Args) -> Offer:
+    """Returns what the page offers in addition to what ships.
+
+    Raises:
+        ConfigError: an option contradicts another, or its file or name does not exist.
+    """
+    from sim.composition.options import RunOptions
+    from sim.composition.setup import resolve
+    from sim.web.choices import Offer
+
+    if len({file.stem for file in args.house}) < len(args.house):
+        raise ConfigError("--house: two files have the same name; give each house another one.")
+    for_houses = args.labels, args.root
+    if not args.house and for_houses != (None, None):
+        raise ConfigError("--labels and --root need --house.")
+    same = ("weights", "robot", "seed", "profile", "noise", "config", "config_file")
+    options = RunOptions(**{name: _absolute(getattr(args, name)) for name in same})
+    resolve(replace(options, config=(), config_file=None))  # fields of agents depend on the agent
+    return Offer(
+        agents=args.agent,
+        explorers=args.explorer,
+        semantics=args.semantics,
+        splits=args.split,
+        houses=tuple(map(_absolute, args.house)),
+        options=replace(options, labels=_absolute(args.labels), root=_absolute(args.root)),
+    )
+
+
+def _absolute(value: Any) -> Any:
+    """Returns an absolute path for a path, which holds in whatever folder an agent works; other values as they are."""
+    return value.absolute() if isinstance(value, Path) else value
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
+from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.interface import Action
 
@@ -28,14 +29,27 @@ class Interrupted(BaseException):
 
 @dataclass(frozen=True, kw_only=True)
 class Wish:
-    """An episode that a user asks for."""
+    """An episode that a user asks for (`sim.web.choices`)."""
 
     split: str
     house: str
     goal: str
     agent: str
     semantics: str
+    explorer: str = ""
+    """Name of the explorer; "" is the agent's own."""
+    episode_id: str | None = None
+    """None: another one of this house and goal each time."""
     driver: Driver = "agent"
+    options: RunOptions
+    """Of the episode's run."""
+    record: Mapping[str, Any] | None = None
+    """The `config.json` of the finished run to which the episode belongs; None: it belongs to none."""
+
+    def as_json(self) -> dict[str, Any]:
+        """Returns what the page shows of it."""
+        names = ("split", "house", "goal", "agent", "semantics", "explorer", "episode_id", "driver")
+        return {name: getattr(self, name) for name in names}
 
 
 class Choice(NamedTuple):
@@ -55,14 +69,14 @@ class Controls:
         self._steps, self._stopping, self._closed, self._redraw = 0, False, False, False
         self._next_s = 0.0
         self.driver: Driver = "agent"
-        self.paused = False
+        self.paused = self.hints = False
         self.per_s = SPEEDS[1]
 
     def obey(self, message: Mapping[str, Any]) -> None:
         """Carries out one command of the page.
 
         Args:
-            message: `do` is pause, run, step, speed (`per_s`), agent, person, act (`action`) or stop.
+            message: `do` is pause, run, step, speed (`per_s`), hints (`on`), agent, person, act (`action`) or stop.
 
         Raises:
             ConfigError: there is no such command, or its value is not allowed.
@@ -76,6 +90,8 @@ class Controls:
             elif do == "speed":
                 self.per_s = _speed(message.get("per_s"))
                 self._next_s = 0.0
+            elif do == "hints":
+                self.hints, self._redraw = message.get("on") is True, True
             elif do in ("agent", "person"):
                 self._hand_to("agent" if do == "agent" else "person")
             elif do == "act":

@@ -34,7 +34,7 @@ class Pictures:
         self._parts = parts
         self._scene: Scene | None = None
         self._chase: ChaseView | None = None
-        self._plan = TopView(parts.env)
+        self._plan = TopView(parts.env, heading_up=parts.painter is not None)
 
     def draw(self, names: Collection[str], moment: Moment) -> dict[str, bytes]:
         """Returns the pictures of these names as JPEG; those that the agent does not have are left out."""

@@ -8,25 +8,30 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
+import logging
+import mimetypes
+import re
 import struct
 from collections.abc import AsyncIterator, Callable, Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
-from urllib.parse import urlsplit
 
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from sim.errors import ConfigError
-from sim.web.catalogue import Choices, Runs
+from sim.errors import ConfigError, ObjectNavError
+from sim.reading import open_plain, parse_json, printable
+from sim.web.answers import Json, as_ascii, file_answer, or_404
+from sim.web.choices import Choices
+from sim.web.controls import Wish
+from sim.web.driven import DrivenRuns
 from sim.web.pictures import NAMES
+from sim.web.runs import Runs
 from sim.web.session import Frame, Session
 
 PAGE = Path(__file__).parent / "page"
@@ -37,6 +42,7 @@ PAGE_FILES: Mapping[str, tuple[str, str]] = {
     "/icon.svg": ("icon.svg", "image/svg+xml"),
 }
 """Address, file and type of everything that the page consists of."""
+_log = logging.getLogger(__name__)
 MAX_CLIENTS = 16
 MAX_MESSAGE_BYTES = 4096
 _POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; media-src 'self'; "
@@ -57,10 +63,10 @@ class Client:
 class Hub:
     """Hands the newest state and frame of the session to all clients; slow ones miss frames (`Audience`)."""
 
-    def __init__(self, weights: Path | None = None, config: tuple[str, ...] = ()) -> None:
-        """Makes a session whose network has these weights; the shipped ones when None. `config`: see `Session`."""
+    def __init__(self, driven: DrivenRuns) -> None:
+        """Makes a session that records driven episodes there."""
         self.clients: set[Client] = set()
-        self.session = Session(self, weights, config)
+        self.session = Session(self, driven)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._told: Mapping[str, Any] = {"phase": "idle", "message": "Choose a house, a goal and an agent."}
         self._frame: Frame | None = None
@@ -98,7 +104,8 @@ class Hub:
     def state(self) -> dict[str, Any]:
         """Returns the state of the episode and of the controls."""
         controls = self.session.controls
-        live = {"driver": controls.driver, "paused": controls.paused, "per_s": controls.per_s}
+        names = ("driver", "paused", "per_s", "hints")
+        live = {name: getattr(controls, name) for name in names}
         return {"kind": "state", **self._told, **live, "clients": len(self.clients)}
 
     async def serve(self, client: Client, socket: WebSocket) -> None:
@@ -106,7 +113,7 @@ class Hub:
         while True:
             if client.state_number != self._state_number:
                 client.state_number = self._state_number
-                await socket.send_json(self.state())
+                await socket.send_text(as_ascii(self.state()))
             if client.frame_number != self._frame_number and self._frame is not None:
                 client.frame_number = self._frame_number
                 await socket.send_bytes(packed(self._frame, client.names))
@@ -135,7 +142,7 @@ def packed(frame: Frame, names: frozenset[str]) -> bytes:
     """Returns a frame as bytes: the length of the header (uint32, big-endian), the header as JSON, the pictures."""
     sent = {name: picture for name, picture in frame.pictures.items() if name in names}
     header = {**frame.facts, "pictures": [[name, len(picture)] for name, picture in sent.items()]}
-    text = json.dumps(header).encode()
+    text = as_ascii(header).encode("ascii")
     return struct.pack(">I", len(text)) + text + b"".join(sent.values())
 
 
@@ -150,9 +157,7 @@ class OnlyFromHere:
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        host, origin = headers.get("host", ""), headers.get("origin")
-        foreign = _name_of(host) not in self._hosts or (origin is not None and urlsplit(origin).netloc != host)
+        foreign, origin = self._is_foreign(scope), _only(scope, b"origin")
         if scope["type"] == "websocket":
             if foreign or origin is None:
                 await send({"type": "websocket.close", "code": 1008})
@@ -171,6 +176,13 @@ class OnlyFromHere:
 
         await self._app(scope, receive, send_with_headers)
 
+    def _is_foreign(self, scope: Scope) -> bool:
+        """Returns whether a request names another host, comes from another page, or repeats one of the two headers."""
+        host, origin = _only(scope, b"host"), _only(scope, b"origin")
+        if host is None or origin is _REPEATED or _name_of(host) not in self._hosts:
+            return True
+        return origin is not None and origin.lower() not in (f"http://{host}".lower(), f"https://{host}".lower())
+
 
 _HEADERS = [
     (b"content-security-policy", _POLICY.encode()),
@@ -181,23 +193,39 @@ _HEADERS = [
 ]
 
 
+_REPEATED = "repeated"
+_HOST = re.compile(r"(?:\[(?P<address>[0-9A-Fa-f:.]+)\]|(?P<name>[\w.-]+))(?::\d{1,5})?", re.ASCII)
+
+
+def _only(scope: Scope, name: bytes) -> str | None:
+    """Returns the value of a header; None without one, `_REPEATED` where there are several."""
+    values = [value for key, value in scope["headers"] if key.lower() == name]
+    if len(values) > 1:
+        return _REPEATED
+    return values[0].decode("latin-1") if values else None
+
+
 def _name_of(host: str) -> str:
-    """Returns the name in a Host header, without the port."""
-    return urlsplit(f"//{host}").hostname or ""
+    """Returns the name in a Host header, without the port; "" where the header has another form."""
+    found = _HOST.fullmatch(host)
+    return "" if found is None else (found["address"] or found["name"]).lower()
 
 
-def make_app(
-    hub: Hub, runs: Runs, *, hosts: frozenset[str], segmentations: Mapping[str, str] = MappingProxyType({})
-) -> Starlette:
+def make_app(hub: Hub, choices: Choices, runs: Runs, *, hosts: frozenset[str]) -> Starlette:
     """Returns the application.
 
     Args:
         hub: of the session; it is opened and closed with the application.
+        choices: all that can be started.
         runs: finished runs.
         hosts: names under which the server may be addressed.
-        segmentations: names and descriptions of those that can be chosen in addition to the shipped ones.
     """
-    choices = Choices(segmentations)
+
+    def wish(message: Mapping[str, Any]) -> Wish:
+        if message.get("do") != "again":
+            return choices.wish(message)
+        run, line = runs.line(str(message.get("run")), str(message.get("episode")))
+        return choices.again(run.config, line, "person" if message.get("driver") == "person" else "agent")
 
     @contextlib.asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
@@ -206,37 +234,41 @@ def make_app(
         hub.session.close()
 
     async def live(socket: WebSocket) -> None:
-        await _live(hub, choices, socket)
+        await _live(hub, wish, socket)
 
     async def offered(request: Request) -> Response:
-        return JSONResponse(choices.as_json())
+        return Json(choices.as_json())
 
     async def all_runs(request: Request) -> Response:
-        return JSONResponse(await asyncio.to_thread(runs.as_json))
+        return await or_404(lambda: Json(runs.as_json()))
 
     async def one_run(request: Request) -> Response:
-        return await _or_404(lambda: JSONResponse(runs.episodes(request.path_params["run"])))
+        return await or_404(lambda: Json(runs.episodes(request.path_params["run"])))
+
+    async def comparison(request: Request) -> Response:
+        asked = (request.query_params.get(name, "") for name in ("first", "second"))
+        return await or_404(lambda: Json(runs.comparison(*asked)))
 
     async def video(request: Request) -> Response:
         run, episode = request.path_params["run"], request.query_params.get("episode", "")
-        return await _or_404(lambda: FileResponse(runs.video(run, episode), media_type="video/mp4"))
+        return await or_404(file_answer(request, lambda: runs.video(run, episode), "video/mp4"))
 
     async def report(request: Request) -> Response:
-        headers = {"content-security-policy": _REPORT_POLICY}
-        return await _or_404(
-            lambda: FileResponse(runs.report(request.path_params["run"]), media_type="text/html", headers=headers)
-        )
+        run, headers = request.path_params["run"], {"content-security-policy": _REPORT_POLICY}
+        return await or_404(file_answer(request, lambda: runs.report(run), "text/html", headers))
 
     async def linked(request: Request) -> Response:
-        asked = (request.path_params[part] for part in ("run", "kind", "file"))
+        run, kind, file = (request.path_params[part] for part in ("run", "kind", "file"))
         headers = {"cross-origin-resource-policy": "cross-origin"}  # a sandboxed report has another origin
-        return await _or_404(lambda: FileResponse(runs.linked(*asked), headers=headers))
+        media_type = mimetypes.guess_type(file)[0] or "application/octet-stream"
+        return await or_404(file_answer(request, lambda: runs.linked(run, kind, file), media_type, headers))
 
     routes = [Route(address, _page_file(*about)) for address, about in PAGE_FILES.items()]
     routes += [
         Route("/api/choices", offered),
         Route("/api/runs", all_runs),
         Route("/api/runs/{run}", one_run),
+        Route("/api/comparison", comparison),
         Route("/runs/{run}/video", video),
         Route("/runs/{run}/report.html", report),
         Route("/runs/{run}/{kind}/{file}", linked),
@@ -248,21 +280,14 @@ def make_app(
     )
 
 
-async def _or_404(answer: Callable[[], Response]) -> Response:
-    try:
-        return await asyncio.to_thread(answer)
-    except ConfigError as error:
-        return PlainTextResponse(str(error), 404)
-
-
 def _page_file(name: str, media_type: str) -> Callable[[Request], Any]:
     async def answer(request: Request) -> Response:
-        return FileResponse(PAGE / name, media_type=media_type)
+        return await or_404(file_answer(request, lambda: open_plain(PAGE / name, what="Page"), media_type))
 
     return answer
 
 
-async def _live(hub: Hub, choices: Choices, socket: WebSocket) -> None:
+async def _live(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], socket: WebSocket) -> None:
     """Serves one websocket."""
     if len(hub.clients) >= MAX_CLIENTS:
         await socket.close(1013, "There are too many clients.")
@@ -272,36 +297,45 @@ async def _live(hub: Hub, choices: Choices, socket: WebSocket) -> None:
     hub.clients.add(client)
     hub.count_wishes()
     hub.changed()
-    sending = asyncio.create_task(hub.serve(client, socket))
+    tasks = [asyncio.create_task(work) for work in (hub.serve(client, socket), _obey(hub, wish, client, socket))]
     try:
-        while True:
-            answer = _carry_out(hub, choices, client, await socket.receive_text())
-            if answer is not None:
-                await socket.send_json({"kind": "refused", "message": answer})
-    except (WebSocketDisconnect, RuntimeError):  # RuntimeError: it went while something was sent
-        pass
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
-        sending.cancel()
+        for task in tasks:
+            task.cancel()
+        # WebSocketDisconnect and RuntimeError: the client went while something was received or sent.
+        for ended in await asyncio.gather(*tasks, return_exceptions=True):
+            if isinstance(ended, Exception) and not isinstance(ended, (WebSocketDisconnect, RuntimeError)):
+                _log.error("A connection broke.", exc_info=ended)
         hub.clients.discard(client)
         hub.count_wishes()
         hub.changed()
 
 
-def _carry_out(hub: Hub, choices: Choices, client: Client, text: str) -> str | None:
+async def _obey(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], client: Client, socket: WebSocket) -> None:
+    """Carries out the messages of a client until it is gone."""
+    while (message := await socket.receive())["type"] == "websocket.receive":
+        answer = await asyncio.to_thread(_carry_out, hub, wish, client, message.get("text"))
+        hub.count_wishes()
+        if answer is None:
+            hub.changed()
+        else:
+            await socket.send_text(as_ascii({"kind": "refused", "message": printable(answer)}))
+
+
+def _carry_out(hub: Hub, wish: Callable[[Mapping[str, Any]], Wish], client: Client, text: str | None) -> str | None:
     """Carries out one message of a page; returns why it was refused, None if it was not."""
     try:
-        message = json.loads(text)
-        if not isinstance(message, dict):
-            raise ConfigError("A message must be a JSON object.")
+        if text is None:
+            raise ConfigError("A message must be text.")
+        message = parse_json(text, dict[str, Any], where="The message")
         if message.get("do") == "show":
             wanted = message.get("pictures")
             client.names = frozenset(name for name in NAMES if isinstance(wanted, list) and name in wanted)
-            hub.count_wishes()
-        elif message.get("do") == "start":
-            hub.session.controls.ask_for(choices.wish(message))
+        elif message.get("do") in ("start", "again"):
+            hub.session.controls.ask_for(wish(message))
         else:
             hub.session.controls.obey(message)
-            hub.changed()
-    except (ValueError, TypeError) as error:  # ConfigError is a ValueError
+    except ObjectNavError as error:
         return str(error)
     return None

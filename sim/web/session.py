@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
-import logging
+import re
 import threading
+import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
+
 from sim.cli import USAGE_ERRORS
-from sim.composition.options import RunOptions
+from sim.composition.record import record_of
 from sim.composition.runner import Parts, build_parts
-from sim.composition.segmenters import KINDS
-from sim.composition.setup import resolve
+from sim.composition.setup import Setup, resolve
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode
-from sim.errors import EpisodeError
-from sim.evaluation.rollout import episode_seed, play_episode
+from sim.errors import EpisodeError, debug
+from sim.evaluation.config_fields import differing_fields, is_same_file
+from sim.evaluation.rollout import agent_seed, episode_seed, play_episode
 from sim.interface import Action, Agent, Observation, Overridable, StatesTarget
+from sim.reading import printable
 from sim.task.explanations import ACTION_WORDS, explain_end, in_words, with_article
 from sim.viewers.viewer import Moment
 from sim.web.controls import Controls, Interrupted, Wish
+from sim.web.driven import DrivenRuns
+from sim.web.hints import Hints
 from sim.web.pictures import Pictures, in_sight
 
-_log = logging.getLogger(__name__)
+_NAMED_DIFFERENCES = 4
 
 
 @dataclass(frozen=True)
@@ -53,22 +58,28 @@ class Audience(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class _Made:
+    """Environment, agent and pictures, and the setup of which they were made."""
+
+    setup: Setup
+    parts: Parts
+    pictures: Pictures
+
+
 class Session:
     """Runs one episode after the other, as users ask for them; all users see the same one."""
 
-    def __init__(self, audience: Audience, weights: Path | None = None, config: tuple[str, ...] = ()) -> None:
+    def __init__(self, audience: Audience, driven: DrivenRuns) -> None:
         """Makes a session; `start` starts it.
 
         Args:
             audience: receives what there is to show.
-            weights: of the network of `rednet`; the shipped one when None.
-            config: `detector.FIELD=VALUE`, options of segmentations that do not ship.
+            driven: records the episodes that a person drives.
         """
         self.controls = Controls()
-        self._audience, self._weights, self._config = audience, weights, config
-        self._parts: Parts | None = None
-        self._pictures: Pictures | None = None
-        self._made_for: tuple[str, str, str] | None = None
+        self._audience, self._driven = audience, driven
+        self._made: _Made | None = None
         self._turn = 0
         self._thread = threading.Thread(target=self._run, daemon=True, name="simulation")
 
@@ -86,21 +97,25 @@ class Session:
             try:
                 self._play(wish)
             except Interrupted:
-                self._tell(wish, "idle", "The episode was ended.")
+                self._tell(wish, "idle", "The episode was ended; nothing was recorded.")
             except USAGE_ERRORS as error:
-                self._tell(wish, "failed", " ".join(str(error).split()))
-            except Exception:
-                _log.exception("The episode broke.")
-                self._tell(wish, "failed", "The episode broke; the terminal of sim.web shows why.")
+                self._tell(wish, "failed", str(error))
+            except BaseException as error:  # code of the user's may raise anything, and this thread has to go on
+                if debug():
+                    traceback.print_exc()
+                self._free()
+                reason = f"{type(error).__name__}: {error} (unexpected; --debug shows where)"
+                self._tell(wish, "failed", f"The episode broke: {reason}")
         self._free()
 
     def _play(self, wish: Wish) -> None:
         self._tell(wish, "loading", f"Loading house {wish.house} and the agent {wish.agent} ...")
-        parts, pictures = self._parts_for(wish)
+        made = self._made_for(wish)
+        parts, pictures = made.parts, made.pictures
         episode = choose_episode(parts.env, wish, self._turn)
         self._turn += 1
         shared = SharedAgent(parts, pictures, self.controls, self._audience)
-        about: dict[str, Any] = {}
+        about: dict[str, Any] = {"note": unlike_the_run(made.setup, parts.env, wish.record)}
 
         def begun(env: ObjectNavEnv) -> None:
             about.update(episode_id=episode.episode_id, max_steps=env.task_config.max_steps, legends=pictures.legends())
@@ -108,37 +123,52 @@ class Session:
             self._tell(wish, "playing", f"Looking for {with_article(wish.goal)}.", **about)
 
         watcher = _Watcher(begun, shared)
-        seed = episode_seed(0, episode.episode_id)
-        line = play_episode(parts.env, shared, episode, seed=seed, viewers=[watcher], name=wish.agent)
+        options = wish.options
+        line = play_episode(
+            parts.env,
+            shared,
+            episode,
+            seed=episode_seed(options.seed, episode.episode_id),
+            seed_of_agent=agent_seed(options.seed, episode.episode_id, options.seed_key or ""),
+            viewers=[watcher],
+            name=wish.agent,
+        )
         shared.show_end()
         nearest_m = parts.env.scene.task.trajectory().nearest_instance_m
         detects = parts.seen is not None and not shared.stopped_by_person
         outcome = explain_end(line, wish.goal, parts.env.success_rule, nearest_m, detects=detects)
-        self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome), **about)
+        recorded = self._record(made, episode, line, shared)
+        self._tell(wish, "ended", outcome.headline, outcome=asdict(outcome) | {"recorded": recorded}, **about)
 
-    def _parts_for(self, wish: Wish) -> tuple[Parts, Pictures]:
+    def _record(self, made: _Made, episode: Episode, line: Mapping[str, Any], shared: SharedAgent) -> str:
+        """Records an episode in which a person drove; returns a sentence about it, "" where no person did."""
+        if shared.person_steps == 0 or line["end_reason"] == "error":
+            return ""
+        counts = {"person_steps": shared.person_steps, "hint_steps": shared.hint_steps}
+        try:
+            folder = self._driven.write(made.setup, made.parts.env, episode, line, **counts)
+        except (*USAGE_ERRORS, OSError) as error:
+            return f"It could not be recorded: {error}"
+        return f"Recorded in {folder}."
+
+    def _made_for(self, wish: Wish) -> _Made:
         """Returns environment, agent and pictures; those of the last episode where they fit."""
-        key = (wish.split, wish.agent, wish.semantics)
-        if self._parts is None or self._pictures is None or key != self._made_for:
+        if self._made is None or self._made.setup.options != wish.options:
             self._free()
-            weights = self._weights if wish.semantics == "rednet" else None
-            config = () if wish.semantics in KINDS else self._config
-            options = RunOptions(
-                agent=wish.agent, semantics=wish.semantics, weights=weights, split=wish.split, config=config
-            )
-            self._parts = build_parts(resolve(options), watched=True)
-            self._pictures, self._made_for = Pictures(self._parts), key
-        return self._parts, self._pictures
+            setup = resolve(wish.options)
+            parts = build_parts(setup, watched=True)
+            self._made = _Made(setup, parts, Pictures(parts))
+        return self._made
 
     def _free(self) -> None:
-        if self._pictures is not None:
-            self._pictures.close()
-        if self._parts is not None:
-            self._parts.env.close()
-        self._parts = self._pictures = self._made_for = None
+        if self._made is not None:
+            self._made.pictures.close()
+            self._made.parts.env.close()
+        self._made = None
 
     def _tell(self, wish: Wish, phase: str, message: str, **more: Any) -> None:
-        self._audience.tell({"phase": phase, "message": message, "wish": asdict(wish), **more})
+        text = printable(" ".join(message.split()))
+        self._audience.tell({"phase": phase, "message": text, "wish": wish.as_json(), **more})
 
 
 class SharedAgent:
@@ -150,11 +180,15 @@ class SharedAgent:
         self._last: Action | None = None
         self.info: Mapping[str, Any] = {}
         self.stopped_by_person = False
+        self.person_steps = self.hint_steps = 0
+        self._hints: Hints | None = None
 
     def reset(self, goal: str, seed: int) -> None:
         """Starts a new episode."""
         self._inner.reset(goal, seed)
         self._last = None
+        self._hints = Hints(self._parts.env, goal)
+        self.person_steps = self.hint_steps = 0
 
     def act(self, observation: Observation) -> Action:
         """Shows the observation, waits until an action is due and returns it.
@@ -168,6 +202,8 @@ class SharedAgent:
             self._show(observation, advised)
             choice = self._controls.choose(advised)
         action, by_person = choice.action, choice.driver == "person"
+        self.person_steps += by_person
+        self.hint_steps += by_person and self._controls.hints
         if action != advised and isinstance(self._inner, Overridable):
             self._inner.overridden(action)
         self._last, self.stopped_by_person = action, by_person and action == Action.STOP
@@ -190,11 +226,15 @@ class SharedAgent:
         names = self._audience.wanted()
         if advised is None:  # after the end: what the agent perceives is that of the frame before
             names -= {"predicted", "score", "map"}
+        hint = None
+        if advised is not None and self._hints is not None and self._controls.hints:
+            hint = self._hints.at(step, self._last)
         facts = {
             "step": step,
             "ended": advised is None,
             "last": None if self._last is None else ACTION_WORDS[self._last],
             "advice": None if advised is None else ACTION_WORDS[advised],
+            "hint": None if hint is None else {"action": int(hint), "words": ACTION_WORDS[hint]},
             "doing": painter.words() if painter is not None and not self.stopped_by_person else "",
             "collided": bool(self.info.get("collided", False)),
             "collisions": int(metrics["collisions"]),
@@ -229,12 +269,49 @@ class _Watcher:
 
 
 def choose_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
-    """Returns an episode of the split with this house and goal; turn after turn another one.
+    """Returns the episode that a user asks for; without an id another one of its house and goal turn after turn.
 
     Raises:
-        EpisodeError: the split has no such episode.
+        EpisodeError: there is no such episode, or none can be drawn in a house file.
     """
+    if wish.options.house is not None:
+        return _draw_episode(env, wish, turn)
+    if wish.episode_id is not None:
+        return env.split.episode(wish.episode_id)
     fitting = [each for each in env.split.episodes if (each.house, each.goal) == (wish.house, wish.goal)]
     if not fitting:
         raise EpisodeError(f"Split '{wish.split}' has no episode with '{in_words(wish.goal)}' in house '{wish.house}'.")
     return fitting[turn % len(fitting)]
+
+
+def _draw_episode(env: ObjectNavEnv, wish: Wish, turn: int) -> Episode:
+    """Returns the episode that `stubborn run --house` draws under the same number."""
+    number = re.fullmatch(rf"{re.escape(wish.house)}_(\d{{4,9}})", wish.episode_id or f"{wish.house}_{turn:04d}")
+    if number is None:
+        raise EpisodeError(f"Episodes of house '{wish.house}' are {wish.house}_0000 and so on, not {wish.episode_id}.")
+    rng = np.random.default_rng([wish.options.seed, int(number[1])])
+    return env.draw_episode(rng, episode_id=number[0])
+
+
+def unlike_the_run(setup: Setup, env: ObjectNavEnv, record: Mapping[str, Any] | None) -> str:
+    """Returns a sentence on what differs from the run whose episode is shown; "" where nothing does, or without a run.
+
+    Args:
+        setup: of the episode.
+        env: its environment.
+        record: the run's `config.json`.
+    """
+    if record is None:
+        return ""
+    now = record_of(setup, {"name": env.split.name, "version": env.split.version, "sha256": env.split.sha256})
+    fields = [
+        path
+        for path, _, _ in differing_fields(record.get("config") or {}, now["config"])
+        if not is_same_file(f"config.{path}", record, now)
+    ]
+    if (record.get("split_identity") or {}).get("sha256") != env.split.sha256:
+        fields.append("the houses")
+    if (record.get("versions") or {}).get("code") != now["versions"]["code"]:
+        fields.append("the code")
+    more = [f"{len(fields) - _NAMED_DIFFERENCES} more"] if len(fields) > _NAMED_DIFFERENCES else []
+    return f"Not as in the run: {', '.join(fields[:_NAMED_DIFFERENCES] + more)}." if fields else ""

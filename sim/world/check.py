@@ -8,7 +8,8 @@ houses it also tests the furniture that each kind of room must have.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,8 @@ from numpy.typing import NDArray
 from sim.errors import HouseError
 from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
-from sim.houses.house import Room, read_rooms
-from sim.houses.labels import Labels, collidable_geoms, read_labels
+from sim.houses.house import House, Room, read_rooms
+from sim.houses.labels import Instance, Labels, collidable_geoms, describe_geom, read_labels
 from sim.interface import GOAL_CATEGORIES, RobotModel, SuccessRule
 from sim.world.freespace import FreeSpace, connected_to
 from sim.world.room_requirements import unmet_requirements
@@ -56,17 +57,43 @@ def check_house(
         robot: its radius and height count; the default robot when None.
     """
     try:
-        model = spec.compile()
-        labels = read_labels(model, ignore_prefix="")
+        house = _compiled(spec, None)
     except (ValueError, HouseError) as error:
         return [f"it does not compile: {error}"]
+    faults = _overlaps(house) + _without_support(house) + _unstable(house.model)
+    if furnished:
+        faults += unmet_requirements(house.model, house.data, house.labels, house.rooms)
+    if not house.rooms:
+        return [*faults, "it has no room sites"]
+    return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())
+
+
+def check_own_house(house: House) -> tuple[list[str], list[str]]:
+    """Returns the faults of a house of the user's, and remarks; each is a sentence.
+
+    Faults are places and goals that the robot cannot reach. Overlaps, objects without support and objects that move by
+    themselves do not keep a house from being used; they are remarks. The house may have no room sites.
+
+    Args:
+        house: a house that `load_house` returned.
+    """
+    compiled = _compiled(house.spec, house.rules)
+    remarks = _overlaps(compiled) + _without_support(compiled) + _unstable(compiled.model)
+    return _unreachable(compiled, SuccessRule(), RobotModel()), remarks
+
+
+def _compiled(spec: mujoco.MjSpec, rules: Mapping[str, str] | None) -> _CompiledHouse:
+    """Returns a compiled house in its initial state.
+
+    Raises:
+        ValueError: it does not compile.
+        HouseError: its labels are not allowed.
+    """
+    model = spec.compile()
+    labels = read_labels(model, rules=rules, ignore_prefix="")
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    house = _CompiledHouse(model, data, labels, read_rooms(model))
-    faults = _overlaps(house) + _without_support(house) + _unstable(model)
-    if furnished:
-        faults += unmet_requirements(model, data, labels, house.rooms)
-    return faults + _unreachable(house, rule or SuccessRule(), robot or RobotModel())
+    return _CompiledHouse(model, data, labels, read_rooms(model))
 
 
 @dataclass(frozen=True)
@@ -79,10 +106,17 @@ class _CompiledHouse:
     rooms: tuple[Room, ...]
 
     def category(self, geom: int) -> str:
-        return self.labels.instances[self.labels.geom_instance[geom]].category
+        return self._instance(geom).category
 
     def name(self, geom: int) -> str:
-        return self.labels.instances[self.labels.geom_instance[geom]].name
+        return self._instance(geom).name
+
+    def _instance(self, geom: int) -> Instance:
+        """Returns the instance of a geom; a geom without a label, which label rules allow, is one of its own."""
+        number = int(self.labels.geom_instance[geom])
+        return (
+            self.labels.instances[number] if number >= 0 else Instance(describe_geom(self.model, geom), "void", (geom,))
+        )
 
     def boxes(self, geoms: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Returns the lowest and highest corners (n, 3) of the world-aligned boxes around geoms, metres."""
@@ -159,16 +193,27 @@ def _unreachable(house: _CompiledHouse, rule: SuccessRule, robot: RobotModel) ->
 
     Each storey counts for itself: the robot starts on it and cannot leave it.
     """
-    if not house.rooms:
-        return ["it has no room sites"]
     faults: list[str] = []
     near: set[str] = set()
+    if not house.rooms:
+        faults, near = _unreachable_without_rooms(house, rule, robot)
     for floor_z_m in sorted({room.floor_z_m for room in house.rooms}):
         of_storey, reached = _unreachable_on(house, floor_z_m, rule, robot)
         faults += of_storey
         near |= reached
     goals = [category for category in GOAL_CATEGORIES if house.labels.of_category(category)]
     return faults + [f"the robot cannot come near any {category}" for category in goals if category not in near]
+
+
+def _unreachable_without_rooms(
+    house: _CompiledHouse, rule: SuccessRule, robot: RobotModel
+) -> tuple[list[str], set[str]]:
+    """Returns the faults of a house without room sites, and the goal categories that the robot comes near."""
+    space = FreeSpace(house.model, house.data, house.labels, robot=robot, rule=rule)
+    reached = space.largest_part()
+    if not reached.any():
+        return ["it has no free position for the robot on the ground storey"], set()
+    return [], _goals_near(house, reached, space.frame, (-math.inf, math.inf), rule)
 
 
 def _unreachable_on(

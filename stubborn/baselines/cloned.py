@@ -1,6 +1,6 @@
 """The end-to-end baseline: a small recurrent policy cloned from demonstrations, without map or planner.
 
-It stands for the agents that Luo et al. (2022, Table "leaderboard") compare with, which map images to actions by one
+It represents the agents that Luo et al. (2022, Table "leaderboard") compare with, which map images to actions by one
 network: EEAux (Ye et al. 2021, arXiv:2104.04112) and Habitat-Web (Ramrakhya et al. 2022, arXiv:2204.03514). The
 latter is cloned, as this one is; both are far larger. docs/explorers.md describes the training.
 """
@@ -26,15 +26,15 @@ SHIPPED = Path(__file__).with_name("weights") / "cloned.safetensors"
 
 @dataclass(frozen=True, kw_only=True)
 class ClonedConfig:
-    """The weights, and how an action is taken from the policy."""
+    """Selects the weights, and how an action is taken from the policy."""
 
     weights: str | None = None
-    """File of weights; None: those that ship."""
+    """File of weights; None: the shipped weights."""
     sampled: bool = True
-    """True: actions are drawn from the policy. False: its most probable action, which often alternates between left and
-    right turns without end."""
+    """True: actions are sampled from the policy. False: the most probable action is taken, which often leads to endless
+    turns left and right."""
     stop_above: float = 0.0
-    """With more than 0, the agent stops exactly where the policy's probability of STOP is higher than this."""
+    """If this is more than 0, the agent stops exactly when the policy's probability of STOP is higher than this."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.stop_above < 1.0:
@@ -48,7 +48,7 @@ class ClonedAgent:
         """Reads the weights.
 
         Raises:
-            ConfigError: the file of weights does not exist, or holds no network of this kind.
+            ConfigError: the file of weights does not exist, or holds another kind of network.
         """
         import torch  # takes a second
 

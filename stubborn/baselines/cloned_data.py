@@ -1,4 +1,4 @@
-"""Streams of demonstrations for the training of the cloned policy: sequences side by side, piece by piece."""
+"""Streams of demonstrations for the training of the cloned policy: parallel sequences, read in pieces."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class LabelledSteps:
 
     @property
     def changes(self) -> Bool[np.ndarray, " n"]:
-        """Whether each action differs from the one before."""
+        """Returns whether each action differs from the previous one."""
         return self.actions != self.steps.before
 
     def mirrored(self) -> LabelledSteps:
-        """Returns it in a house whose left and right are exchanged."""
+        """Returns the demonstration in the mirrored house (left and right are exchanged)."""
         return LabelledSteps(self.steps.mirrored(), mirrored_actions(self.actions))
 
 
@@ -42,21 +42,21 @@ class Piece:
     weight: Float32[np.ndarray, "steps n"]
     """Weight of each step in the loss; 0: padding."""
     begins: Bool[np.ndarray, " n"]
-    """True: the piece begins an episode, so that nothing of an earlier one may be remembered."""
+    """True: the piece begins an episode, so the policy must not remember an earlier one."""
 
 
 class Streams:
     """Demonstrations in random order, `width` side by side, in pieces of `length` steps.
 
-    Each stream reads one demonstration to its end, half of them mirrored, then draws another; the state of the policy
-    is carried from piece to piece. An action that differs from the one before counts as often as such actions are
-    rare (inflection weighting; Wijmans et al. 2019, arXiv:1904.03461), since most actions repeat the one before.
+    Each stream reads one demonstration to its end, half of them mirrored, then samples another; the state of the policy
+    is carried from piece to piece. Most actions repeat the previous one. An action that differs from it has a weight
+    that is larger, the rarer such actions are (inflection weighting; Wijmans et al. 2019, arXiv:1904.03461).
 
     Args:
         shown: the demonstrations; at least one.
         width: number of demonstrations side by side.
         length: steps of a piece.
-        seed: of the order and of the mirroring.
+        seed: seeds the order and the mirroring.
     """
 
     def __init__(self, shown: Sequence[LabelledSteps], *, width: int, length: int, seed: int) -> None:
@@ -64,9 +64,9 @@ class Streams:
         self._rng = np.random.default_rng(seed)
         changes = sum(int(np.count_nonzero(each.changes)) for each in shown)
         self.inflection = sum(len(each.actions) for each in shown) / max(changes, 1)
-        """Weight of an action that differs from the one before."""
+        """Weight of an action that differs from the previous one."""
         self._now = [self._draw() for _ in range(width)]
-        # In the middle of an episode at the beginning, so that the streams do not end together.
+        # Each stream begins in the middle of an episode, so that the streams do not all end at once.
         self._at = [int(self._rng.integers(len(each.actions))) // length * length for each in self._now]
 
     def next_piece(self) -> Piece:

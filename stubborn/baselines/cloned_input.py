@@ -13,12 +13,13 @@ from sim.interface import FORWARD_M, GOAL_CATEGORIES, MAX_STEPS, MPCAT40, MPCAT4
 
 WIDTH_PX, HEIGHT_PX = 64, 48
 LEVELS = 255
-"""Depth that was measured has the levels 1 to 255, in equal steps up to `FAR_M`; 0: none."""
+"""Measured depth has the levels 1 to 255, in equal steps up to `FAR_M`; 0: no depth."""
 FAR_M = 5.0
 MOTION = ("ahead", "left", "cos", "sin", "moved ahead", "moved left", "turned", "steps done")
-"""Place and heading against the start, in 10 m; the last motion in commanded motions; the share of the steps."""
+"""Position (in units of 10 m) and heading relative to the start; the last motion in units of the commanded motion; the
+share of the steps that were made."""
 NO_ACTION = len(Action)
-"""The action before the first one."""
+"""Value for the missing action before the first one."""
 GOAL_IDS = np.array([MPCAT40_ID[name] for name in GOAL_CATEGORIES], np.uint8)
 """The mpcat40 id of each goal category."""
 _MIRRORED = np.array([Action.STOP, Action.MOVE_FORWARD, Action.TURN_RIGHT, Action.TURN_LEFT, NO_ACTION], np.uint8)
@@ -33,7 +34,7 @@ class Steps:
     categories: UInt8[np.ndarray, "n h w"]
     """mpcat40 ids; 0 is unknown."""
     motion: Float32[np.ndarray, "n motion"]
-    """As `MOTION` says."""
+    """The numbers that `MOTION` names."""
     before: UInt8[np.ndarray, " n"]
     """The action before each step; `NO_ACTION` before the first."""
     goal: int
@@ -56,7 +57,7 @@ def mirrored_actions(actions: UInt8[np.ndarray, " n"]) -> UInt8[np.ndarray, " n"
 
 
 def depth_levels(depth_m: Float32[np.ndarray, "*shape"]) -> UInt8[np.ndarray, "*shape"]:
-    """Returns the level of each depth in metres; 0 where there is none."""
+    """Returns the level of each depth in metres; 0 where there is no depth."""
     levels = np.ceil(depth_m * (LEVELS / FAR_M))
     return np.clip(levels, 0, LEVELS).astype(np.uint8)
 
@@ -80,8 +81,8 @@ def motion_of(pose: Pose, earlier: Pose | None, step: int) -> Float32[np.ndarray
     """Returns the numbers that `MOTION` names.
 
     Args:
-        pose: against the start pose.
-        earlier: one step before; None at the start.
+        pose: relative to the start pose.
+        earlier: pose one step earlier; None at the start.
         step: number of actions so far.
     """
     moved = (0.0, 0.0, 0.0)
@@ -93,12 +94,12 @@ def motion_of(pose: Pose, earlier: Pose | None, step: int) -> Float32[np.ndarray
 
 
 def motions(poses: Float32[np.ndarray, "n 3"]) -> Float32[np.ndarray, "n motion"]:
-    """Returns the numbers that `MOTION` names, for each pose of an episode (metres and radians, against its start)."""
+    """Returns the numbers that `MOTION` names, for each pose of an episode (metres and radians, from its start)."""
     each = [Pose(*(float(value) for value in row)) for row in poses]
     rows = [motion_of(pose, each[step - 1] if step else None, step) for step, pose in enumerate(each)]
     return np.array(rows, np.float32).reshape(-1, len(MOTION))
 
 
 def _middles(size: int, parts: int) -> Int[np.ndarray, " parts"]:
-    """Returns the pixel in the middle of each of some equal parts of an axis."""
+    """Returns the middle pixel of each of `parts` equal parts of an axis."""
     return ((np.arange(parts) + 0.5) * size / parts).astype(np.intp)

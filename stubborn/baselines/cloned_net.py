@@ -25,20 +25,20 @@ class NetConfig:
     """Sizes of the network."""
 
     categories: _Size = 8
-    """Channels into which the category of a pixel is embedded."""
+    """Length of the embedding of a pixel's category."""
     width: _Size = 32
     """Channels of the first convolution; the others have 2, 4 and 4 times as many."""
     goal: _Size = 32
-    """Numbers into which the goal and the action before are embedded."""
+    """Length of the embeddings of the goal and of the previous action."""
     hidden: _Size = 256
-    """Numbers of an encoded image, and of the state of the recurrent unit."""
+    """Length of an encoded image and of the state of the recurrent unit."""
 
 
 class ClonedNet(nn.Module):
     """Gives the logits of the next action from a sequence of small images.
 
-    The layer of the goal marks the pixels of the goal category, so that a policy need not learn 21 categories apart;
-    the embedding of the categories shows it where such goals are usual.
+    The layer of the goal marks the pixels of the goal category, so that a policy does not have to learn each of the 21
+    categories separately; the embedding of the categories shows it where such goals are usual.
     """
 
     goal_ids: Tensor
@@ -70,15 +70,15 @@ class ClonedNet(nn.Module):
         goal: Tensor,
         state: Float[Tensor, "1 n hidden"] | None = None,
     ) -> tuple[Float[Tensor, "steps n actions"], Float[Tensor, "1 n hidden"]]:
-        """Returns the logits of the actions of each step, and the state after the last.
+        """Returns the logits of the actions at each step, and the state after the last step.
 
         Args:
-            depth: see `Steps`, like the next three; n sequences side by side.
+            depth: see `Steps`, also for the next three arguments; n parallel sequences.
             categories: mpcat40 ids.
-            motion: as `MOTION` says.
-            before: the action before each step.
+            motion: the numbers that `MOTION` names.
+            before: the action that precedes each step.
             goal: (n,) index of the goal category.
-            state: that after the step before; None at the start of an episode.
+            state: state after the previous step; None at the start of an episode.
         """
         steps, count = depth.shape[:2]
         ids = categories.flatten(0, 1).long()
@@ -88,8 +88,8 @@ class ClonedNet(nn.Module):
         channels = torch.cat((self.category(ids), *(layer[..., None] for layer in layers)), 3)
         features = self.encoder(channels.permute(0, 3, 1, 2))  # its channels stay last in memory, which is faster
         seen = self.seen(features.flatten(1)).view(steps, count, -1)
-        told = self.goal(goal).expand(steps, -1, -1)
-        given = torch.cat((seen, told, self.before(before.long()), motion), 2)
+        goals = self.goal(goal).expand(steps, -1, -1)
+        given = torch.cat((seen, goals, self.before(before.long()), motion), 2)
         hidden, after = self.memory(given, state)
         return self.action(hidden), after
 

@@ -23,7 +23,7 @@ class RandomConfig:
 
 
 class RandomAgent:
-    """Draws each action independently of the observations."""
+    """Samples each action independently of the observations."""
 
     def __init__(self, config: RandomConfig = RandomConfig()) -> None:
         self.config = config

@@ -18,7 +18,7 @@ from stubborn.planning.steering import route_end
 
 @dataclass(frozen=True)
 class Approach:
-    """The route to the nearest viewpoint of the candidates that are pursued."""
+    """The route to the nearest viewpoint of the pursued candidates."""
 
     route: Route | None
     """None when the robot is on a viewpoint."""
@@ -37,9 +37,9 @@ def approach_on(
     finder: ViewpointFinder,
     last_resort: LastResort,
 ) -> Approach | None:
-    """Returns the approach to some candidates on a part of the map; its cell is counted in that part.
+    """Returns the approach to some candidates on a part of the map; its cell is relative to that part.
 
-    None where they have no viewpoint that can be reached.
+    Returns None where they have no reachable viewpoint.
     """
     if not candidates.any():
         return None
@@ -54,9 +54,9 @@ def approach_on(
 def approach_from_here(
     view: NavMap, candidates: Bool[np.ndarray, "rows cols"], pose: Pose, finder: ViewpointFinder
 ) -> Approach | None:
-    """Returns the approach that ends where the robot stands; its cell is counted in that part of the map.
+    """Returns the approach that ends at the robot's present position; its cell is relative to that part of the map.
 
-    None where no candidate is in sight within `StopDistances.pushing_m`.
+    Returns None where no candidate is in sight within `StopDistances.pushing_m`.
     """
     if not candidates.any():
         return None

@@ -1,8 +1,8 @@
 """Candidates as objects: connected cells that score as the target, without those of rejected objects.
 
 A rejected object keeps its cells for the rest of the episode. Its outline changes with every frame, so cells that join
-it later belong to it too, as long as they are no more than it had when it was rejected. A part that is larger than that
-cannot be the rest of it: it is an object that touches it, such as a table next to a rejected chair.
+it later belong to it too, as long as there are at most as many as it had when it was rejected. A larger part cannot
+belong to it: it is another object that touches it, such as a table next to a rejected chair.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from stubborn.mapping.navmap import NavMap
 
 @dataclass(frozen=True)
 class CandidateParts:
-    """The candidates on a view of the map, one number each."""
+    """The candidates on a view of the map; each has a number."""
 
     labels: Int[np.ndarray, "rows cols"]
-    """Number of the candidate that a cell belongs to; 0: none."""
+    """Number of the candidate that a cell belongs to; 0: no candidate."""
     count: int
     """Candidates have the numbers 1 to `count`."""
     touches_rejected: Bool[np.ndarray, " numbers"]
@@ -30,7 +30,7 @@ class CandidateParts:
 
     @classmethod
     def of(cls, view: NavMap, candidate_score: float, least_cells: int) -> CandidateParts:
-        """Returns the candidates on a view; parts with fewer than `least_cells` cells are none."""
+        """Returns the candidates on a view; parts with fewer than `least_cells` cells do not count."""
         shown = view.score_max > candidate_score
         left = shown & ~view.rejected
         if not left.any():
@@ -42,9 +42,9 @@ class CandidateParts:
         object_of[parts[left]] = objects[left]
         counts = (areas >= least_cells) & (areas > rejected_cells[object_of])
         counts[0] = False  # the background
-        beside = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
+        adjacent = np.bincount(parts[_grown(view.rejected)], minlength=len(areas)) > 0
         number = np.where(counts, np.cumsum(counts), 0)
-        return cls(number[parts], int(counts.sum()), np.append(False, beside[counts]))
+        return cls(number[parts], int(counts.sum()), np.append(False, adjacent[counts]))
 
     @property
     def mask(self) -> Bool[np.ndarray, "rows cols"]:

@@ -53,7 +53,7 @@ class NaiveBayes:
         """Returns the classifier with `prior` (2), `mean` and `variance` (2 lists of 4).
 
         Raises:
-            ConfigError: a shape is another one, or a prior or variance is not positive.
+            ConfigError: a shape is wrong, or a prior or variance is not positive.
         """
         prior, mean, variance = (np.array(content[key], np.float64) for key in ("prior", "mean", "variance"))
         wanted = (2, len(Features._fields))
@@ -86,7 +86,7 @@ INPUTS: Mapping[str, Callable[[Features], float]] = MappingProxyType(
 
 @dataclass(frozen=True, eq=False)
 class Logistic:
-    """A logistic regression over some of `INPUTS`; over the mean score only it is a threshold on it."""
+    """A logistic regression over some of `INPUTS`; with the mean score as its only input it is a threshold."""
 
     inputs: tuple[str, ...]
     coefficients: Float64[np.ndarray, " inputs"]

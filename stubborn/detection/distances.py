@@ -9,9 +9,9 @@ from sim.interface import MAX_STEPS, ConfigError, SegmenterSpec, SuccessRule
 from stubborn.mapping.navmap import CollisionLayer
 
 TUNED_FOR_M = 1.0
-"""The success distance that the distances of `TargetConfig` are for."""
+"""The success distance for which the distances of `TargetConfig` are chosen."""
 _LEAST_M = 0.05
-"""No distance becomes shorter than this, a cell, however small the success distance is."""
+"""Lower limit of all distances (one cell), however small the success distance is."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,35 +21,38 @@ class TargetConfig:
     stop_in_view_m: float = 0.92
     """A target point in view within this distance ends the approach: it is near and nothing hides it."""
     viewpoint_m: float = 0.85
-    """A viewpoint is this near a candidate cell: a metre, less the error of the cells."""
+    """A viewpoint is within this distance of a candidate cell: one metre, less the error of the cells."""
     far_viewpoint_m: float = 0.93
-    """A viewpoint this near will do where there is no nearer one."""
+    """A viewpoint within this distance is used where there is no nearer one."""
     pushing_m: float = 0.98
-    """A candidate in sight this near will do where the robot pushes against something on its way to a viewpoint."""
+    """If the robot pushes against something on its path to a viewpoint, a visible candidate within this distance is
+    near enough."""
     last_resort_m: float = 1.6
     """Where there is no viewpoint at all, a candidate is verified from the nearest reachable place within this
     distance; late in an episode the agent stops there, which may still succeed."""
     outline_margin_m: float = 0.25
-    """With inexact outlines the agent goes this much nearer than `stop_in_view_m` and `viewpoint_m` where it can: they
-    may include a part of a neighbouring object."""
+    """With inexact outlines the agent goes nearer than `stop_in_view_m` and `viewpoint_m` by this distance where it
+    can, because an inexact outline may include a part of a neighbouring object."""
     last_resort_step: int = 420
-    """From this step on, of `MAX_STEPS`, the agent stops at a last resort (see `last_resort_from`)."""
+    """The agent stops at a last resort from this step (of `MAX_STEPS`) on (see `last_resort_from`)."""
     rejection_margin_m: float = 0.25
-    """Cells this near to rejected ones are rejected too."""
+    """Cells within this distance of rejected cells are rejected too."""
     verify_until_step: int = 200
     """A candidate first found later is not verified: no time is left to look elsewhere."""
     retry_after_steps: int = 15
-    """A candidate that could not be reached is tried again after so many steps of exploration, then after twice as
+    """A candidate that could not be reached is tried again after this many steps of exploration, then after twice as
     many, and so on."""
     margin_cells: int = 40
     """Margin around the known part of the map within which routes to a far candidate may run."""
     least_cells: int = 4
-    """With inexact outlines, fewer connected cells are no candidate: single cells are errors at outlines."""
+    """With inexact outlines, a candidate has at least this many connected cells: single cells are errors at
+    outlines."""
     target_edge_m: float = 0.08
-    """A wall this near the candidate cell is the wall that the object is mounted on, and does not hide it."""
+    """A wall within this distance of the candidate cell is the wall that the object is mounted on, and does not hide
+    it."""
 
     def last_resort_from(self, max_steps: int) -> int:
-        """Returns the step from which the agent stops at a last resort, in episodes of so many actions."""
+        """Returns the step from which the agent stops at a last resort, in episodes of `max_steps` actions."""
         return max_steps - (MAX_STEPS - self.last_resort_step)
 
     def __post_init__(self) -> None:
@@ -72,11 +75,12 @@ class StopDistances:
     in_view_m: float
     """A target point in view within this distance ends the approach."""
     nearer_viewpoint_m: float | None
-    """Viewpoints this near come first, with inexact outlines; they are not worth crossing collision marks for."""
+    """With inexact outlines, viewpoints within this distance come first, but only those that can be reached without
+    crossing collision marks."""
     viewpoints_m: tuple[float, ...]
     """Viewpoints within the first distance come before those within the next one."""
     pushing_m: float
-    """Limit for a STOP where the robot pushes against something on its way to a viewpoint."""
+    """Limit for a STOP if the robot pushes against something on its path to a viewpoint."""
     last_resort_m: float
     """Limit for the nearest reachable place, where there is no viewpoint."""
 

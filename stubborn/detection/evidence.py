@@ -1,7 +1,7 @@
 """The views from which objects were seen, and the class probabilities that follow from them.
 
-Frames of one view (a sector of directions and a range of distances) err in the same way, so they are averaged. Views
-that differ are fused by `stubborn.detection.fusion`.
+Frames of one view (a sector of directions and a range of distances) have the same errors, so they are averaged.
+Different views are fused by `stubborn.detection.fusion`.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class EvidenceConfig:
     rings_m: tuple[float, float, float] = (1.2, 3.0, 4.2)
     """Distances to the middle of an object at which the view changes."""
     near_ring: int = 1
-    """The range of distances from which an object is seen well: nearer than 1.2 m the image does not hold the whole of
-    it, and a far object is a few pixels."""
+    """The range of distances from which an object is seen well: from nearer than 1.2 m the image does not show the
+    whole object, and a far object covers only a few pixels."""
     full_pixels: int = 40
     """A frame with fewer pixels of the object counts in proportion."""
     fusion: Path | None = None
@@ -45,7 +45,7 @@ class EvidenceConfig:
 
 
 class Evidence:
-    """The views of all tracks; tracks are numbered, and number 0 is none."""
+    """The views of all tracks; tracks are numbered from 1, and number 0 means no track."""
 
     def __init__(self, config: EvidenceConfig, fusion: Fusion, tracks: int) -> None:
         self.config = config
@@ -68,10 +68,10 @@ class Evidence:
         """Enters one frame.
 
         Args:
-            tracks: those in view.
+            tracks: the tracks in view.
             mean: mean posteriors of their pixels.
-            pixels: number of these.
-            dx_m: from the middle of each to the camera; also `dy_m`.
+            pixels: number of these pixels.
+            dx_m: offset in x from the middle of each track to the camera; `dy_m` is the offset in y.
         """
         view = self._view(dx_m, dy_m)
         weight = np.minimum(pixels / np.float32(self.config.full_pixels), np.float32(1.0)).astype(np.float32)
@@ -80,7 +80,7 @@ class Evidence:
         self.probability[tracks] = self._fused(tracks)
 
     def merge(self, track: int, into: int) -> None:
-        """Gives the views of a track to another one; the first has none afterwards."""
+        """Moves the views of a track to another one."""
         self._sums[into] += self._sums[track]
         self._weights[into] += self._weights[track]
         self._sums[track] = 0.0
@@ -104,7 +104,8 @@ class Evidence:
     def views(self, tracks: Int[np.ndarray, " n"]) -> tuple[np.ndarray, np.ndarray]:
         """Returns the mean posterior of each view (n, views, classes) and its weight (n, views), at most 1.
 
-        Views are numbered by range of distance, then by direction. The weight is without the factor of the distance.
+        Views are numbered by range of distance, then by direction. The weight does not include the factor of the
+        distance.
         """
         count = self._weights[tracks]
         return self._sums[tracks] / np.maximum(count, 1e-6)[:, :, None], np.minimum(count, 1.0)

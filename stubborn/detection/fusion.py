@@ -1,9 +1,9 @@
-"""From the views of an object to the probability of each category.
+"""Computes the probability of each category from the views of an object.
 
 The posteriors of a track's pixels contain two facts: how much of it is wall, floor or ceiling (a voxel holds a part of
-what is behind the object), and which object the rest is. They are separated: the object's categories compete with each
-other, and the share of surface says whether there is an object at all. Views are averaged with a weight for each range
-of distance; the average is sharpened, the more the more views there are, and each category has an offset.
+what is behind the object), and which object the rest shows. They are separated: the object's categories compete with
+each other, and the share of surface shows whether there is an object at all. Views are averaged with a weight for each
+range of distance; the average is sharpened more when there are more views, and each category has an offset.
 
 The parameters describe the errors of one kind of segmentation. `stubborn train fusion` fits them to tracks in houses
 with furniture that the network has not seen, and writes `stubborn/detection/fusions/<kind>.json`.
@@ -28,15 +28,15 @@ FOLDER = Path(__file__).parent / "fusions"
 DEFAULT_KIND = "rednet"
 """The kind whose parameters another kind gets that has none."""
 SURFACES = ("wall", "floor", "ceiling")
-"""What is behind, below and above every object."""
+"""Categories of the surfaces behind, below and above every object."""
 IS_SURFACE = np.array([name in SURFACES for name in MPCAT40[1:]])
-"""For each category of `MPCAT40` but void."""
+"""One entry for each category of `MPCAT40` except void."""
 _Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e3)]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fusion:
-    """Parameters of the fusion; the default is that of exact posteriors, which are only averaged."""
+    """Parameters of the fusion; the default is for exact posteriors, which are only averaged."""
 
     ring_weights: tuple[float, ...] = (0.3, 1.0, 0.6, 0.3)
     """Weight of a view in each range of distance (`EvidenceConfig.rings_m`)."""
@@ -55,7 +55,7 @@ class Fusion:
     def __post_init__(self) -> None:
         unknown = sorted(set(self.offsets) - set(MPCAT40[1:]) | set(self.offsets) & set(SURFACES))
         if unknown:
-            raise ConfigError(f"Fusion.offsets are of categories of objects, got '{unknown[0]}'.")
+            raise ConfigError(f"Fusion.offsets must name categories of objects, got '{unknown[0]}'.")
         if not (self.sharpness > 0.0 and self.floor > 0.0 and min(self.ring_weights, default=0.0) > 0.0):
             raise ConfigError("Fusion needs ring_weights, sharpness and floor > 0.")
 
@@ -66,7 +66,7 @@ class Fusion:
 
         Args:
             mean: mean posterior of the track's pixels in each view; any finite values in views without weight.
-            weight: of each view, the factor of its distance included; 0 for directions without a view.
+            weight: weight of each view, including the factor of its distance; 0 for directions without a view.
         """
         objects, surface = mean[:, :, ~IS_SURFACE], mean[:, :, IS_SURFACE]
         of_objects, of_surface = objects.sum(axis=2), surface.sum(axis=2)
@@ -123,7 +123,7 @@ def read_fusion(file: Path) -> Fusion:
 
 
 def fusion_for(spec: SegmenterSpec, file: Path | None = None) -> Fusion:
-    """Returns the parameters for a segmenter: those of its kind, in place of the shipped ones those in a file.
+    """Returns the parameters for a segmenter: those in `file`, or the shipped ones of its kind.
 
     Raises:
         ConfigError: the file is missing or broken.

@@ -1,8 +1,9 @@
-"""Fits a `Fusion` to tracks whose true category is known, and judges it on houses left out.
+"""Fits a `Fusion` to tracks whose true category is known, and evaluates it on held-out houses.
 
 The parameters are those of highest likelihood of the true categories, with a normal prior on the offsets: a network
-makes other errors on other furniture, and an offset that only the houses of the fit need is worse than none. Each track
-enters with all of its views and with random parts of them, because an agent has to decide after few.
+makes different errors on different furniture, and an offset that helps only in the houses of the fit does harm in
+others. Each track enters with all of its views and with random parts of them, because an agent has to decide after few
+views.
 """
 
 from __future__ import annotations
@@ -23,15 +24,16 @@ from stubborn.detection.fusion import IS_SURFACE, SURFACES, Fusion
 
 FOLDS = 5
 LEAST_PIXELS = 40
-"""Tracks that fewer pixels showed are left out."""
+"""Tracks with fewer pixels are left out."""
 TRUE_SHARE = 0.25
-"""A track is of an object's category if at least this share of its pixels is; the rest may show what is behind it."""
+"""A track has the category of an object if at least this share of its pixels has it; the rest may show the
+background."""
 OFFSET_PRIOR = 30.0
-"""Weight of the prior of the offsets: that of so many tracks."""
+"""Weight of the prior of the offsets, as a number of tracks."""
 PARTS = 2
-"""Random parts of the views of each track."""
+"""Number of random parts of the views of each track."""
 PLAUSIBLE = 0.1
-"""Goals below this probability, before and after the fit, are not judged: nearly all are true negatives."""
+"""Goals below this probability, before and after the fit, are left out: nearly all are true negatives."""
 _BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.85, 0.95, 1.0)
 
 
@@ -58,12 +60,12 @@ def true_category(counts: Int[np.ndarray, " ids"]) -> int:
 
 
 def samples_of(log: Sequence[Mapping[str, Any]], *, seed: int = 0) -> list[Sample]:
-    """Returns the samples of the episodes of a log: of each track all of its views, then random parts of them.
+    """Returns the samples of a log: for each track one with all of its views, then some with random parts of them.
 
     Args:
-        log: of each episode `house`, and for its tracks `counts` (n, 41) of the true ids of their pixels, and for all
-            of their views `track` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
-        seed: of the parts.
+        log: one entry for each episode. It holds `house`; `counts` (n, 41), the number of pixels of each true id for
+            each track; and for all views of the tracks `track` (m,), `view` (m,), `mean` (m, 40) and `weight` (m,).
+        seed: seeds the choice of the random parts.
     """
     rng = np.random.default_rng(seed)
     result = []
@@ -94,13 +96,13 @@ def fit(samples: Sequence[Sample], *, sectors: int = EvidenceConfig.sectors, ste
     Args:
         samples: see `samples_of`.
         sectors: directions of `EvidenceConfig`; a view's number divided by it is its range of distance.
-        steps: of Adam.
+        steps: number of steps of Adam.
 
     Raises:
         ConfigError: there are fewer than 100 samples.
     """
     if len(samples) < 100:
-        raise ConfigError(f"The log holds {len(samples)} samples of tracks; 100 are needed: play more episodes.")
+        raise ConfigError(f"The log holds {len(samples)} samples of tracks; 100 are needed: run more episodes.")
     data = _Data.of(samples, sectors)
     names = [name for name in MPCAT40[1:] if name not in SURFACES]
     free = {
@@ -142,7 +144,7 @@ class _Data:
     weight: Tensor
     """(n, rings) sum of the weights."""
     category: Tensor
-    """(n,) number of the true object; the last one is none."""
+    """(n,) number of the true object; the last number means no object."""
 
     @classmethod
     def of(cls, samples: Sequence[Sample], sectors: int) -> _Data:
@@ -163,7 +165,7 @@ class _Data:
         return cls(*(torch.from_numpy(each) for each in (objects, behind, weight, category)))
 
     def log_odds(self, free: Mapping[str, Tensor]) -> Tensor:
-        """Returns what `Fusion.probabilities` computes, before the softmax: (n, objects and none)."""
+        """Returns the values of `Fusion.probabilities` before the softmax, (n, objects + 1); the last is no object."""
         factor = (free["rings"] - free["rings"][EvidenceConfig.near_ring]).exp()
         total = (self.weight @ factor)[:, None].clamp(min=1e-6)
         averaged = torch.einsum("nrc,r->nc", self.objects, factor) / total
@@ -187,10 +189,10 @@ def probabilities(
 
 
 def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
-    """Returns the probabilities of each sample by parameters that were fitted to other houses."""
+    """Returns the probabilities of each sample with parameters that were fitted to other houses."""
     houses = sorted({each.house for each in samples})
     if len(houses) < 2:
-        raise ConfigError("Tracks of at least two houses are needed, got those of one: play more episodes.")
+        raise ConfigError("Tracks of at least two houses are needed, got those of one: run more episodes.")
     fold = {house: number % min(FOLDS, len(houses)) for number, house in enumerate(houses)}
     result = np.zeros((len(samples), len(IS_SURFACE)), np.float32)
     for number in sorted(set(fold.values())):
@@ -203,10 +205,10 @@ def left_out(samples: Sequence[Sample]) -> Float32[np.ndarray, "n classes"]:
 def judge(
     p: Float[np.ndarray, "n classes"], samples: Sequence[Sample], among: Bool[np.ndarray, "n goals"] | None = None
 ) -> dict[str, Any]:
-    """Returns the quality of the probabilities of goal categories: calibration, and how well they rank.
+    """Returns the quality of the probabilities of goal categories: calibration and ranking.
 
     Args:
-        p: of each category of `MPCAT40[1:]`, for each sample.
+        p: probability of each category of `MPCAT40[1:]`, for each sample.
         samples: the same samples.
         among: pairs of sample and goal that count; by default those with a probability of at least `PLAUSIBLE`.
     """
@@ -216,7 +218,7 @@ def judge(
     truth = np.array([each.category for each in samples])[:, None] == goals
     among = p[:, goals] >= PLAUSIBLE if among is None else among
     if not among.any():
-        raise ConfigError("No track of the log may be a goal: play more episodes.")
+        raise ConfigError("No track of the log may be a goal: run more episodes.")
     q, y = np.clip(p[:, goals][among].astype(np.float64), 1e-4, 1.0 - 1e-4), truth[among]
     rows = []
     for low, high in itertools.pairwise(_BINS):

@@ -1,4 +1,4 @@
-"""Look, then go: whether a track is accepted, rejected, or still to be looked at, and from where."""
+"""Decides whether a track is accepted, rejected or looked at first, and from which place."""
 
 from __future__ import annotations
 
@@ -22,31 +22,32 @@ class LookConfig:
     """Probabilities at which a track is visited and accepted, and viewpoints; see docs/segmentation.md."""
 
     bar: tuple[tuple[int, float], ...] = ((0, 0.05), (40, 0.05), (100, 0.4), (200, 0.57), (300, 0.69), (500, 0.8))
-    """(Steps left, probability), with straight lines between: a track is accepted from this probability on. A wrong
-    STOP costs what going on would still bring, which is the probability to succeed later; it falls as steps run out."""
+    """Pairs of steps left and probability, interpolated linearly: a track is accepted from this probability on. A wrong
+    STOP costs the chance to succeed later, which falls as the steps run out."""
     slack: float = 0.12
-    """The robot goes on to an accepted track until it is below the bar by this share of it. It stops only above."""
+    """The robot keeps approaching an accepted track until its probability is below the bar by this share of the bar. It
+    stops only at a track above the bar."""
     visit: float = 0.3
-    """A track below the bar gets a look from this probability on."""
+    """A track below the bar is looked at if it has at least this probability."""
     keep: float = 0.6
-    """A look goes on until the probability falls below this share of `visit`."""
+    """A look continues until the probability falls below this share of `visit`."""
     most_looks: int = 2
-    """A track gets at most so many looks."""
+    """A track is looked at no more than this many times."""
     look_m: tuple[float, float] = (1.3, 2.2)
     """Distances to look from: the camera sees the floor, and so a whole low object, from 1.43 m on."""
     apart_rad: float = math.radians(45.0)
-    """Directions less than this apart are one view."""
+    """Directions that differ by less than this count as one view."""
     step_back_steps: int = 100
-    """With at least so many steps left a track above the bar that was only seen from nearer than 1.2 m, where the image
-    does not hold the whole of it, gets a look first."""
+    """If at least this many steps are left, a track above the bar is looked at first when it was seen only from nearer
+    than 1.2 m, where the image does not show the whole object."""
     per_metre: float = 0.03
-    """A track a metre farther away must be this much more probable to come first."""
+    """For each metre that a track is farther away, it must be this much more probable to come first."""
     steps_per_metre: float = 6.0
-    """Steps that a metre of the path takes, turns included: a track out of reach in time is not accepted."""
+    """Steps that a metre of the path takes, including turns: a track that cannot be reached in time is not accepted."""
     patience_steps: int = 40
-    """A track is set aside after so many steps in which the robot pursued tracks and stayed within `patience_m`."""
+    """A track is set aside after this many steps in which the robot pursued tracks and stayed within `patience_m`."""
     patience_m: float = 1.0
-    """The distance that ends the count."""
+    """The count restarts when the robot moves farther than this."""
 
     def __post_init__(self) -> None:
         steps = [left for left, _ in self.bar]
@@ -86,10 +87,10 @@ class Verdicts:
         self.max_steps = max_steps
         self.accepted: set[int] = set()
         self.rejected: set[int] = set()
-        """Those below the bar that had their looks. They are accepted after all when it falls below them,
-        or when they are seen again and look better."""
+        """Tracks below the bar that had all their looks. They are accepted later if the bar falls below their
+        probability, or if new views raise their probability."""
         self.doubtful: list[int] = []
-        """Those that are worth a look."""
+        """Tracks that are worth a look."""
         self.looks: dict[int, int] = {}
         self.bar = 1.0
         """The probability from which a track is accepted now."""
@@ -105,10 +106,10 @@ class Verdicts:
         """Accepts and rejects tracks, and finds those that are worth a look.
 
         Args:
-            probability: of the goal, for each track.
-            distance_m: of the robot to each.
+            probability: probability of the goal for each track.
+            distance_m: distance of the robot to each track.
             evidence: the views of the tracks.
-            step: of the episode.
+            step: step of the episode.
             pursued: the track of the present look.
         """
         c = self.config
@@ -149,7 +150,7 @@ class Verdicts:
         self.accepted.discard(track)
 
     def _is_seen_around(self, sectors: Bool[np.ndarray, " sectors"]) -> bool:
-        """Returns True for an object that was seen from directions which are far enough apart."""
+        """Returns True for an object that was seen from directions that differ enough."""
         seen = np.flatnonzero(sectors)
         if seen.size < 2:
             return False
@@ -167,14 +168,15 @@ def look_at(
     finder: ViewpointFinder,
     config: LookConfig,
 ) -> Approach | None:
-    """Returns the approach to a place to look at a track from; None where there is none.
+    """Returns the approach to a place from which to look at a track; None if there is no such place.
 
     Args:
         view: a part of the map.
-        cells: for each cell of it the nearest one of the track.
+        cells: for each cell of the view, the nearest cell of the track.
         middle_xy_m: the middle of the track.
-        seen_from: directions from which it was seen well, numbered around from +x; a new one must be apart from them.
-        pose: of the robot.
+        seen_from: directions from which the track was seen well, numbered from +x on; a new direction must differ from
+            them.
+        pose: pose of the robot.
         finder: finds reachable cells in sight.
         config: distances and angles.
     """

@@ -1,4 +1,4 @@
-"""From a candidate to a decision: approach, verify, accept or reject (paper: Target Object Detection Module)."""
+"""Approaches and verifies candidates, and accepts or rejects them (paper: Target Object Detection Module)."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from stubborn.planning.planner import Planner
 
 
 class Seeker(Protocol):
-    """Decides on candidates of the goal: where to go for them, and when to stop."""
+    """Decides on candidates of the goal: which one to approach, and when to stop."""
 
     confidence: float | None
-    """Probability or score in [0, 1] of the candidate that `judge` accepted last; None: it has accepted none."""
+    """Probability or score in [0, 1] of the candidate that `judge` last accepted; None: no candidate was accepted."""
     accepted_cell: tuple[int, int] | None
     """Map cell where that candidate scores highest; its other cells may show neighbouring objects."""
 
@@ -41,11 +41,11 @@ class Seeker(Protocol):
         ...
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
-        """Returns the map cell of a candidate in this very frame that is near enough to stop; None: there is none."""
+        """Returns the map cell of a candidate in the current frame that is near enough to stop, or None."""
         ...
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """Returns the approach to a candidate; None: explore."""
+        """Returns the approach to a candidate; None: the agent should explore."""
         ...
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
@@ -57,13 +57,13 @@ class Seeker(Protocol):
         ...
 
     def postpone(self, navmap: NavMap, step: int) -> None:
-        """Sets aside the candidates that are approached: they cannot be reached with the map of now."""
+        """Sets aside the approached candidates: they cannot be reached on the current map."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class SeekerParts:
-    """What an agent gives to its seeker."""
+    """The parts that an agent gives to its seeker."""
 
     camera: CameraModel
     robot: RobotModel
@@ -141,8 +141,8 @@ class TargetSeeker:
     ) -> None:
         """`layers` are the collision layers to plan on, in order of preference.
 
-        Connected cells with a target score higher than `candidate_score` are a candidate if they are at least
-        `least_cells`. `max_steps` are the actions of an episode.
+        Connected cells with a target score higher than `candidate_score` form a candidate if there are at least
+        `least_cells` of them. `max_steps` is the number of actions of an episode.
         """
         self.config = config
         self._last_resort_step = config.last_resort_from(max_steps)
@@ -163,18 +163,18 @@ class TargetSeeker:
         """See `Seeker`: the verifier's probability, or the candidate's highest score if it has none."""
         self.accepted_cell: tuple[int, int] | None = None
         """See `Seeker`: the cell that is verified."""
-        self._far = False  # whether the candidate pursued needs more than the local window
+        self._far = False  # whether the pursued candidate needs more than the local window
         self._pursued: tuple[int, int] | None = None  # map cell of the acceptable candidate that is approached
 
     def observe(self, navmap: NavMap, observation: Observation, pose: Pose, step: int) -> None:
-        """See `Seeker`; all that this seeker knows is on the map."""
+        """See `Seeker`; this seeker reads everything from the map."""
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
         """Returns False: the paper's agent stops where it verifies."""
         return False
 
     def parts(self, navmap: NavMap) -> CandidateParts:
-        """Returns the candidates on the known part of the map, those set aside included."""
+        """Returns the candidates on the known part of the map, including those set aside."""
         return CandidateParts.of(navmap.view(self._known(navmap)), self.candidate_score, self.least_cells)
 
     def candidates(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
@@ -184,8 +184,8 @@ class TargetSeeker:
     def acceptable(self, navmap: NavMap) -> Bool[np.ndarray, "rows cols"]:
         """Returns the cells of the whole map with candidates that the verifier would accept now.
 
-        The candidate that is pursued as such stays one: else the goal could change with every frame. The rule that
-        late candidates are not verified does not apply here.
+        A candidate that is pursued as acceptable stays acceptable: otherwise the goal could change with every frame.
+        The rule that late candidates are not verified does not apply here.
         """
         return self._acceptable(navmap, self.parts(navmap))
 
@@ -205,17 +205,17 @@ class TargetSeeker:
         return self._on_whole_map(navmap, accepted[parts.labels]) & ~navmap.set_aside
 
     def in_reach(self, navmap: NavMap, sighting: Sighting) -> tuple[int, int] | None:
-        """Returns the map cell of the nearest candidate in this very frame when it is near enough to stop."""
+        """Returns the map cell of the nearest candidate in the current frame when it is near enough to stop."""
         if not sighting.is_within(self.distances.in_view_m):
             return None
         return sighting.nearest(self._on_whole_map(navmap, self.parts(navmap).mask), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """Returns the approach to the nearest acceptable candidate, else to any; None when none can be reached now."""
+        """Returns the approach to the nearest acceptable candidate, else to any reachable one, else None."""
         whole = self._known(navmap)
         if step >= self._retry_step:
             navmap.set_aside[whole.index] = False
-        # Mostly there is none, and the highest score says so in a tenth of the time.
+        # Usually there is no candidate, and the highest score shows that in a tenth of the time.
         parts = self.parts(navmap) if navmap.score_max[whole.index].max() > self.candidate_score else None
         if parts is None or not (parts.mask & ~navmap.set_aside[whole.index]).any():
             self._far, self._pursued = False, None
@@ -233,7 +233,7 @@ class TargetSeeker:
         return None
 
     def postpone(self, navmap: NavMap, step: int) -> None:
-        """Sets all candidates aside: they cannot be reached with the map of now."""
+        """Sets all candidates aside: they cannot be reached on the current map."""
         navmap.set_aside[self.candidates(navmap)] = True
         self._far, self._pursued = False, None
         self._retry_step = step + self._wait_steps
@@ -242,8 +242,8 @@ class TargetSeeker:
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
         """Verifies the candidate at a map cell; a rejected one never counts again in this episode.
 
-        Returns False where there is no candidate. One that is connected to a rejected object is not new, whenever it
-        was found.
+        Returns False where there is no candidate. A candidate that is connected to a rejected object never counts as
+        new.
         """
         whole = self._known(navmap)
         view, parts = navmap.view(whole), self.parts(navmap)
@@ -251,7 +251,7 @@ class TargetSeeker:
         if number == 0:
             return False
         instance = parts.labels == number
-        # The cells at its edge, which are nearest, also show neighbouring objects: the cell seen best represents it.
+        # The nearest cells are at its edge and also show neighbouring objects, so the best-seen cell represents it.
         best = _seen_best(view, instance)
         features = features_of(view, best)
         found_late = bool((view.found_step[instance] > self.config.verify_until_step).all())
@@ -290,9 +290,9 @@ class TargetSeeker:
     ) -> Iterator[_Choice]:
         """Yields candidates in order of preference, first on the local window, then on the whole map.
 
-        Acceptable candidates come first, but without a last resort: others that have a viewpoint come before that.
+        Acceptable candidates with a viewpoint come first, then other candidates with a viewpoint, then last resorts.
         """
-        # An approach on the whole map is continued on the whole map: else each step could choose another candidate.
+        # An approach on the whole map stays on the whole map: otherwise each step could choose another candidate.
         parts = (whole,) if self._far else (window, whole)
         if acceptable is not None:
             for part in parts:

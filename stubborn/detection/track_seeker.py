@@ -1,4 +1,4 @@
-"""The seeker of `stubborn-plus`: it decides on tracks, looks before it goes, and tries the best one at the end."""
+"""The seeker of `stubborn-plus`: it decides on tracks, and looks at doubtful ones first."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ _STAYED_M = 0.4 * FORWARD_M
 
 @dataclass(frozen=True, kw_only=True)
 class TrackSeekerConfig:
-    """How tracks are made and judged, and which cells of them are approached."""
+    """Parameters of the tracks, of the decisions on them, and of the cells that are approached."""
 
     tracks: TrackConfig = field(default_factory=TrackConfig)
     look: LookConfig = field(default_factory=LookConfig)
     core_share: float = 0.7
-    """Cells of a track whose mean score is below this share of its highest one are not driven to."""
+    """The robot does not drive to cells of a track whose mean score is below this share of the track's highest one."""
     as_good: float = 0.15
     """Accepted tracks whose probability is at most this much below the best one's are equally good: the nearest of
     them is approached."""
     part_share: float = 0.6
-    """A track next to an accepted one, with at least this share of its probability, is driven to as a part of it."""
+    """A track next to an accepted one, with at least this share of its probability, is approached as a part of it."""
     part_gap_voxels: int = 1
     """Boxes of two tracks with at most this gap are next to each other."""
     most_pushes: int = 2
-    """After so many steps of an approach that left the robot where it was, the agent stops there if a STOP counts."""
+    """After this many steps in which an approach did not move the robot, the agent stops if a STOP counts there."""
 
     def __post_init__(self) -> None:
         if not (0.0 <= self.core_share <= 1.0 and 0.0 <= self.part_share <= 1.0 and self.as_good >= 0.0):
@@ -70,7 +70,7 @@ class TrackSeeker:
 
     Args:
         config: tracks and decisions.
-        parts: of the agent. It takes more risk as the actions of the episode run out.
+        parts: parts of the agent. The seeker takes more risk as the actions of the episode run out.
         finder: finds viewpoints, and places to stop at.
     """
 
@@ -95,7 +95,7 @@ class TrackSeeker:
         exact = not self.segmenter.spec.needs_verification
         self.verdicts = Verdicts(self.config.look, exact=exact, max_steps=self.max_steps)
         self.probability: Float32[np.ndarray, " numbers"] = np.zeros(1, np.float32)
-        """Probability of the goal for each track, by its number; entry 0 is no track."""
+        """Probability of the goal for each track, by its number; entry 0 belongs to no track."""
         self.pursued: int | None = None
         """The doubtful track that is looked at."""
         self.confidence: float | None = None
@@ -107,14 +107,14 @@ class TrackSeeker:
         self._targets: list[int] = []  # those that are approached
         self._retry_step: dict[int, int] = {}
         self._wait_steps: dict[int, int] = {}
-        # Where pursuit got nowhere (x and y in metres), and until which step doubtful tracks there wait.
+        # Places (x and y in metres) without progress, and the step until which doubtful tracks there wait.
         self._left_spots: list[tuple[float, float, int]] = []
         self._went_nearer = False
         self._pose = Pose(0.0, 0.0, 0.0)
         self._hidden: dict[int, Bool[np.ndarray, " sectors"]] = {}  # directions from which a look did not show a track
-        # Where the count of patience began, and the steps of pursuit since then.
+        # The pose at which the count of patience began, and the steps of pursuit since then.
         self._pursuit: tuple[Pose, int] | None = None
-        # The pose at the last approach, whether it led along a route, and the steps that left the robot where it was.
+        # The pose at the last approach, whether it led along a route, and the steps in which the robot did not move.
         self._approached_from: Pose | None = None
         self._drove = False
         self._pushes = 0
@@ -139,7 +139,7 @@ class TrackSeeker:
         return sighting.nearest(self.cells_of(navmap, self._accepted), self.distances.in_view_m)
 
     def approach(self, navmap: NavMap, window: Window, pose: Pose, step: int) -> Approach | None:
-        """See `Seeker`: accepted tracks come first, then the best doubtful one; without progress, another one."""
+        """See `Seeker`: accepted tracks come first, then doubtful ones; without progress another track is chosen."""
         self._count_pushes(pose)
         found = self._pursue(navmap, window, pose, step)
         if self._is_stuck(pose, pursuing=found is not None):
@@ -174,13 +174,13 @@ class TrackSeeker:
         return None
 
     def judge(self, navmap: NavMap, cell: tuple[int, int]) -> bool:
-        """See `Seeker`: the look at the pursued track is done; an accepted one was judged before."""
+        """See `Seeker`: ends the look at the pursued track; an accepted track was judged before."""
         if self._accepted:
             at_cell = [t for t in self._accepted if self.cells_of(navmap, [t])[cell]]
-            # The cell may belong to a part that is not accepted itself: then the tracks that are approached are meant.
+            # The cell may belong to a part that is not accepted itself: then the decision is on the approached tracks.
             near = at_cell or [t for t in self._targets if t in self._accepted] or self._accepted
             track = max(near, key=lambda t: self.probability[t])
-            if self.probability[track] < self.verdicts.bar:  # it looked better from afar
+            if self.probability[track] < self.verdicts.bar:  # it seemed more probable from afar
                 self.verdicts.give_up(track)
                 self._accepted.remove(track)
                 return False
@@ -194,7 +194,7 @@ class TrackSeeker:
         return False
 
     def one_more_forward(self, navmap: NavMap, approach: Approach, pose: Pose) -> bool:
-        """See `Seeker`: once, where nothing that was seen is in the way and the STOP would be short."""
+        """See `Seeker`: True at most once, if the candidate is not near enough and the path is free."""
         wanted_m = self.distances.nearer_viewpoint_m
         if self._went_nearer or wanted_m is None or self._pushes_on():
             return False
@@ -220,7 +220,7 @@ class TrackSeeker:
     def _core(self, navmap: NavMap, track: int) -> tuple[tuple[slice, slice], Bool[np.ndarray, "rows cols"]]:
         """Returns the part of a track's footprint that looks like the goal: a rectangle, and a mask over it.
 
-        A track may hold a part of a neighbouring object, where the mean score is lower.
+        A track may contain a part of a neighbouring object, where the mean score is lower.
         """
         index, mask = self._of_episode().footprint(track)
         mean = navmap.score_sum[index] / np.maximum(navmap.frames_in_view[index], 1)
@@ -233,7 +233,7 @@ class TrackSeeker:
         return int(index[0].start) + row, int(index[1].start) + col
 
     def _decide(self, pose: Pose) -> bool:
-        """Updates the verdicts on all tracks; returns True if others are rejected than the map shows."""
+        """Updates the verdicts on all tracks; returns True if the map does not show the current rejected tracks."""
         tracks = self._of_episode()
         x_m, y_m = tracks.middles(np.arange(len(self.probability)))
         distance_m = np.hypot(x_m - pose.x_m, y_m - pose.y_m)
@@ -243,10 +243,10 @@ class TrackSeeker:
         return drawn != self._drawn_rejected
 
     def _is_stuck(self, pose: Pose, *, pursuing: bool) -> bool:
-        """Returns True if the robot has pursued tracks for long without getting anywhere; the count begins again.
+        """Returns True if the robot has pursued tracks for many steps without progress, and then restarts the count.
 
-        Steps between in which it pursued nothing do not count, and do not end the count: a track that only one of two
-        headings shows would otherwise turn the robot back and forth.
+        Steps without pursuit neither count nor restart the count: otherwise a track that is visible at only one of two
+        headings would turn the robot back and forth.
         """
         look = self.config.look
         if self._pursuit is None or pose.distance_to(self._pursuit[0]) > look.patience_m:
@@ -298,7 +298,7 @@ class TrackSeeker:
     def _stop_here(self, navmap: NavMap, window: Window, pose: Pose, tracks: list[int]) -> Approach | None:
         """Returns the approach that ends here, where the robot pushes against something and a STOP counts.
 
-        The robot's own ground is free to the planner: a viewpoint on it may be behind what stops the robot.
+        The planner treats the ground under the robot as free, so a viewpoint on it may be behind the obstacle.
         """
         if not self._pushes_on():
             return None
@@ -310,7 +310,7 @@ class TrackSeeker:
         return self._pushes >= self.config.most_pushes
 
     def _count_pushes(self, pose: Pose) -> None:
-        """Counts the steps in which the robot drove and stayed where it was; where it moves, the count begins again."""
+        """Counts the steps in which the robot drove but did not move; a move restarts the count."""
         before, self._approached_from = self._approached_from, pose
         if before is None or pose.distance_to(before) >= _STAYED_M:
             self._pushes = 0
@@ -318,7 +318,7 @@ class TrackSeeker:
             self._pushes += 1
 
     def _look(self, navmap: NavMap, window: Window, pose: Pose, track: int) -> Approach | None:
-        """Returns the approach to a place to look at a track from; None: it was decided on, or it is set aside."""
+        """Returns the approach to a place to look at a track from; None: the track was decided on or set aside."""
         tracks, cells = self._of_episode(), self.cells_of(navmap, [track])
         seen_from, middle_xy_m = tracks.evidence.near_sectors(track), tracks.track(track).middle_xy_m
         looked_from = seen_from | self._hidden.get(track, False)
@@ -335,7 +335,7 @@ class TrackSeeker:
         found = self._drive_in(navmap, window, pose, [track], LastResort.VERIFY)
         if found is None:
             if self.probability[track] >= self.verdicts.bar:
-                self.verdicts.looked(track)  # there is no place to step back to: it is accepted as it is
+                self.verdicts.looked(track)  # there is no place to step back to: the track is accepted now
             self._set_aside([track])
         return found
 
@@ -349,7 +349,7 @@ class TrackSeeker:
             self._hidden.setdefault(track, np.zeros(evidence.config.sectors, np.bool_))[sector] = True
 
     def _leave_spot(self) -> None:
-        """Lets the doubtful tracks around the pursued one wait too: an object may come back as another track."""
+        """Lets the doubtful tracks around the pursued one wait too: an object may reappear as another track."""
         if self.pursued is not None:
             place = self._of_episode().track(self.pursued).middle_xy_m
             self._left_spots.append((*place, self.step + self.target.retry_after_steps))
@@ -380,5 +380,5 @@ class TrackSeeker:
 
 
 def _on_map(approach: Approach, part: Window) -> Approach:
-    """Returns an approach on a part of the map, with its cell counted on the whole map."""
+    """Returns an approach on a part of the map, with its cell relative to the whole map."""
     return replace(approach, cell=(approach.cell[0] + part.rows.start, approach.cell[1] + part.cols.start))

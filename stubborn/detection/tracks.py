@@ -1,9 +1,9 @@
-"""Objects with an identity: tracks in 3-D on the map, made of the detections of all classes.
+"""Tracks objects in 3-D on the map, from the detections of all classes.
 
-A track owns voxels. A region of equal labels in a frame extends the track that owns most of its voxels, else it begins
-a track. Each frame then gives every track in view the mean posterior of the pixels on its voxels, whatever region they
-are in: an object that was taken for a picture once, and for a mirror in other views, is the mirror that it mostly looks
-like. Voxels that are hidden have no pixels, so a track is judged only where it is visible.
+A track owns voxels. A region of equal labels in a frame extends the track that owns most of its voxels, otherwise it
+begins a new track. Each frame then gives every track in view the mean posterior of the pixels on its voxels, whatever
+region they are in: an object that was classified once as a picture and in most other views as a mirror ends as a
+mirror. Voxels that are hidden have no pixels, so a track is judged only where it is visible.
 """
 
 from __future__ import annotations
@@ -25,29 +25,31 @@ from stubborn.mapping.projection import Rays
 STRUCTURE = (
     "wall", "floor", "door", "window", "stairs", "ceiling", "column", "lighting", "beam", "railing", "misc",
 )  # fmt: skip
-"""Classes that are no objects: they begin no tracks, but their probability counts against those there are."""
+"""Classes that are not objects: they do not begin tracks, but their probability counts against existing tracks."""
 _IS_OBJECT = np.array([name not in STRUCTURE for name in MPCAT40[1:]])
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrackConfig:
-    """How detections become tracks. The values are reasoned, not fitted."""
+    """Parameters of the tracks that detections become. The values were chosen by reasoning, not fitted."""
 
     voxel_cells: int = 2
     """Edge of a voxel in cells of the map."""
     top_m: float = 2.2
-    """Higher points belong to no track."""
+    """Points above this height belong to no track."""
     hot: float = 0.25
-    """A pixel is labelled as the goal from this probability on, though another class may be more probable, and so is a
-    track when regions are assigned to tracks. Otherwise what was labelled as the goal in one frame would be merged in
-    the next one with the object that it lies on, and begin again as a new track."""
+    """A pixel is labelled as the goal if the goal has at least this probability, even if another class is more
+    probable. The same holds for a track when regions are assigned to tracks. Otherwise an object labelled as the goal
+    in one frame would be merged in the next frame with the object that it lies on, and would begin again as a new
+    track."""
     least_pixels: int = 12
-    """Smaller regions of a frame are no detections."""
+    """Regions of a frame with fewer pixels are not detections."""
     least_pixels_of_others: int = 40
-    """Smaller regions begin no track, unless they are of the goal: a network's frame has dozens of slivers."""
+    """Regions with fewer pixels do not begin a track, unless they show the goal: a network's output has dozens of
+    narrow regions in each frame."""
     depth_jump: float = 0.12
-    """Neighbouring pixels are one surface if their depths differ by less than this share; 12 % is what the top of a
-    table that is seen flat needs."""
+    """Neighbouring pixels are one surface if their depths differ by less than this share; the top of a table that is
+    seen at a low angle needs 12 %."""
     same_share: float = 0.3
     """A region extends a track that owns at least this share of its pixels."""
     merge_share: float = 0.2
@@ -56,11 +58,12 @@ class TrackConfig:
     """A region of the goal with less than this share of a track's pixels in the frame is an object on it, not the track
     itself; likewise a region of another class on a track of the goal."""
     least_voxels: int = 6
-    """With an imperfect detector a smaller track is no candidate: 6 voxels are 0.06 m2 of visible surface."""
+    """With an imperfect detector, a track with fewer voxels is not a candidate: 6 voxels are 0.06 m2 of visible
+    surface."""
     most_tracks: int = 2048
-    """Further objects are not tracked."""
+    """Limit of the number of tracks; objects beyond it are not tracked."""
     evidence: EvidenceConfig = field(default_factory=EvidenceConfig)
-    """How views are fused."""
+    """Parameters of the views and of their fusion."""
 
     def __post_init__(self) -> None:
         if not all(0.0 <= share <= 1.0 for share in (self.hot, self.same_share, self.merge_share, self.part_share)):
@@ -83,7 +86,7 @@ class Track(NamedTuple):
     top_m: float
     """Height of its highest voxel's upper side."""
     extent_m: tuple[float, float]
-    """Edges of the rectangle around it in plan, x and y."""
+    """Extent in x and y of the rectangle around it, seen from above."""
     middle_xy_m: tuple[float, float]
 
     @property
@@ -108,7 +111,7 @@ class Tracks:
         frame: GridFrame,
         fusion: Fusion | None = None,
     ) -> None:
-        """`frame` is that of the map; voxels are whole cells of it. `fusion` fuses views, by default exact ones."""
+        """`frame` is that of the map; a voxel covers whole cells of it. `fusion` fuses views, by default exact ones."""
         self.config = config
         self.camera = camera
         self.frame = frame
@@ -135,7 +138,7 @@ class Tracks:
         pose: Pose,
         goal: str,
     ) -> None:
-        """Enters one frame: posteriors at a whole fraction of the depth image, which is in metres."""
+        """Enters one frame: depth in metres, and posteriors at a whole fraction of its resolution."""
         rays = self._rays_for(posteriors.shape[2])
         d, voxel = self._voxels(rays, depth, pose)
         label = label_pixels(posteriors, _IS_OBJECT, MPCAT40_ID[goal] - 1, self.config.hot)
@@ -172,7 +175,7 @@ class Tracks:
         return Track(number, probability, float(bottom_m), float(top_m), (float(cols_m), float(rows_m)), (x_m, y_m))
 
     def beside(self, number: int, others: Int[np.ndarray, " n"], gap_voxels: int) -> Int[np.ndarray, " m"]:
-        """Returns those of some tracks whose box is at most so many voxels from the box of a track."""
+        """Returns those of `others` whose box is at most `gap_voxels` voxels from the box of track `number`."""
         apart = np.maximum(self._low[others] - self._high[number] - 1, self._low[number] - self._high[others] - 1)
         return others[apart.max(axis=1, initial=0) <= gap_voxels]
 
@@ -185,13 +188,13 @@ class Tracks:
         return (slice(n * row, n * (last_row + 1)), slice(n * col, n * (last_col + 1))), mask
 
     def sizes(self, tracks: Int[np.ndarray, " n"]) -> Int[np.ndarray, " n"]:
-        """Returns the number of voxels of each track; 0 for one that became a part of another one."""
+        """Returns the number of voxels of each track; 0 for a track that was merged into another one."""
         return self._size[tracks]
 
     def shown(
         self, depth: Float32[np.ndarray, "height_px width_px"], pose: Pose, columns: int
     ) -> Int16[np.ndarray, "h w"]:
-        """Returns the track of each pixel of a frame that was entered, at so many columns; 0: none."""
+        """Returns the track of each pixel of an entered frame, at a resolution of `columns` columns; 0: no track."""
         _, voxel = self._voxels(self._rays_for(columns), depth, pose)
         return np.where(voxel >= 0, self._owner[voxel], np.int16(0))
 
@@ -220,7 +223,7 @@ class Tracks:
     def _associate(
         self, overlap: Int[np.ndarray, "regions tracks"], labels: Int[np.ndarray, " regions"], goal: int
     ) -> tuple[Int[np.ndarray, " regions"], Bool[np.ndarray, " regions"]]:
-        """Returns the track of each region, 0 for none, and whether it takes voxels over; new tracks are begun."""
+        """Returns the track of each region (0: no track), and whether it takes over voxels. Begins new tracks."""
         c, track_of = self.config, np.zeros(len(labels), np.int64)
         takes_over = np.zeros(len(labels), np.bool_)
         pixels, shown = overlap.sum(axis=1), overlap.sum(axis=0)
@@ -240,14 +243,14 @@ class Tracks:
         return track_of, takes_over
 
     def _categories(self, tracks: int, goal: int) -> Int[np.ndarray, " tracks"]:
-        """Returns the category by which the first tracks are distinguished: that of the goal from `hot` on."""
+        """Returns the category by which the first tracks are distinguished: the goal from probability `hot` on."""
         probability = self.evidence.probability[:tracks]
         return np.where(probability[:, goal] >= self.config.hot, goal, np.argmax(probability, axis=1))
 
     def _merged(self, overlap: Int[np.ndarray, " tracks"], best: int, category: Int[np.ndarray, " tracks"]) -> int:
-        """Returns the track of a region, after tracks of the same category that it shows as one object are merged.
+        """Merges tracks of one category that a region shows as one object, and returns the track of the region.
 
-        The oldest one stays, with what was decided on it.
+        The oldest track stays and keeps the decisions on it.
         """
         shown = overlap >= max(self.config.merge_share * overlap.sum(), self.config.least_pixels)
         shown[0], shown[best] = False, True

@@ -2,7 +2,7 @@
 
 The paper's classifier is Gaussian naive Bayes; `METHODS` holds others over the same features. Parameters belong to a
 kind of segmentation. They are shipped as `stubborn/detection/verifiers/<kind>.json`, which also holds the command that
-fitted them (`stubborn train verifier`) and the quality of each method on houses left out. A category that is not in the
+fitted them (`stubborn train verifier`) and the quality of each method on held-out houses. A category that is not in the
 file uses the pooled classifier.
 """
 
@@ -114,7 +114,7 @@ class FittedVerifier:
     pooled: Classifier
     """Classifier of all other goal categories."""
     least_probability: float = 0.5
-    """Of `logistic` and `threshold` the fit chooses it by the cost of a wrong STOP; the paper's is one half."""
+    """The fit chooses it for `logistic` and `threshold` by the cost of a wrong STOP; the paper uses one half."""
     may_refuse = True
 
     @classmethod
@@ -162,7 +162,7 @@ def has_parameters(kind: str) -> bool:
 
 
 def verifier_for(spec: SegmenterSpec, file: Path | None = None, method: str = "naive-bayes") -> Verifier:
-    """Returns the verifier of a kind of segmentation: the shipped one, or `AcceptAll` where none is needed.
+    """Returns the verifier of a kind of segmentation: the shipped one, or `AcceptAll` where no verification is needed.
 
     Args:
         spec: specification of its segmenter; a kind without parameters gets those of `DEFAULT_KIND`.

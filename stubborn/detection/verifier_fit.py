@@ -1,11 +1,11 @@
-"""Fits verifiers to a log of candidates with scikit-learn, and judges them.
+"""Fits verifiers to a log of candidates with scikit-learn, and evaluates them.
 
 The paper's naive Bayes is fitted for each goal category with enough true and enough false candidates, and pooled for
 the others. The logistic regressions are one model of all candidates in which each category shifts the intercept; a
-normal prior draws the shifts to zero, so that a category with few candidates is judged like the others. Their threshold
-is the one with which most episodes would end at a true candidate: a wrong STOP costs what going on would have brought,
-in the rest of the log and after it. All methods are judged by cross-validation on the same folds; the candidates of a
-house are never in both parts of a fold. The results are plain numbers that JSON can hold.
+normal prior pulls the shifts towards zero, so that a category with few candidates is judged like the others. Their
+threshold is chosen so that as many episodes as possible would end at a true candidate: a wrong STOP costs the chance to
+succeed later, in the rest of the log and after it. All methods are evaluated by cross-validation on the same folds; the
+candidates of a house are never in both parts of a fold. The results are plain numbers that JSON can hold.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ from stubborn.detection.verification import METHODS, FittedVerifier
 
 FOLDS = 5
 SAME_PLACE_M = 2.0
-"""Candidates of one episode with the same truth count once if the robot judged them from places this near."""
+"""Candidates of one episode with the same truth count once if the robot judged them from places within this
+distance."""
 SHIFT_DEVIATION = 1.0
 """Standard deviation of the prior of a category's shift, in logits."""
 OPEN_SHARE = 0.8
-"""An episode that goes on after the log, which ends at step 200 of 500, succeeds so often compared with one that begins
-(`stubborn-plus` on val: 64 % for 80 %, docs/segmentation.md)."""
+"""Success rate of an episode that continues after the log (which ends at step 200 of 500), relative to that of an
+episode from its start (`stubborn-plus` on val: 64 % against 80 %, docs/segmentation.md)."""
 _BINS = 5
 
 
@@ -42,7 +43,7 @@ class Candidates(NamedTuple):
     goals: Shaped[np.ndarray, " n"]
     """Goal category."""
     episodes: Int[np.ndarray, " n"]
-    """Number of the episode; its candidates follow each other as they were met."""
+    """Number of the episode; its candidates are in the order in which the robot met them."""
     houses: Shaped[np.ndarray, " n"]
     """Name of the house."""
     features: Float64[np.ndarray, "n 4"]
@@ -52,7 +53,7 @@ class Candidates(NamedTuple):
 
 
 def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, Any]:
-    """Returns the counts of candidates and, for each method, its parameters and its quality on episodes left out.
+    """Returns the counts of candidates and, for each method, its parameters and its quality on held-out episodes.
 
     Args:
         lines: lines of the log of `stubborn train verifier`; those of failed episodes (0 steps) are left out.
@@ -66,8 +67,8 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
     goals, truth = table.goals, table.truth
     if min(truth.sum(), (~truth).sum()) < least_of_either:
         raise ConfigError(
-            f"The log holds {truth.sum()} true and {(~truth).sum()} false candidates; {least_of_either} of either are "
-            "needed: play more episodes."
+            f"The log holds {truth.sum()} true and {(~truth).sum()} false candidates; {least_of_either} of each are "
+            "needed: run more episodes."
         )
     counts = {goal: [int((~truth[goals == goal]).sum()), int(truth[goals == goal].sum())] for goal in GOAL_CATEGORIES}
     separate = [goal for goal, pair in counts.items() if min(pair) >= least_of_either]
@@ -81,7 +82,7 @@ def fit(lines: Sequence[Mapping[str, Any]], least_of_either: int) -> dict[str, A
 
 
 def _fitted(method: str, table: Candidates, separate: Sequence[str], episodes: int) -> dict[str, Any]:
-    """Returns the quality and the parameters of one method, in a log of so many episodes."""
+    """Returns the quality and the parameters of one method, in a log of `episodes` episodes."""
     probability = _left_out(method, table, separate)
     bar = {} if method == "naive-bayes" else {"least_probability": best_bar(probability, table, episodes)}
     success = expected_success(probability, table, bar.get("least_probability", 0.5), episodes)
@@ -100,9 +101,9 @@ def _classifiers(
 
     Args:
         method: one of `METHODS`.
-        goals: of the candidates.
-        features: of the candidates.
-        truth: of the candidates; both values must occur.
+        goals: goal of each candidate.
+        features: features of each candidate.
+        truth: True for each true candidate; both values must occur.
         separate: goals that get a naive Bayes of their own.
     """
     if method == "naive-bayes":
@@ -163,10 +164,10 @@ def _left_out(method: str, table: Candidates, separate: Sequence[str]) -> Float6
 
 
 def expected_success(probability: Float64[np.ndarray, " n"], table: Candidates, bar: float, episodes: int) -> float:
-    """Returns the share of episodes that end at a true candidate if the first one above the bar is the STOP.
+    """Returns the share of episodes that end at a true candidate if the agent stops at the first one above the bar.
 
     Args:
-        probability: of each candidate; NaN is never above the bar.
+        probability: probability of each candidate; NaN is never above the bar.
         table: the candidates, in the order in which each episode met them.
         bar: from 0 to 1.
         episodes: number of episodes of the log, also those without a candidate.
@@ -181,7 +182,7 @@ def expected_success(probability: Float64[np.ndarray, " n"], table: Candidates, 
 def best_bar(probability: Float64[np.ndarray, " n"], table: Candidates, episodes: int) -> float:
     """Returns the bar from 0.05 to 0.95 with the highest `expected_success`, the lowest of equally good ones.
 
-    Neighbouring bars are averaged, so that a single lucky one is not chosen. Without any probability it is one half.
+    Neighbouring bars are averaged, so that a single lucky one is not chosen. Without probabilities the bar is one half.
     """
     if not np.isfinite(probability).any():
         return 0.5
@@ -197,8 +198,8 @@ def judge(
     """Returns the quality of probabilities: precision before and after verification, accuracy, calibration.
 
     Args:
-        probability: of each candidate to be true; NaN is left out.
-        truth: of each candidate.
+        probability: probability of each candidate to be true; NaN is left out.
+        truth: True for each true candidate.
         least_probability: candidates with more are accepted.
     """
     known = np.isfinite(probability)
@@ -217,7 +218,7 @@ def judge(
 
 
 def _calibration(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray, " n"]) -> list[dict[str, Any]]:
-    """Returns the share of true candidates in each bin of the probability that holds any."""
+    """Returns the share of true candidates in each bin of the probability that is not empty."""
     bins = np.clip(np.floor(probability * float(_BINS)), 0, _BINS - 1)
     return [
         {
@@ -233,7 +234,7 @@ def _calibration(probability: Float64[np.ndarray, " n"], truth: Bool[np.ndarray,
 
 
 def judge_by_category(lines: Sequence[Mapping[str, Any]], verifier: FittedVerifier) -> dict[str, dict[str, Any]]:
-    """Returns the result of `judge` for a verifier on logged candidates: of all, then of each category that occurs.
+    """Returns the result of `judge` for a verifier on logged candidates: for all, then for each category in them.
 
     Candidates of failed episodes (0 steps) are left out.
     """

@@ -24,11 +24,11 @@ class LastResort(enum.Enum):
     """The use of the nearest reachable place to a candidate that has no viewpoint."""
 
     NONE = enum.auto()
-    """The candidate is left alone."""
+    """The candidate is ignored."""
     VERIFY = enum.auto()
-    """It is verified from there."""
+    """The candidate is verified from that place."""
     STOP = enum.auto()
-    """The agent stops there."""
+    """The agent stops at that place."""
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class ViewpointFinder:
         free = free_spaces[self.layers[-1]]
         reach_m = np.where(free.reachable, gap_m, np.inf)
         if reach_m.min() <= self.distances.last_resort_m:
-            # The robot's own ground is free to it and moves with it: without a margin it would push without end.
+            # The ground under the robot is free and moves with it: without a margin the robot would push without end.
             margin_m = self.planner.config.own_ground_m + view.frame.cell_m
             near_enough = last_resort is LastResort.STOP
             yield Viewpoints(free, reach_m <= reach_m.min() + margin_m, near_enough=near_enough)
 
     def look_from(self, view: NavMap, pose: Pose, nearest: NearestCells, between_m: tuple[float, float]) -> Viewpoints:
-        """Returns the cells in sight of a candidate at a distance from it, from which it can be looked at."""
+        """Returns the cells in sight of a candidate from which it can be looked at, at distances in `between_m`."""
         gap_m = nearest.gap_cells * np.float32(view.frame.cell_m)
         free = self.planner.free_space(view, pose, self.layers[0], self.planner.unseen(view))
         seen = self.in_sight(view, gap_m, nearest, between_m[1])

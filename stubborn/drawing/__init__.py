@@ -1,1 +1,1 @@
-"""Pictures of an agent's map: what it knows, where it goes, and why."""
+"""Pictures of an agent's map and of its current route and goal."""

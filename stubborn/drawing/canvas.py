@@ -1,4 +1,4 @@
-"""An enlarged picture of a grid, drawn on in world metres. Image up is +x, image left is +y."""
+"""Enlarges a picture of a grid and draws on it in world metres. Image up is +x, image left is +y."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class Canvas:
         cv2.polylines(self.image, [points.reshape(-1, 1, 2)], False, colour, self.width_px, cv2.LINE_AA)
 
     def cross(self, xy_m: tuple[float, float], colour: Colour) -> None:
-        """Draws a cross; one beyond the picture is drawn at its edge."""
+        """Draws a cross; a cross beyond the picture is drawn at its edge."""
         edge_px, width_px = 3 * self.mark_px // 2, 2 * self.width_px - 1
         place = self._pixel_inside(xy_m)
         cv2.drawMarker(self.image, place, colour, cv2.MARKER_CROSS, edge_px, width_px, cv2.LINE_AA)
 
     def ring(self, xy_m: tuple[float, float], colour: Colour) -> None:
-        """Draws a ring; one beyond the picture is drawn at its edge."""
+        """Draws a ring; a ring beyond the picture is drawn at its edge."""
         cv2.circle(self.image, self._pixel_inside(xy_m), self.mark_px - 1, colour, self.width_px, cv2.LINE_AA)
 
     def scale_bar(self) -> None:

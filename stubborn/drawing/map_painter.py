@@ -20,35 +20,34 @@ UNKNOWN: Colour = BACKGROUND
 SEEN_FREE: Colour = (252, 252, 250)
 SEEN_OBSTACLE: Colour = (62, 66, 77)
 SWEPT: Colour = (219, 234, 250)
-LARGE_MARK: Colour = (246, 178, 107)
-SMALL_MARK: Colour = (204, 65, 37)
-CANDIDATE: Colour = (56, 158, 80)
-SET_ASIDE: Colour = (160, 205, 168)
-REJECTED: Colour = (176, 122, 190)
-TRAIL: Colour = (111, 160, 220)
-ROUTE: Colour = (32, 84, 190)
-GOAL: Colour = (228, 28, 130)
+LARGE_MARK: Colour = (250, 196, 132)
+SMALL_MARK: Colour = (232, 128, 24)
+CANDIDATE: Colour = (228, 28, 130)
+SET_ASIDE: Colour = (244, 160, 204)
+REJECTED: Colour = (142, 104, 84)
+TRAIL: Colour = (32, 84, 190)
+ROUTE: Colour = (0, 158, 170)
 
 LEGEND: tuple[tuple[str, Colour], ...] = (
-    ("seen obstacle", SEEN_OBSTACLE),
+    ("obstacle", SEEN_OBSTACLE),
     ("large mark", LARGE_MARK),
     ("small mark", SMALL_MARK),
-    ("visited", TRAIL),
-    ("target", CANDIDATE),
+    ("driven path", TRAIL),
+    ("candidate", CANDIDATE),
     ("set aside", SET_ASIDE),
     ("rejected", REJECTED),
-    ("route", ROUTE),
-    ("goal", GOAL),
+    ("route, its end", ROUTE),
 )
+"""Colours that the true plan (`sim.viewers.topview`) has too have the same meaning there."""
 GROUND: tuple[tuple[str, Colour], ...] = (("driven over", SWEPT), ("floor seen", SEEN_FREE), ("never seen", UNKNOWN))
-"""The pale colours, for legends with room for them."""
+"""The pale colours of the ground, for legends that have space for them."""
 _SMALLEST_SIDE_M, _STRIDE_M, _EDGE_M = 8.0, 2.0, 0.25
 
 
 def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -> NDArray[np.uint8]:
     """Returns the agent's map around the robot, uint8 RGB (size_px, size_px + legend, 3); x is up, y is left.
 
-    With `whole` it is the known part of the map instead of the local window.
+    With `whole` the picture shows the known part of the map instead of the local window.
     """
     pose = agent.pose or Pose(0.0, 0.0, 0.0)
     window = agent.navmap.frame.window_at(pose.x_m, pose.y_m, agent.config.window_cells)
@@ -68,14 +67,15 @@ def draw_map(agent: StubbornAgent, *, size_px: int = 720, whole: bool = False) -
 class AgentMapPainter:
     """A `sim.viewers.viewer.MapPainter` of the agent's map, for videos.
 
-    The picture keeps its place and grows in strides. It is painted at each step; a new map means a new episode.
+    The area of the picture does not move and grows in large steps. `paint` is called at each step; a new map means a
+    new episode.
     """
 
     legend = (*LEGEND, *GROUND)
     """Name and colour of each item in the picture."""
 
     def __init__(self, agent: StubbornAgent, *, show_route: bool = True) -> None:
-        """Without `show_route` the route and its goal are not drawn."""
+        """If `show_route` is False, the route and its goal are not drawn."""
         self.agent = agent
         self.show_route = show_route
         self._navmap: NavMap | None = None
@@ -120,7 +120,7 @@ def make_painter(agent: Agent) -> AgentMapPainter:
     """Returns a painter of the agent's map; for `AgentSpec.painter` of agents that are a `StubbornAgent`.
 
     Raises:
-        TypeError: the agent is another one.
+        TypeError: the agent is of another class.
     """
     if not isinstance(agent, StubbornAgent):
         raise TypeError(f"Only a StubbornAgent has a map to draw, got {type(agent).__name__}.")
@@ -164,10 +164,10 @@ def _draw_intention(canvas: Canvas, agent: StubbornAgent, pose: Pose) -> None:
     """Draws the path ahead, the goal cells, and the corner or candidate that they belong to."""
     if agent.route is not None:
         goal = agent.route.goal
-        canvas.outline(goal.cells, goal.free.frame, GOAL)
+        canvas.outline(goal.cells, goal.free.frame, ROUTE)
         canvas.line(trace_xy_m(agent.route, pose), ROUTE)
         if goal.marker_xy_m is not None:
-            canvas.cross(goal.marker_xy_m, GOAL)
+            canvas.cross(goal.marker_xy_m, ROUTE)
     if agent.approach is not None:
         x_m, y_m = agent.navmap.frame.centres(*agent.approach.cell)
         canvas.ring((float(x_m), float(y_m)), CANDIDATE)

@@ -1,1 +1,1 @@
-"""Explorers: they choose where to look for the goal while there is no candidate."""
+"""Explorers choose where to look for the goal while there is no candidate."""

@@ -15,22 +15,23 @@ from stubborn.planning.planner import FreeSpace, Goal
 
 @dataclass(frozen=True, kw_only=True)
 class CornerConfig:
-    """The corners, and when one is given up."""
+    """The places of the corners, and the rules by which a corner is given up."""
 
     inset: float = 0.10
-    """Corners lie this share of the window's edge inside it."""
+    """Distance of the corners from the edge of the window, as a share of the edge's length."""
     corner_radius_m: float = 0.50
-    """Any cell this near a corner will do, so that a chair on the corner itself does not close it."""
+    """Any cell within this distance of a corner counts as the corner, so that a chair on the corner does not close
+    it."""
     longest_path_m: float = 12.0
     """A corner with a longer path counts as infeasible."""
     first_corner: int = 0
     """The corner that comes first: 0 ahead left, 1 ahead right, 2 behind right, 3 behind left of the start heading."""
     regain_m2: float = 2.0
-    """A corner given up is tried again when this much more ground has been in view."""
+    """A corner that was given up is tried again when this much more ground has been in view."""
     margin_cells: int = 20
     """Margin around the known part of the map within which the route to a substitute place may run."""
     arrived_m: float = 0.35
-    """A place that stands in for an infeasible corner is reached within this length of path."""
+    """A substitute place for an infeasible corner counts as reached within this path length."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.inset < 0.5:
@@ -58,11 +59,12 @@ def corner_xy_m(frame: GridFrame, corner: int, inset: float) -> tuple[float, flo
 
 
 class CornerExplorer:
-    """Keeps to one corner of the window, and takes the next one clockwise as soon as there is no path to it.
+    """Pursues one corner of the window, and the next one clockwise as soon as there is no path to it.
 
-    The window moves with the robot, so that a corner which is infeasible here may be feasible one step further on. To
-    keep the robot from alternating between two such places, a corner given up counts as infeasible until new ground
-    has been seen. When all four are infeasible, it goes to the reachable cell nearest the corner and then tries again.
+    The window moves with the robot, so that a corner which is infeasible now may be feasible after the next step. To
+    keep the robot from alternating between two such places, a corner that was given up counts as infeasible until new
+    ground has been seen. When all four are infeasible, it goes to the reachable cell nearest the corner and then tries
+    again.
     """
 
     def __init__(self, config: CornerConfig) -> None:
@@ -74,7 +76,7 @@ class CornerExplorer:
         self.corner = self.config.first_corner
         """Index of the corner that is pursued."""
         self.place: Place | None = None
-        """The place that stands in for an infeasible corner; None: a corner is pursued."""
+        """The substitute place for an infeasible corner; None: a corner is pursued."""
         self._wanted_m2 = [0.0] * 4  # per corner, the area that must have been seen before it is tried again
 
     def explore(self, ground: Ground) -> Exploration:
@@ -86,7 +88,7 @@ class CornerExplorer:
         )
 
     def go_on(self, ground: Ground) -> Search:
-        """Returns the route to the substitute place; None when there is none, or it is done with."""
+        """Returns the route to the substitute place; None when there is no such place, or it has been reached."""
         if self.place is None:
             return None
         route = yield from self.place.head_for(ground)
@@ -95,7 +97,7 @@ class CornerExplorer:
         return route
 
     def to_corner(self, ground: Ground) -> Search:
-        """Returns the route to the corner or, clockwise, to the next feasible one; None when there is none."""
+        """Returns the route to the corner or, clockwise, to the next feasible one; None when no corner is feasible."""
         seen_m2 = ground.navmap.seen_area_m2()
         open_corners = [(self.corner + turn) % 4 for turn in range(4)]
         open_corners = [corner for corner in open_corners if seen_m2 >= self._wanted_m2[corner]]
@@ -111,7 +113,7 @@ class CornerExplorer:
         return None
 
     def to_nearest_place(self, ground: Ground) -> Search:
-        """Returns the route to the reachable cell nearest the corner; a place where the robot already is is skipped."""
+        """Returns the route to the reachable cell nearest the corner; places that are already reached are skipped."""
         free = ground.free_space()
         cell_x_m, cell_y_m = free.frame.mesh()
         for _ in range(4):

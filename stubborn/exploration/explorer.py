@@ -29,27 +29,27 @@ from stubborn.planning.planner import FreeSpace, Goal, Planner, Route
 Search = Generator[Goal, Route | None, Route | None]
 """Yields goals, gets the route to each or None, and returns the route to follow or None."""
 Exploration = Generator[Goal, Route | None, Route | Action | None]
-"""The same; it may also return a turn on the spot, to look around."""
+"""Like `Search`, but it may also return a turn on the spot, to look around."""
 
 
 class Explorer(Protocol):
     """Chooses where to go while there is no candidate."""
 
     def reset(self, seed: int) -> None:
-        """Forgets the last episode; random draws of this one come from `seed`."""
+        """Forgets the last episode; random choices of this one come from `seed`."""
         ...
 
     def explore(self, ground: Ground) -> Exploration:
         """Yields goals until it returns a route to follow, a turn on the spot, or None when there is no path at all.
 
-        It is called at each step of exploration, so that a goal to keep to is the explorer's own memory.
+        It is called at each step of exploration. An explorer that pursues one goal over several steps must remember it.
         """
         ...
 
 
 @runtime_checkable
 class ReadsSemantics(Protocol):
-    """An explorer that reads `NavMap.goals_seen`; for others the agent saves the time to fill it."""
+    """An explorer that reads `NavMap.goals_seen`; for other explorers the agent does not fill it, which saves time."""
 
     reads_semantics: Literal[True]
 
@@ -65,7 +65,7 @@ class ExplorerConfig(Protocol):
 
 @dataclass(frozen=True)
 class Ground:
-    """The map around the robot as an explorer gets it. It is to be read only."""
+    """The map around the robot that an explorer gets. An explorer must not change it."""
 
     navmap: NavMap
     """The whole map."""
@@ -98,7 +98,7 @@ class Ground:
         return self.planner.unseen(self.navmap.view(window))
 
     def unknown(self, window: Window) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the ground of a window never in view, up to the border of what was."""
+        """Returns the ground of a window that was never in view, up to the border of the ground that was."""
         return self.planner.unknown(self.navmap.view(window))
 
 

@@ -1,7 +1,7 @@
 """Frontier exploration: the robot goes to the nearest border between known free ground and unknown ground.
 
-Reference: Yamauchi (1997), "A Frontier-Based Approach for Autonomous Exploration", CIRA. There a robot plans through
-known ground only; here paths may cross unknown ground (`stubborn.exploration.frontiers`).
+Reference: Yamauchi (1997), "A Frontier-Based Approach for Autonomous Exploration", CIRA. Its robot plans through known
+ground only; here paths may cross unknown ground (`stubborn.exploration.frontiers`).
 """
 
 from __future__ import annotations
@@ -22,19 +22,20 @@ from stubborn.planning.steering import to_nearest_part
 
 @dataclass(frozen=True, kw_only=True)
 class FrontierConfig:
-    """Which cells are a frontier, and when a frontier is done with."""
+    """Defines which cells are a frontier, and when a frontier is finished."""
 
     least_length_m: float = 0.40
     """Shorter frontiers come last: the robot would hardly fit through."""
     own_known_m: float = 1.0
-    """Ground this near the trail counts as known: it lies below the image, whose lowest row shows floor from 1.4 m on.
-    With less the robot sweeps its own surroundings, with more it takes rooms behind walls for known."""
+    """Ground within this distance of the trail counts as known: it lies below the image, whose lowest row shows floor
+    from 1.4 m on. With a smaller value the robot explores its own surroundings; with a larger value rooms behind walls
+    count as known."""
     arrived_m: float = 0.35
-    """A frontier is reached within this length of path."""
+    """A frontier counts as reached within this path length."""
     spent_m: float = 0.60
-    """Around a place where a frontier was reached, the rest of it does not count any more."""
+    """Within this distance of a place where a frontier was reached, no cell counts as a frontier any more."""
     look_around_turns: int = 0
-    """Turns on the spot at the start and at each frontier reached; 11 show everything around, as in the reference."""
+    """Turns on the spot at the start and at each reached frontier; 11 show all surroundings, as in the reference."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
 
@@ -50,7 +51,7 @@ class FrontierConfig:
 
 
 class FrontierExplorer:
-    """Goes to the frontier with the shortest path, and keeps to it until it is reached or has become known."""
+    """Goes to the frontier with the shortest path, and pursues it until it is reached or has become known."""
 
     def __init__(self, config: FrontierConfig) -> None:
         self.config = config
@@ -64,7 +65,7 @@ class FrontierExplorer:
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; the route to the frontier pursued, else to the nearest, else to ground far from the trail."""
+        """Returns the route to the pursued frontier, else to the nearest, else to ground far from the trail."""
         turn = self.look_around.next_turn()
         if turn is not None:
             return turn
@@ -79,7 +80,7 @@ class FrontierExplorer:
         )
 
     def _go_on(self, known: Frontiers, pose: Pose) -> Search:
-        """Returns the route to the rest of the frontier pursued; None when it is done with."""
+        """Returns the route to the rest of the pursued frontier; None when it is finished."""
         if self._goal is None:
             return None
         route = yield Goal(known.free, self._goal.within(known.window) & known.cells & ~self._spent[known.window.index])
@@ -91,7 +92,7 @@ class FrontierExplorer:
         return route
 
     def _to_nearest(self, known: Frontiers, pose: Pose) -> Search:
-        """Returns the route to the nearest open frontier: a long one, else any; None: there is none left."""
+        """Returns the route to the nearest open frontier: a long one, else any; None: no frontier is left."""
         spent = self._spent[known.window.index]
         open_cells = known.cells & ~spent
         for least_m in (self.config.least_length_m, 0.0):
@@ -108,7 +109,7 @@ class FrontierExplorer:
         return None
 
     def _spend(self, known: Frontiers, pose: Pose) -> None:
-        """Closes the frontiers around the robot, which has seen what they show."""
+        """Closes the frontiers around the robot, because the robot has seen what they show."""
         spend_around(self._spent, known.window, pose, self.config.spent_m)
         if self._goal is not None:
             self.look_around.begin()

@@ -23,21 +23,21 @@ from stubborn.planning.planner import FreeSpace, Goal
 def frontier_cells(
     known_free: Bool[np.ndarray, "rows cols"], open_unknown: Bool[np.ndarray, "rows cols"]
 ) -> Bool[np.ndarray, "rows cols"]:
-    """Returns the known free cells with an unknown cell that is not blocked among their 8 neighbours."""
+    """Returns the known free cells that have an unblocked unknown cell among their 8 neighbours."""
     near_unknown = cv2.dilate(np.ascontiguousarray(open_unknown).view(np.uint8), np.ones((3, 3), np.uint8))
     return known_free & (near_unknown > 0)
 
 
 @dataclass(frozen=True)
 class Frontiers:
-    """The known part of the map at one step, and the frontiers of it."""
+    """The known part of the map at one step, and its frontiers."""
 
     window: Window
     free: FreeSpace
     cells: Bool[np.ndarray, "rows cols"]
     """The frontiers that can be reached."""
     unknown: Bool[np.ndarray, "rows cols"]
-    """Ground that was not in view; that near the trail counts as known."""
+    """Ground that was not in view; ground near the trail counts as known."""
     trail: Bool[np.ndarray, "rows cols"]
     """The robot's trail; shares memory with the map."""
     off_trail: Bool[np.ndarray, "rows cols"]
@@ -51,7 +51,7 @@ class Frontiers:
 
         Args:
             ground: map and pose at this step.
-            own_known_m: ground this near the trail counts as known.
+            own_known_m: ground within this distance of the trail counts as known.
             margin_cells: margin around the known part of the map within which paths may run.
             layer: the collision layer to plan on; None: the preferred one.
         """
@@ -64,9 +64,9 @@ class Frontiers:
         return cls(window, free, cells, unknown, trail, off_trail)
 
     def to_least_visited(self, arrived_m: float) -> Search:
-        """Returns the route to the ground farthest from the trail, for when nothing unknown is left.
+        """Returns the route to the ground farthest from the trail, for use when no unknown ground is left.
 
-        None: there is none, or it is within `arrived_m` of path.
+        Returns None where there is no such route, or it is not longer than `arrived_m`.
         """
         far_cells = np.where(self.free.reachable, distance_to(self.trail), -np.inf)
         route = yield Goal(self.free, far_cells == far_cells.max())
@@ -74,13 +74,13 @@ class Frontiers:
 
 
 def spend_around(spent: Bool[np.ndarray, "rows cols"], window: Window, pose: Pose, radius_m: float) -> None:
-    """Marks what is around the robot as spent: it has seen what the frontiers there show.
+    """Marks the cells around the robot as spent: the robot has seen what the frontiers there show.
 
     Args:
-        spent: mask over the whole map; is changed.
+        spent: mask over the whole map; it is changed.
         window: part of the map that is marked.
-        pose: of the robot.
-        radius_m: of the disc.
+        pose: pose of the robot.
+        radius_m: radius of the disc that is marked.
     """
     index, disc = cells_near_segment(window.frame, pose.xy_m, pose.xy_m, radius_m)
     spent[window.index][index] |= disc

@@ -1,7 +1,7 @@
-"""A look to the side in passing: a turn adds nothing to the path, and a room seen from its door need not be entered.
+"""Decides when the robot looks aside: a turn does not lengthen the path, and a room seen from its door can be left out.
 
-Not in the paper. Where a turn on the spot would show much ground that was never in view, because the robot passes an
-open door or turns a corner, it looks there before it goes on.
+This is not in the paper. Where a turn on the spot would show much ground that was never in view, for example at an open
+door or a corner, the robot looks there before it moves on.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _STEP_M = 0.05  # a cell: longer steps would pass through thin walls
 _GAP_STEPS = 4
 _SAME_HEADING_RAD = 0.5 * TURN_RAD
 _SAME_PLACE_M = 0.1
-"""A robot that is farther from its last place has done something else since it began to turn."""
+"""If the robot is farther than this from its last place, it has done something else since it began to turn."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,11 +30,12 @@ class GlanceConfig:
     """Parameters of the choice of a look."""
 
     gain_per_turn_m2: float = 0.75
-    """Area of ground never in view that a look must show for each turn there and back; infinity: no look is made."""
+    """New area that a look must show for each of its turns (there and back); infinity: the robot never looks aside."""
     range_m: float = 3.5
     """Ground farther away than this does not count."""
     not_again_within_m: float = 1.0
-    """Within this distance of a place from which the robot looked in a direction, it does not look there again."""
+    """Within this distance of a place from which the robot looked in a direction, it does not look in that direction
+    again."""
 
     def __post_init__(self) -> None:
         if self.range_m <= 0:
@@ -60,7 +61,7 @@ class Glancer:
         self._aim_rad: float | None = None
 
     def next_turn(self, navmap: NavMap, pose: Pose) -> Action | None:
-        """Returns a turn towards a heading that is worth a look; None when there is none."""
+        """Returns a turn towards a heading that is worth a look; None when there is no such heading."""
         moved = bool(self._looks) and pose.distance_to(self._looks[-1]) > _SAME_PLACE_M
         self._looks.append(pose)
         if moved or (self._aim_rad is not None and abs(wrap_angle(self._aim_rad - pose.yaw_rad)) <= _SAME_HEADING_RAD):
@@ -72,7 +73,7 @@ class Glancer:
         return Action.TURN_LEFT if wrap_angle(self._aim_rad - pose.yaw_rad) > 0 else Action.TURN_RIGHT
 
     def _worth_a_look(self, navmap: NavMap, pose: Pose) -> float | None:
-        """Returns the heading that would show most new ground, of those the robot can turn to; None: not enough."""
+        """Returns the heading that would show most new ground; None: no heading shows enough."""
         hidden_m2 = self.hidden_area_m2(navmap, pose)
         best_gain_m2, best_rad = 0.0, None
         for turn in (*range(-5, 0), *range(1, 7)):
@@ -84,7 +85,7 @@ class Glancer:
         return best_rad
 
     def hidden_area_m2(self, navmap: NavMap, pose: Pose) -> Float64[np.ndarray, " bearings"]:
-        """Returns, per bearing, the area of ground never in view that nothing known hides from the robot."""
+        """Returns, per bearing, the area of ground never in view that no known obstacle hides from the robot."""
         x_m = pose.x_m + self._range_m[None, :] * np.cos(self._bearing_rad)[:, None]
         y_m = pose.y_m + self._range_m[None, :] * np.sin(self._bearing_rad)[:, None]
         rows, cols = navmap.frame.cells(x_m, y_m)

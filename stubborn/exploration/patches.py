@@ -23,7 +23,7 @@ LAYERS = ("obstacle", "seen", "trail", "robot")
 class MapPatch:
     """A square of the map around the robot, with the axes of the start frame; each cell is a block of map cells.
 
-    A cell that is off the map has nothing in it.
+    Cells outside the map are empty.
     """
 
     frame: GridFrame
@@ -40,7 +40,7 @@ class MapPatch:
     """Row and column of the robot's centre."""
 
     def channels(self, order: Sequence[int] | None = None) -> UInt8[np.ndarray, "channels cells cells"]:
-        """Returns the patch as images of 0 and 1: those of `LAYERS`, then one of each goal category.
+        """Returns the patch as images of 0 and 1: one for each of `LAYERS`, then one for each goal category.
 
         Args:
             order: the goal category that each channel shows, a permutation of their indices; by default their order.
@@ -91,7 +91,7 @@ def or_of_blocks(layer: NDArray, pool: int) -> NDArray:
 
 
 def _cut(layer: NDArray, rows: slice, cols: slice) -> NDArray:
-    """Returns a rectangle of a layer that may extend beyond it, with 0 there."""
+    """Returns a rectangle of a layer; cells beyond the layer are 0."""
     inside = tuple(slice(max(cut.start, 0), min(cut.stop, n)) for cut, n in zip((rows, cols), layer.shape, strict=True))
     if inside == (rows, cols):
         return layer[rows, cols]

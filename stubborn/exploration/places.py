@@ -1,4 +1,4 @@
-"""Destinations that an explorer keeps to over many steps, and the turns on the spot when it gets there."""
+"""Destinations that an explorer pursues over many steps, and the turns on the spot when it arrives."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ class MapCells:
 
 @dataclass
 class Place:
-    """A place to go to; any of its cells will do."""
+    """A place to go to; it is enough to reach any of its cells."""
 
     cells: MapCells
     margin_cells: int
     """Margin around the known part of the map within which the route may run."""
     arrived_m: float
-    """The place is reached within this length of path."""
+    """The place counts as reached within this path length."""
     reached: bool = field(default=False, init=False)
     """True: the robot has been there."""
 
     def head_for(self, ground: Ground) -> Search:
-        """Returns the route to the place; None when it is reached, or cannot be reached any more."""
+        """Returns the route to the place; None when it has been reached, or can no longer be reached."""
         known = ground.navmap.known_window(self.margin_cells)
         free = ground.free_space(known, costly=ground.unseen(known))
         route = yield Goal(free, self.cells.within(known))
@@ -61,7 +61,7 @@ class LookAround:
 
     def __init__(self, turns: int) -> None:
         self.turns = turns
-        """Turns of 30 degrees; 11 show everything around, 0 nothing."""
+        """Number of turns of 30 degrees; 11 turns show all surroundings."""
         self.begin()
 
     def begin(self) -> None:
@@ -69,7 +69,7 @@ class LookAround:
         self._left = self.turns
 
     def next_turn(self) -> Action | None:
-        """Returns the next turn, or None when all were made."""
+        """Returns the next turn, or None when all turns were made."""
         if self._left == 0:
             return None
         self._left -= 1

@@ -1,4 +1,4 @@
-"""Frontiers chosen by predicted potentials: how much area and how near the goal object is behind each of them.
+"""Chooses frontiers by predicted potentials: how much area is behind each, and how near the goal object is.
 
 Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
 Learning", CVPR, arXiv:2201.10029. The robot goes to the frontier with the highest weighted sum of its two potentials
@@ -32,26 +32,26 @@ _MOVED_M = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class PoniConfig(PotentialConfig):
-    """The potentials, their weights, and when a frontier is done with."""
+    """The potentials, their weights, and the rules by which a frontier is finished."""
 
     path_weight_per_m: float = 0.0
     """The score of a frontier falls by this for each metre of path to it; 0: as in the reference."""
     replan_steps: int = 25
-    """The potentials are predicted again after this many steps, and when a frontier is done with."""
+    """The potentials are predicted again after this many steps, and when a frontier is finished."""
     piece_m: float = 1.0
     """The goal is the part of the frontier within this distance of its cell with the highest score."""
     least_length_m: float = 0.40
     """Shorter frontiers come last: the robot would hardly fit through."""
     own_known_m: float = 1.0
-    """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
+    """Ground within this distance of the trail counts as known (see `FrontierConfig.own_known_m`)."""
     detour_m: float = 2.0
     """A frontier is given up when the path to it becomes this much longer than it was: a wall came into view."""
     stalled_steps: int = 10
-    """A frontier is given up when the robot has not moved for this many steps: it cannot leave its place that way."""
+    """A frontier is given up when the robot has not moved for this many steps: its path is blocked."""
     arrived_m: float = 0.35
-    """A frontier is reached within this length of path."""
+    """A frontier counts as reached within this path length."""
     spent_m: float = 0.60
-    """Around a place where a frontier was reached, the rest of it does not count any more."""
+    """Within this distance of a place where a frontier was reached, no cell counts as a frontier any more."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
 
@@ -77,7 +77,7 @@ class PoniConfig(PotentialConfig):
 
 
 class PoniExplorer:
-    """Goes to the frontier with the highest predicted potential, and keeps to it for some steps."""
+    """Goes to the frontier with the highest predicted potential, and pursues it for some steps."""
 
     reads_semantics: Literal[True] = True
 
@@ -87,7 +87,7 @@ class PoniExplorer:
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
-        """Forgets the last episode; the draws of the controls come from `seed`."""
+        """Forgets the last episode; the random choices of the controls come from `seed`."""
         self.potentials.reset(seed)
         self._goal: MapCells | None = None
         self._age_steps = 0
@@ -97,7 +97,7 @@ class PoniExplorer:
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map; made at the first step of an episode
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; the route to the frontier pursued, else to the best, else to ground far from the trail."""
+        """Returns the route to the pursued frontier, else to the best, else to ground far from the trail."""
         if self._spent.size == 0:
             self._spent = np.zeros(ground.navmap.frame.shape, np.bool_)
         config = self.config
@@ -109,7 +109,7 @@ class PoniExplorer:
         )
 
     def _go_on(self, known: Frontiers, pose: Pose) -> Search:
-        """Returns the route to the rest of the frontier pursued; None when it is done with, or after some steps."""
+        """Returns the route to the rest of the pursued frontier; None when it is finished, or after some steps."""
         self._age_steps += 1
         moved = self._last_pose is None or pose.distance_to(self._last_pose) > _MOVED_M
         self._still_steps = 0 if moved else self._still_steps + 1
@@ -130,7 +130,7 @@ class PoniExplorer:
         return route
 
     def _to_best(self, known: Frontiers, ground: Ground) -> Search:
-        """Returns the route to the open frontier with the highest score: a long one, else any; None: there is none."""
+        """Returns the route to the open frontier with the highest score: a long one, else any; None without any."""
         spent, score = self._spent[known.window.index], None
         for least_m in (self.config.least_length_m, 0.0):
             while (cells := large_parts(known.cells & ~spent, least_m / known.free.frame.cell_m)).any():
@@ -171,6 +171,6 @@ class PoniExplorer:
         return piece & connected(cells, row, col, connectivity=8)
 
     def _spend(self, window: Window, pose: Pose) -> None:
-        """Closes the frontiers around the robot, which has seen what they show."""
+        """Closes the frontiers around the robot, because the robot has seen what they show."""
         spend_around(self._spent, window, pose, self.config.spent_m)
         self._goal = None

@@ -1,8 +1,8 @@
 """The network that predicts the potentials of frontiers from a partial semantic map (Ramakrishnan et al. 2022).
 
-A U-Net (Ronneberger et al. 2015, arXiv:1505.04597) over the patch of the map around the robot. Its first layer takes
-squares of 2 x 2 cells as channels and its last gives them back, so that a pass costs a quarter of one at full size and
-no cell is lost. Only this module of the explorer imports PyTorch.
+The network is a U-Net (Ronneberger et al. 2015, arXiv:1505.04597) over the patch of the map around the robot. Its first
+layer turns squares of 2 x 2 cells into channels and its last layer turns channels into such squares, so that a pass
+costs a quarter of one at full size and no cell is lost. Only this module of the explorer imports PyTorch.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from stubborn.exploration.patches import LAYERS
 from stubborn.network_files import Family
 
 SHIPPED = Path(__file__).with_name("weights") / "poni.safetensors"
-"""The weights that ship."""
+"""The shipped weights."""
 CHANNELS = len(LAYERS) + len(GOAL_CATEGORIES)
 MAPS = 1 + len(GOAL_CATEGORIES)
 """Number of predicted maps: the area potential, then the object potential of each goal category."""
@@ -90,7 +90,7 @@ class Predictor:
     def predict(self, channels: UInt8[np.ndarray, "channels cells cells"]) -> Float32[np.ndarray, "maps cells cells"]:
         """Returns the area potential and the object potential of each goal category, in [0, 1].
 
-        They have a meaning only at frontiers.
+        The values are meaningful only at frontiers.
         """
         images = torch.from_numpy(channels[None]).to(torch.float32, memory_format=torch.channels_last)
         return torch.sigmoid(self._model(images))[0].contiguous().numpy()
@@ -98,7 +98,7 @@ class Predictor:
 
 @functools.lru_cache(maxsize=4)
 def shared_predictor(file: str | None) -> Predictor:
-    """Returns the predictor with the weights of a file, or with those that ship; explorers share it.
+    """Returns the predictor with the weights of a file, or with the shipped weights; explorers share it.
 
     Raises:
         ConfigError: see `Family.load`.

@@ -2,8 +2,8 @@
 
 Reference: Ramakrishnan et al. (2022), "PONI: Potential Functions for ObjectGoal Navigation with Interaction-free
 Learning", CVPR, arXiv:2201.10029. A network (`stubborn.exploration.poni_net`) predicts two potentials at each frontier
-of a partial semantic map: the share of the unexplored floor that the frontier leads to, and for each goal category how
-near its objects are. It was trained on house plans alone (`stubborn train poni`).
+of a partial semantic map: the share of the unexplored floor that the frontier leads to, and, for each goal category,
+the nearness of its objects. It was trained on house plans alone (`stubborn train poni`).
 """
 
 from __future__ import annotations
@@ -31,13 +31,14 @@ class PotentialConfig:
     """The network, the weights of its two potentials, and the controls."""
 
     weights: str | None = None
-    """File of the network's weights (`stubborn train poni`); None: those that ship."""
+    """File of the network's weights (`stubborn train poni`); None: the shipped weights."""
     alpha: float = 0.5
-    """Weight of the area potential; the object potential of the goal has the rest."""
+    """Weight of the area potential; the object potential of the goal has the weight 1 - `alpha`."""
     goal: GoalKind = "true"
-    """Category whose object potential counts; `wrong`: another one, drawn for each episode, as a control."""
+    """Category whose object potential counts; `wrong`: another category, sampled for each episode, as a control."""
     semantics: SemanticsKind = "seen"
-    """Goal categories on the map as seen, as a control in a wrong order drawn for each episode, or none."""
+    """Goal categories on the map: as seen or, as controls, in a wrong order that is sampled for each episode, or left
+    out."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.alpha <= 1.0:
@@ -63,7 +64,7 @@ class Potentials:
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
-        """Draws the controls of an episode."""
+        """Samples the controls of an episode."""
         rng = np.random.default_rng(seed)
         self._order: list[int] = rng.permutation(len(GOAL_CATEGORIES)).tolist()
         self._other = int(rng.integers(1, len(GOAL_CATEGORIES)))
@@ -76,7 +77,7 @@ class Potentials:
         Args:
             ground: map, pose and goal at this step.
             frame: the grid of the part of the map.
-            cells: frontiers in it. Beyond the network's patch nothing is predicted, and the potential is 0.
+            cells: frontiers in it. Outside the network's patch the potential is 0.
         """
         config, predictor = self.config, self.predictor
         patch = patch_around(ground.navmap, ground.pose, cells=predictor.cells, pool=predictor.pool)

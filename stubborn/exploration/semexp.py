@@ -2,7 +2,7 @@
 
 Reference: Chaplot, Gandhi, Gupta, Salakhutdinov (2020), "Object Goal Navigation using Goal-Oriented Semantic
 Exploration", NeurIPS, arXiv 2007.00643. The policy is a small network of our own, trained in house plans by
-`stubborn train semexp` (docs/explorers.md says what differs). The two controls of Luo et al. (2022, Section
+`stubborn train semexp` (docs/explorers.md lists the differences). The two controls of Luo et al. (2022, Section
 "Analysis of SemExp Agent") are options: the semantic layers shuffled, and a wrong goal given to the policy.
 """
 
@@ -23,29 +23,29 @@ from stubborn.exploration.semexp_input import PolicyInput, ViewConfig, observe
 from stubborn.planning.planner import FreeSpace, Goal
 
 SHIPPED = Path(__file__).with_name("weights") / "semexp.safetensors"
-"""The weights that ship with the package."""
+"""The shipped weights."""
 
 Score = Callable[[PolicyInput], Float[np.ndarray, " goals"]]
-"""Gives each goal cell, row by row, its logit."""
+"""A function that returns the logit of each goal cell, row by row."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SemExpConfig:
-    """The weights, how long a goal is kept, and the controls."""
+    """The weights, the duration of a long-term goal, and the controls."""
 
     weights: str | None = None
-    """File of weights; None: those that ship."""
+    """File of weights; None: the shipped weights."""
     goal_steps: int = 25
-    """A new long-term goal is chosen after this many steps, and when one is reached."""
+    """A new long-term goal is chosen after this many steps, and when a goal is reached."""
     goal_radius_m: float = 0.5
-    """Any cell this near the long-term goal will do."""
+    """Any cell within this distance of the long-term goal counts as the goal."""
     arrived_m: float = 0.35
-    """A long-term goal is reached within this length of path."""
+    """A long-term goal counts as reached within this path length."""
     sampled: bool = True
-    """True: goals are drawn from the policy; False: its best goal is taken."""
+    """True: goals are sampled from the policy; False: its best goal is taken."""
     semantics: Literal["seen", "shuffled", "none"] = "seen"
-    """What the policy is shown of the goal categories seen: all of it, all of it with the categories exchanged at
-    random in each episode (the first control), or nothing."""
+    """The goal categories on the map that the policy gets: all of them, all of them exchanged at random in each episode
+    (the first control), or none."""
     goal: Literal["true", "wrong"] = "true"
     """The goal that the policy gets: the episode's, or another one, sampled in each episode (the second control)."""
 
@@ -59,7 +59,7 @@ class SemExpConfig:
         """Returns a new explorer with these parameters.
 
         Raises:
-            ConfigError: the file of weights does not exist, or holds no network of `semexp`.
+            ConfigError: the file of weights does not exist, or does not hold a network of `semexp`.
         """
         from stubborn.exploration.semexp_net import FILES, scores  # imports PyTorch
 
@@ -80,17 +80,17 @@ class SemExpExplorer:
         self.reset()
 
     def reset(self, seed: int = 0) -> None:
-        """Forgets the last episode; the draws of this one come from `seed`."""
+        """Forgets the last episode; the random choices of this one come from `seed`."""
         self._rng = np.random.default_rng(seed)
         self.order = self._rng.permutation(len(GOAL_CATEGORIES)).tolist()
         """The category that each semantic layer shows in the control `shuffled`."""
-        self._other = int(self._rng.integers(1, len(GOAL_CATEGORIES)))  # places between the goal and the wrong one
+        self._other = int(self._rng.integers(1, len(GOAL_CATEGORIES)))  # how far the wrong goal is in the list
         self.place_xy_m: tuple[float, float] | None = None
         """The long-term goal."""
         self._age_steps = 0
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; the route to the long-term goal, or None, so that the agent pushes on, when it is there."""
+        """Returns the route to the long-term goal; None when it is reached, so that the agent pushes on."""
         if self.place_xy_m is not None and self._age_steps < self.config.goal_steps:
             route = yield from self._go_on(self.place_xy_m, ground)
             if route is not None:
@@ -125,7 +125,7 @@ class SemExpExplorer:
         )
         logits = self.score(given)
         if self.config.sampled:
-            logits = logits + self._rng.gumbel(size=logits.shape)  # the largest of these is a draw of the softmax
+            logits = logits + self._rng.gumbel(size=logits.shape)  # the largest of these is a sample of the softmax
         return given.place_xy_m(int(np.argmax(logits)))
 
 

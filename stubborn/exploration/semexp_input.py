@@ -1,4 +1,4 @@
-"""The input of the global policy of `semexp`, and the places that it can choose: the same code in play and training.
+"""The input of the global policy of `semexp`, and the places that it can choose, in episodes and in training.
 
 The policy gets two squares around the robot, the local window at a fine resolution and a larger part of the map at a
 coarse one, both with the axes of the start frame. It chooses a cell of a coarse grid over the local window.
@@ -23,10 +23,11 @@ from stubborn.exploration.patches import MapPatch, or_of_blocks, patch_around
 from stubborn.mapping.navmap import NavMap
 
 GEOMETRY = ("obstacle", "seen", "trail", "frontier")
-"""The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells next to one that was never seen.
-The robot has no layer: it is always in the middle."""
+"""The layers of `Square.geometry`, bit by bit: those of `MapPatch`, and the free cells next to a cell that was never
+seen. The robot has no layer: it is always in the middle."""
 _BLOCK = 4
-"""Cells along the edge of a block: a goal cell of the local square, and a cell of `Square.goals`."""
+"""Cells along the edge of a block. A goal cell of the local square is such a block, and so is a cell of
+`Square.goals`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +39,7 @@ class ViewConfig:
     local_pool: int = 4
     """Map cells along the edge of a cell of the local square: 20 cm, 12 m in all."""
     global_pool: int = 16
-    """The same of the global square: 80 cm, 48 m in all."""
+    """The same for the global square: 80 cm, 48 m in all."""
 
     def __post_init__(self) -> None:
         if min(self.local_pool, self.global_pool, self.goal_cells) < 1 or self.global_pool % self.local_pool:
@@ -64,7 +65,7 @@ class Square(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PolicyInput:
-    """The input of the policy at one time."""
+    """The input of the policy at one step."""
 
     near: Square
     """The local square."""
@@ -96,7 +97,7 @@ def observe(
 
     Args:
         navmap: the map, with `goals_seen`.
-        pose: of the robot, in the map's frame.
+        pose: pose of the robot in the map's frame.
         goal: the goal category that the policy gets.
         view: sizes of the squares.
         order: the goal category that each bit shows; by default bit g shows category g.

@@ -18,15 +18,15 @@ from stubborn.network_files import Family
 
 _Size = Annotated[int, msgspec.Meta(ge=1, le=512)]
 _FASTER = 8.0
-"""Factor of the shares that the last convolution gets, by which their weights are learned faster."""
+"""Factor of the shares that the last convolution gets; it makes their weights learn faster."""
 _START = {
     GEOMETRY.index("frontier"): 4.0,
     GEOMETRY.index("seen"): -3.0,
     2 * len(GEOMETRY): 3.0,
     2 * len(GEOMETRY) + 2: 2.0,
 }
-"""Logits at the start of the training for a goal cell that is all frontier, all seen, 6 m ahead, 6 m away: a policy
-that goes on into unseen ground. PPO with few steps does not get away from random goals by itself."""
+"""Initial logits for a goal cell that is all frontier, all seen, 6 m ahead, 6 m away. The training starts with a policy
+that moves into unseen ground, because PPO with few steps does not improve on random goals by itself."""
 TRUTH = ("path to the target", "floor never seen", "steps left")
 """Inputs of the critic that the policy does not get: path length in 10 m, area as log(1 + m2 / 20), share of the steps
 left."""
@@ -56,15 +56,15 @@ class NetConfig:
 class SemExpNet(nn.Module):
     """Scores the cells of a grid over the local window as long-term goals.
 
-    The 21 layers of the goal categories are mixed into a few by weights that belong to the goal, so that what one
-    category says about another is a number that is learned directly. The geometry of each square passes two
-    convolutions of stride 2 and meets the categories at the resolution of the goal cells; the features of the global
-    square are then interpolated at these. Layers with the position of each goal cell ahead and left of the robot carry
-    the heading. A last convolution gives one logit per goal cell; it also gets the shares of each goal cell that are
-    obstacle, seen and driven over, so that simple preferences are learned first.
+    The 21 layers of the goal categories are mixed into a few by weights that belong to the goal, so that the relation
+    between two categories is a number that is learned directly. The geometry of each square passes two convolutions of
+    stride 2 and meets the categories at the resolution of the goal cells; the features of the global square are then
+    interpolated at these. Layers with the position of each goal cell ahead and left of the robot carry the heading. A
+    last convolution gives one logit per goal cell; it also gets the shares of each goal cell that are obstacle, seen
+    and driven over, so that simple preferences are learned first.
 
-    The value, which only the training uses, also gets what no agent knows (`TRUTH`): most of the return depends on
-    how far away the target is and on how much is left to see (an asymmetric critic; Pinto et al. 2018).
+    The value, which only the training uses, also gets facts that no agent knows (`TRUTH`): most of the return depends
+    on the distance of the target and on the area that is left to see (an asymmetric critic; Pinto et al. 2018).
     """
 
     bits: Tensor
@@ -96,7 +96,7 @@ class SemExpNet(nn.Module):
             self.logit.weight[0, width:, 0, 0] = 0.0
             for number, start in _START.items():
                 self.logit.weight[0, width + number, 0, 0] = start / _FASTER
-            self.prior.weight[0] = torch.tensor([0.7, 0.2, 0.0])  # about what a random policy gets of the reward
+            self.prior.weight[0] = torch.tensor([0.7, 0.2, 0.0])  # about the return of a random policy
         self.register_buffer("bits", torch.arange(32, dtype=torch.int32).view(1, 32, 1, 1), persistent=False)
         self.register_buffer("blend", _blend(config), persistent=False)
         self.register_buffer("offset", _offsets(config), persistent=False)
@@ -109,18 +109,18 @@ class SemExpNet(nn.Module):
         far_goals: Float[Tensor, "n blocks blocks"],
         heading: Float[Tensor, "n 2"],
         goal: Float[Tensor, "n 1"],
-        truth: Float[Tensor, "n told"] | None = None,
+        truth: Float[Tensor, "n facts"] | None = None,
     ) -> tuple[Float[Tensor, "n goals"], Float[Tensor, " n"]]:
-        """Returns the logits of the goal cells, row by row, and the value; without `truth` that means nothing.
+        """Returns the logits of the goal cells, row by row, and the value; without `truth` the value is meaningless.
 
         Args:
             near: `Square.geometry` of the local square, as floats, like all arguments.
             near_goals: its `Square.goals`.
-            far: those of the global square.
-            far_goals: the same.
-            heading: its cosine and sine.
+            far: `Square.geometry` of the global square.
+            far_goals: its `Square.goals`.
+            heading: cosine and sine of the heading.
             goal: index of the goal category.
-            truth: as `TRUTH` says.
+            truth: the values that `TRUTH` names.
         """
         target = goal[:, 0].long()
         near_layers, far_layers = (self._unpacked(square, len(GEOMETRY)) for square in (near, far))
@@ -147,7 +147,7 @@ class SemExpNet(nn.Module):
         return (packed.to(torch.int32)[:, None] >> self.bits[:, :count] & 1).to(packed.dtype)
 
     def _mixed(self, packed: Float[Tensor, "n rows cols"], target: Tensor) -> Float[Tensor, "n layers rows cols"]:
-        """Returns the mixed categories, and the goal category itself."""
+        """Returns the layers of the mixed categories, and the layer of the goal category."""
         seen = self._unpacked(packed, len(GOAL_CATEGORIES))
         weights = self.relations(target).view(-1, self.config.relations, len(GOAL_CATEGORIES))
         mixed = torch.bmm(weights, seen.flatten(2)).view(-1, self.config.relations, *packed.shape[1:])

@@ -1,12 +1,12 @@
-"""Exploration by a tour over all that is left to see, in the order that shows most of it soonest; not in the paper.
+"""Explores by a tour over all unseen areas, in the order that shows most of them soonest; this is not in the paper.
 
-Two kinds of ground are left to see: unknown ground behind frontiers, and ground that was only seen from afar, where a
+Two kinds of ground are left to see: unknown ground behind frontiers, and ground that was seen only from afar, where a
 small object covers too little of the image to be noticed. Each frontier, and each part of the ground seen from afar, is
 a stop of the tour with a weight, the area that it would show. The order minimizes the sum of weight times path length
-until the stop (the minimum latency problem; Blum et al. 1994), which is the expected path until an object is seen whose
-place is equally likely everywhere. Predicted potentials of the frontiers (`stubborn.exploration.potentials`) can weigh
-the stops by where the goal is likely. The nearest stop comes first only if it is worth it. In passing, the robot looks
-aside where a turn shows much (`stubborn.exploration.glance`).
+until the stop (the minimum latency problem; Blum et al. 1994), which is the expected path until an object is seen if
+its place is equally likely everywhere. Predicted potentials of the frontiers (`stubborn.exploration.potentials`) can
+weight the stops by how likely the goal is there. The nearest stop does not always come first. On its path the robot
+looks aside where a turn shows much (`stubborn.exploration.glance`).
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ from stubborn.mapping.navmap import CollisionLayer
 from stubborn.planning.planner import Goal
 
 _STAYED_M = 0.4 * FORWARD_M
-"""A forward that moves the robot less has left it where it was."""
+"""A forward that moves the robot less than this did not move it."""
 _INSPECTED_GAP_M = 0.2
-"""Ground this near inspected ground is inspected too: distant floor is seen with gaps."""
+"""Ground within this distance of inspected ground is inspected too: distant floor is seen with gaps."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,56 +45,57 @@ class TourConfig:
     """The stops of the tour and their weights."""
 
     glance: GlanceConfig = field(default_factory=GlanceConfig)
-    """Looks to the side."""
+    """Parameters of the looks to the side."""
     potentials: PotentialConfig | None = None
-    """Predicted potentials that weigh the frontiers; None: their area alone counts."""
+    """Predicted potentials that weight the frontiers; None: only their area counts."""
     potential_floor: float = 0.05
-    """The weight of a frontier is multiplied by a power of this plus its highest potential; that of other ground by the
-    same power of this alone."""
+    """The weight of a frontier is multiplied by a power of (this + its highest potential), and the weight of other
+    ground by the same power of this."""
     potential_power: float = 2.0
-    """The power: the larger it is, the earlier the best frontier comes."""
+    """The exponent of that power. With a larger exponent the best frontier comes earlier."""
     least_length_m: float = 0.40
-    """Shorter frontiers are no stops while there are others."""
+    """Shorter frontiers are stops only if there are no longer ones."""
     own_known_m: float = 1.0
-    """Ground this near the trail counts as known (see `FrontierConfig.own_known_m`)."""
+    """Ground within this distance of the trail counts as known (see `FrontierConfig.own_known_m`)."""
     gain_radius_m: float = 2.0
-    """Unknown ground within this path length behind a frontier is what the frontier would show."""
+    """A frontier would show the unknown ground within this path length behind it."""
     near_m: float = 2.5
-    """Ground that was in view within this distance counts as inspected; 0: all ground in view does."""
+    """Ground that was in view within this distance counts as inspected; 0: all ground that was in view counts."""
     far_weight: float = 0.3
     """Weight of ground that was in view from afar only; unknown ground has weight 1."""
     least_far_m2: float = 0.5
-    """Smaller parts of such ground are no stops."""
+    """Smaller parts of such ground do not become stops."""
     stop_m: float = 0.5
     """Path length that each stop costs in addition to the path to it: the turns on the spot."""
     turn_m: float = 0.15
     """Path length that a turn of 30 degrees towards the first stop costs."""
     most_stops: int = 6
-    """Largest number of stops that are put in order: those with most weight for their path."""
+    """Largest number of stops that are put in order: those with the most weight per path length."""
     replan_steps: int = 8
-    """The order is computed again when a stop is done with, and after this many steps if they showed new ground: two
-    stops that are about equally good would otherwise send the robot back and forth."""
+    """The order is computed again when a stop is finished, and after this many steps if they showed new ground. Without
+    the second condition two stops that are about equally good would send the robot back and forth."""
     news_m2: float = 0.5
-    """New ground smaller than this is none."""
+    """Areas smaller than this do not count as new ground."""
     keep_steps: int = 80
     """A stop is pursued for at most this many steps."""
     arrived_m: float = 0.35
-    """A stop is reached within this length of path."""
+    """A stop counts as reached within this path length."""
     spent_m: float = 0.60
-    """Around a place where a stop was reached, the rest of it does not count any more."""
+    """Within this distance of a place where a stop was reached, nothing counts as left to see any more."""
     unmarked_steps: int = 40
-    """Where collision marks close all ways to what is left to see, they do not count for so many steps."""
+    """If collision marks close all paths to the areas that are left to see, the marks do not count for this many
+    steps."""
     regain_m2: float = 2.0
-    """When this much more ground has been seen, they may again not count for so many steps."""
+    """When this much more ground has been seen, the marks may again be ignored for `unmarked_steps` steps."""
     most_pushes: int = 2
-    """After so many forwards on such a route that left the robot where it was, they count again."""
+    """After this many forwards on such a route that did not move the robot, the marks count again."""
     margin_cells: int = 20
     """Margin around the known part of the map within which paths may run."""
     unknown_speed: float = 0.15
-    """Between stops a metre of unknown ground counts as 1 / `unknown_speed` metres: it may turn out blocked. With the
-    planner's 0.4, paths were longer with contacts."""
+    """Between stops a metre of unknown ground counts as 1 / `unknown_speed` metres: it may turn out blocked. The
+    planner's value, 0.4, led to longer paths in runs with contacts."""
     block_cells: int = 4
-    """Path lengths between stops are computed on blocks of so many cells each way."""
+    """Path lengths between stops are computed on blocks of this many cells in each direction."""
 
     def __post_init__(self) -> None:
         if self.block_cells < 1 or self.potential_floor < 0.0 or self.potential_power < 0.0:
@@ -120,12 +121,12 @@ class TourConfig:
 
 
 INFORMED_TOUR = TourConfig(potentials=PotentialConfig())
-"""The tour whose stops are weighed by the predicted potentials; `stubborn-plus` explores with it."""
+"""The tour whose stops are weighted by the predicted potentials; `stubborn-plus` explores with it."""
 
 
 @dataclass(frozen=True)
 class _Left:
-    """What is left to see in the known part of the map at one step."""
+    """The areas that are left to see in the known part of the map at one step."""
 
     known: Frontiers
     layer: CollisionLayer
@@ -151,7 +152,7 @@ class _Stop:
 
 
 class _Paths:
-    """Path lengths in the free space, on blocks of cells: the order of the stops needs no more, in large houses too."""
+    """Path lengths in the free space, on blocks of cells, which is exact enough to order the stops."""
 
     def __init__(self, known: Frontiers, block_cells: int, unknown_speed: float) -> None:
         free = known.free
@@ -169,11 +170,11 @@ class _Paths:
         return travel_times(self._blocks(rows, cols), self.reachable, self.speed, self.block_m)
 
     def nearest_m(self, field_m: Float32[np.ndarray, "block_rows block_cols"], stop: _Stop) -> float:
-        """Returns the least value of a field in a stop."""
+        """Returns the smallest value of a field in a stop."""
         return float(field_m[stop.rows // self.block_cells, stop.cols // self.block_cells].min())
 
     def unknown_m2(self, rows: Int[np.ndarray, " n"], cols: Int[np.ndarray, " n"], within_m: float) -> float:
-        """Returns the area of the unknown ground within some path length through it of some cells."""
+        """Returns the area of the unknown ground within a path length, through unknown ground, of some cells."""
         start, even = self._blocks(rows, cols), np.ones_like(self.speed)
         path_m = travel_times(start, self.unknown | start, even, self.block_m, within_m)
         return float(np.count_nonzero(np.isfinite(path_m) & self.unknown)) * self.block_m**2
@@ -187,7 +188,7 @@ class _Paths:
 
 
 class TourExplorer:
-    """Heads for the first stop of the best tour, and keeps to it for some steps."""
+    """Heads for the first stop of the best tour, and pursues it for some steps."""
 
     def __init__(self, config: TourConfig, camera: CameraModel) -> None:
         self.config = config
@@ -197,23 +198,23 @@ class TourExplorer:
     def reset(self, seed: int = 0) -> None:
         """Forgets the last episode."""
         self.glancer.reset()
-        self._goal: MapCells | None = None  # the stop pursued
-        self._layer: CollisionLayer | None = None  # that the route to it was planned on
+        self._goal: MapCells | None = None  # the pursued stop
+        self._layer: CollisionLayer | None = None  # the layer on which the route to it was planned
         self._age_steps = 0
         self._goal_from_m2 = 0.0  # the ground seen when the goal was chosen
-        self._unmarked_steps = 0  # on routes over collision marks, since this much ground had been seen
+        self._unmarked_steps = 0  # on routes over collision marks, since `_unmarked_from_m2` was set
         self._unmarked_from_m2 = 0.0
         self._unmarked_pose: Pose | None = None  # at the last step of such a route
-        self._pushes = 0  # forwards on such routes that left the robot where it was
+        self._pushes = 0  # forwards on such routes that did not move the robot
         self._spent = np.zeros((0, 0), np.bool_)  # on the whole map, as the next two; made at an episode's first step
         self._inspected = self._spent
         self._frames = np.zeros((0, 0), np.uint16)
 
     def explore(self, ground: Ground) -> Exploration:
-        """See `Explorer`; the route to the stop pursued, else to the first of a new tour, else far from the trail.
+        """Returns the route to the pursued stop, else to the first of a new tour, else far from the trail.
 
         Where nothing is left to see in the free space of the preferred collision layer, a mark may close a passage:
-        the tour is made on the next layer, and last on none for some steps.
+        the tour is planned on the next layer and finally, for some steps, without collision marks.
         """
         self._note_view(ground)
         turn = self.glancer.next_turn(ground.navmap, ground.pose)
@@ -253,7 +254,7 @@ class TourExplorer:
         before[:] = frames
 
     def _layers(self, ground: Ground) -> tuple[CollisionLayer, ...]:
-        """Returns the collision layers to make a tour on, in order of preference."""
+        """Returns the collision layers to plan a tour on, in order of preference."""
         seen_m2 = ground.navmap.seen_area_m2()
         if seen_m2 >= self._unmarked_from_m2 + self.config.regain_m2:
             self._unmarked_from_m2, self._unmarked_steps, self._pushes = seen_m2, 0, 0
@@ -261,7 +262,7 @@ class TourExplorer:
         return ground.layers if closed else (*ground.layers, CollisionLayer.NONE)
 
     def _left(self, ground: Ground, layer: CollisionLayer) -> _Left:
-        """Returns what is left to see in the known part of the map and can be reached on a collision layer."""
+        """Returns the areas that are left to see in the known part of the map and are reachable on a layer."""
         config = self.config
         known = Frontiers.of(ground, own_known_m=config.own_known_m, margin_cells=config.margin_cells, layer=layer)
         far = np.zeros_like(known.cells)
@@ -271,7 +272,7 @@ class TourExplorer:
         return _Left(known, layer, far, self._spent[known.window.index])
 
     def _go_on(self, goal: MapCells, left: _Left, ground: Ground) -> Search:
-        """Returns the route to the rest of the stop pursued; None when it is done with, or time for a new tour."""
+        """Returns the route to the rest of the pursued stop; None when it is finished, or a new tour is due."""
         self._age_steps += 1
         if self._layer is CollisionLayer.NONE and self._pushes_on(ground.pose):
             return None
@@ -286,7 +287,7 @@ class TourExplorer:
         return route
 
     def _pushes_on(self, pose: Pose) -> bool:
-        """Counts a step of a route over collision marks; returns True when the robot pushes and gets no further."""
+        """Counts a step of a route over collision marks; returns True when the robot pushes without moving."""
         before, self._unmarked_pose = self._unmarked_pose, pose
         self._unmarked_steps += 1
         if before is not None and pose.distance_to(before) < _STAYED_M:
@@ -365,13 +366,13 @@ class TourExplorer:
         return abs(wrap_angle(math.atan2(float(y_m) - pose.y_m, float(x_m) - pose.x_m) - pose.yaw_rad)) / TURN_RAD
 
     def _spend(self, left: _Left, pose: Pose) -> None:
-        """Closes the stops around the robot, which has seen what they show."""
+        """Closes the stops around the robot, because the robot has seen what they show."""
         spend_around(self._spent, left.known.window, pose, self.config.spent_m)
         self._goal = None
 
 
 class InformedTourExplorer(TourExplorer):
-    """A tour whose frontiers are weighed by predicted potentials as well."""
+    """A tour whose frontiers are also weighted by predicted potentials."""
 
     reads_semantics: Literal[True] = True
 
@@ -380,7 +381,7 @@ class InformedTourExplorer(TourExplorer):
         super().__init__(config, camera)
 
     def reset(self, seed: int = 0) -> None:
-        """Forgets the last episode; the draws of the controls come from `seed`."""
+        """Forgets the last episode; the random choices of the controls come from `seed`."""
         super().reset(seed)
         self.potentials.reset(seed)
 
@@ -398,10 +399,10 @@ def first_of_best_order(
     between_m: Float64[np.ndarray, "n n"],
     stop_m: float,
 ) -> int:
-    """Returns the first stop of the order with the least sum of weight times path length until the stop.
+    """Returns the first stop of the order with the smallest sum of weight times path length until the stop.
 
     Args:
-        weight: of each stop.
+        weight: weight of each stop.
         to_m: path length from the robot to each stop.
         between_m: path length between two stops; a path that is infinite counts as 100 m.
         stop_m: additional path length that each stop costs.

@@ -1,7 +1,7 @@
 """Compiled loops over the pixels of one frame: surfaces, ground points, evidence and scores of cells.
 
-They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
-Sums are in float32 and in a fixed order, because maps, and so the agent's path, depend on the last digit.
+They are in a module of their own because numba compiles them: their annotations cannot be checked at run time.
+Sums are in float32 and in a fixed order, because maps, and therefore the agent's path, depend on the last digit.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from sim.geometry.compiling import njit
 
 _PAIRS = ((1, 0), (0, 1), (1, 1), (1, -1))
-"""Rows and columns to one of two opposite neighbours."""
+"""Offsets in rows and columns to one of each two opposite neighbours."""
 
 
 @njit(cache=True)
@@ -23,9 +23,9 @@ def smooth_surfaces(depth, jump_1_m, every, change, count):
     Args:
         depth: (rows, cols) float32 metres; 0: no distance.
         jump_1_m: float32, largest difference in 1 / depth between neighbours on one surface.
-        every: only every so many rows and columns are computed.
-        change: (rows / every, cols / every) float32, is set to the mean less the pixel itself.
-        count: the same shape, uint8, is set to the number of those neighbours.
+        every: only every `every`-th row and column is computed.
+        change: (rows / every, cols / every) float32; it is set to the mean less the pixel itself.
+        count: the same shape, uint8; it is set to the number of those neighbours.
     """
     rows, cols = depth.shape
     for i in range(count.shape[0]):
@@ -55,7 +55,8 @@ def smooth_surfaces(depth, jump_1_m, every, change, count):
 def shows_no_noise(depth, every, change, count, limit):
     """Returns whether the median of the changes by `smooth_surfaces`, as 1 / depth, is less than `limit` (float32).
 
-    Pixels without neighbours on one surface do not count. With none that does there is no median: False.
+    Pixels without neighbours on one surface do not count. If no pixel counts, there is no median and the result is
+    False.
     """
     total = below = 0
     largest_below, least_above = np.float32(-np.inf), np.float32(np.inf)
@@ -91,13 +92,13 @@ def nearest_down_columns(depth):
 def count_obstacle_points(
     depth, confirmed, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, low_m, top_m, eye_m, solid, tall
 ):
-    """Counts the points of each cell in the obstacle band and at eye level, at most 2 each; those off the grid do not.
+    """Counts the points of each cell in the obstacle band and at eye level, at most 2 each, on the grid only.
 
     Args:
-        depth: see `ground_points`; also all up to `far_m`.
+        depth: see `ground_points`, also for the next arguments up to `far_m`.
         low_m: heights from here to `top_m` are in the band.
         eye_m: heights that differ by no more than this from the camera's are at eye level.
-        solid: (rows, cols) uint8 zeros, is set to the number of points in the band; also `tall`, at eye level.
+        solid: (rows, cols) uint8 zeros; it is set to the number of points in the band, and `tall` to that at eye level.
     """
     in_band, at_eye_level = np.empty(depth.shape[1], np.bool_), np.empty(depth.shape[1], np.bool_)
     for r in range(depth.shape[0]):
@@ -124,11 +125,12 @@ def sees_past(row, col, grid, sight, nearest_m, drop_m, near_m, far_m, margin_m)
     """Returns whether a frame saw past a cell; see `stubborn.mapping.occupancy.SightLines.passes`.
 
     Args:
-        row: of the cell; also `col`.
+        row: row of the cell; `col` is its column.
         grid: x and y of the grid's corner, and the edge of a cell.
-        sight: x, y, cos and sin of the camera's pose; the first entry and the step of its rays up; those to the left.
+        sight: x, y, cos and sin of the camera's pose; the first entry and the step of `SightLines.up`; the same of
+            `left`.
         nearest_m: (h, w) float32; see `stubborn.mapping.occupancy.SightLines`.
-        drop_m: from the camera down to the end of the band.
+        drop_m: distance from the camera down to the end of the band.
         near_m: cells nearer than this or, with the margin, not nearer than `far_m` are not seen through.
         margin_m: the frame must see farther than this past the cell's centre.
     """
@@ -169,14 +171,15 @@ def enter_evidence(
     """Enters the points of a frame into the obstacle layers; see `stubborn.mapping.occupancy.Occupancy.add`.
 
     Args:
-        part: the first row, the row after the last, the same of columns: a rectangle with all that the frame shows.
-        solid: (rows, cols) uint8 number of points in the obstacle band, at most 2; also `tall`, at eye level.
-        evidence: (rows, cols) int8, is changed; also `obstacle` and `eye_level`, bool.
-        single: evidence of one point; `hit` that of two.
+        part: the first row, the row after the last, and the same for columns, of a rectangle that contains all the
+            frame shows.
+        solid: (rows, cols) uint8 number of points in the obstacle band, at most 2; `tall` is the number at eye level.
+        evidence: (rows, cols) int8; it is changed, and so are `obstacle` and `eye_level` (bool).
+        single: evidence of one point; `hit` is the evidence of two.
         miss: evidence that is removed where the frame sees past a cell.
-        obstacle_from: a cell with at least so much evidence is an obstacle.
+        obstacle_from: a cell with at least this much evidence is an obstacle.
         most: evidence does not grow beyond this.
-        grid: see `sees_past`; also all that follow.
+        grid: see `sees_past`, also for the arguments that follow.
     """
     for row in range(part[0], part[1]):
         for col in range(part[2], part[3]):
@@ -208,12 +211,12 @@ def ground_points(
     Args:
         depth: (h, w) float32 metres along the optical axis.
         confirmed: (h, w) bool; other pixels are left out, and so are those nearer than `near_m` or not below `far_m`.
-        x_slope: (w,) columns of the grid per metre of depth; also `y_slope`, rows.
-        x_cells: column of the camera, not rounded; also `y_cells`, its row.
+        x_slope: (w,) columns of the grid per metre of depth; `y_slope` is in rows.
+        x_cells: column of the camera, not rounded; `y_cells` is its row.
         up: (h,) rise per metre of depth.
         camera_m: height of the camera.
-        valid: (h, w) bool, is set to the pixels that count.
-        rows: (h * w,) int32, its beginning is set to the row of each of them; also `cols` and `height_m`.
+        valid: (h, w) bool; it is set to the pixels that count.
+        rows: (h * w,) int32; its beginning is set to the row of each of them, and so are `cols` and `height_m`.
     """
     n = 0
     for r in range(depth.shape[0]):
@@ -233,13 +236,13 @@ def ground_points(
 def cells_of_pixels(
     depth, x_slope, y_slope, x_cells, y_cells, up, camera_m, near_m, far_m, top_m, height, width, rows, cols
 ):
-    """Computes the cell of each depth pixel, and returns the first and last row and the first and last column of all.
+    """Computes the cell of each depth pixel, and returns the first and last row and column of all cells.
 
     Args:
-        depth: see `ground_points`; also all up to `far_m`.
-        top_m: points above this have no cell, but count in what is returned.
-        height: number of rows of the grid; also `width`, of columns. Points off the grid do not count.
-        rows: (h, w) int32, is set to the row of each pixel, -1 without a cell; also `cols`.
+        depth: see `ground_points`, also for the next arguments up to `far_m`.
+        top_m: points above this have no cell, but count in the returned numbers.
+        height: number of rows of the grid; `width` is the number of columns. Points off the grid do not count.
+        rows: (h, w) int32; it is set to the row of each pixel, -1 without a cell; `cols` is set to the columns.
     """
     first_row = first_col = 2**31 - 1
     last_row = last_col = -1
@@ -264,14 +267,14 @@ def highest_scores(rows, cols, target, other, in_view, target_of, other_of):
     """Reduces pixels to cells: the highest target score, and the highest other score where the target's is highest.
 
     Args:
-        rows: (h, w) row of each pixel's cell, -1: none; also `cols`.
-        target: (h, w) float32 score of the target; also `other`, the highest of any other category.
-        in_view: (rows, cols) bool, is set to True where a pixel lies.
-        target_of: (rows, cols) float32 zeros, is set to the highest target score.
-        other_of: (rows, cols) float32 zeros, is set to the highest other score of the pixels with that target score.
+        rows: (h, w) row of each pixel's cell, -1: no cell; `cols` is its column.
+        target: (h, w) float32 score of the target; `other` is the highest score of any other category.
+        in_view: (rows, cols) bool; it is set to True where a pixel lies.
+        target_of: (rows, cols) float32 zeros; it is set to the highest target score.
+        other_of: (rows, cols) float32 zeros; it is set to the highest other score of the pixels with that target score.
 
     Returns:
-        Whether a target score in a cell is more than 0.
+        True if a target score in a cell is more than 0.
     """
     scored = False
     for i in range(rows.shape[0]):
@@ -296,7 +299,7 @@ def goal_bits(posteriors, channels, first, every, least):
         posteriors: (classes, rows, cols) float32.
         channels: (goals,) the channel of each goal category.
         first: the first row and column that is used; then every `every`-th.
-        every: see above.
+        every: distance of the rows and columns that are used.
         least: a probability above this sets the bit.
     """
     _, rows, cols = posteriors.shape
@@ -312,7 +315,7 @@ def goal_bits(posteriors, channels, first, every, least):
 
 @njit(cache=True)
 def scores_of_category(semantic, category):
-    """Returns, as float32 images, 1 where a pixel has the category, and 1 where it has another one; 0 is none."""
+    """Returns two float32 images: 1 where a pixel has the category, and 1 where it has another one (not 0)."""
     target, other = np.empty(semantic.shape, np.float32), np.empty(semantic.shape, np.float32)
     for r in range(semantic.shape[0]):
         for c in range(semantic.shape[1]):

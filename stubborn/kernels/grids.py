@@ -1,6 +1,6 @@
 """Compiled loops over the cells of a grid, for `stubborn.mapping.masks`, `stubborn.planning` and `stubborn.mapping`.
 
-They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
+They are in a module of their own because numba compiles them: their annotations cannot be checked at run time.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from sim.geometry.compiling import njit
 
 MAX_REACH = 180
-"""Largest distance in cells that `distance_within` computes: its square is a 16-bit number, also twice."""
+"""Largest distance in cells that `distance_within` computes: twice its square still fits into 16 bits."""
 
 
 @njit(cache=True)
@@ -24,8 +24,8 @@ def distance_within(mask, reach):
     if reach > MAX_REACH:
         raise ValueError("distance_within: reach must be at most 180 cells, so that squares are 16-bit numbers.")
     rows, cols = mask.shape
-    width = cols + reach  # the columns at the end are far from everything, so that a line may run on into the next one
-    one, beyond = np.uint16(1), np.uint16(reach + 1)  # short numbers throughout: many of them are computed at once
+    width = cols + reach  # the columns at the end are far from everything, so that a line may continue into the next
+    one, beyond = np.uint16(1), np.uint16(reach + 1)  # 16-bit numbers throughout: many of them are computed at once
     gap = np.full((rows, width), beyond, np.uint16)  # first the distance to a True cell of the same column
     for row in range(rows):
         here, marked = gap[row], mask[row]
@@ -54,7 +54,7 @@ def distance_within(mask, reach):
     for row in range(rows):
         here, line = least[row * width : row * width + cols], result[row]
         for col in range(cols):
-            root = np.sqrt(np.float32(here[col]))  # outside of the choice: a branch would not be vectorised
+            root = np.sqrt(np.float32(here[col]))  # before the choice: a branch would not be vectorised
             line[col] = root if here[col] <= limit else cut
     return result
 
@@ -78,7 +78,7 @@ def speeds(clearance_m, least_m, open_m, edge_speed, rise):
 def bilinear(values, origin_x_m, origin_y_m, cell_m, x_m, y_m):
     """Returns bilinear values (n,) at points, over the finite ones of the four cells around each.
 
-    The value is infinite off the grid and where that of the point's own cell is.
+    The value is infinite off the grid and where the value of the point's own cell is infinite.
     """
     rows, cols = values.shape
     result = np.full(x_m.size, np.inf)
@@ -106,7 +106,7 @@ def bilinear(values, origin_x_m, origin_y_m, cell_m, x_m, y_m):
 def sweep(traversable, clearance_m, least_m, origin_x_m, origin_y_m, cell_m, x_m, y_m):
     """Returns whether each line of points (points, n) stays on the grid and passable, and its least clearance.
 
-    A cell is passable that is traversable or has a clearance of at least `least_m`.
+    A cell is passable if it is traversable or has a clearance of at least `least_m`.
     """
     rows, cols = traversable.shape
     clear, nearest_m = np.ones(x_m.shape[1], np.bool_), np.full(x_m.shape[1], np.inf, np.float32)

@@ -1,6 +1,6 @@
 """Compiled functions that compute surfaces from a depth image.
 
-They are apart from their users because numba compiles them, so that no annotation of theirs can be checked at run time.
+They are in a module of their own because numba compiles them: their annotations cannot be checked at run time.
 """
 
 import math
@@ -17,10 +17,10 @@ def fill_surface_channels(depth, focal_px, camera_height_m, max_depth_m, step, c
     Args:
         depth: (rows, cols) metres along the optical axis; 0: no return.
         focal_px: focal length; the optical axis goes through the middle of the image.
-        camera_height_m: of the optical centre above the floor.
+        camera_height_m: height of the optical centre above the floor.
         max_depth_m: depths from here on are not valid.
         step: distance in pixels of the neighbours that give a normal.
-        channels: (rows, cols, 6) float32, is overwritten.
+        channels: (rows, cols, 6) float32; it is overwritten.
     """
     rows, cols = depth.shape
     middle_x, middle_y = 0.5 * cols, 0.5 * rows
@@ -57,7 +57,7 @@ def fill_surface_channels(depth, focal_px, camera_height_m, max_depth_m, step, c
 
 @njit(cache=True)
 def _nearest_neighbour(depth, row, col, down, right, max_depth_m):
-    """Returns the row or column of the valid one of two opposite neighbours that is nearer in depth; -1 for none."""
+    """Returns the row or column of the neighbour, of two opposite ones, that is nearer in depth; -1: none is valid."""
     rows, cols = depth.shape
     best, least = -1, np.inf
     for sign in (1, -1):

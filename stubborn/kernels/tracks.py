@@ -13,7 +13,7 @@ NO_LABEL = -1
 
 @njit(cache=True)
 def label_pixels(posteriors, is_object, goal, hot):
-    """Returns the most probable class of each pixel, -1 where that is no object; the goal from probability `hot` on.
+    """Returns the most probable class of each pixel, -1 if it is no object; the goal from probability `hot` on.
 
     Args:
         posteriors: (classes, rows, cols) float32.
@@ -26,7 +26,7 @@ def label_pixels(posteriors, is_object, goal, hot):
     best = flat[0].copy()
     label = np.zeros(rows * cols, np.int32)
     for k in range(1, classes):
-        for i in range(rows * cols):  # without a branch, so that it is vectorised
+        for i in range(rows * cols):  # there is no branch, so that it is vectorised
             higher = flat[k, i] > best[i]
             best[i] = flat[k, i] if higher else best[i]
             label[i] = k if higher else label[i]
@@ -40,13 +40,13 @@ def label_pixels(posteriors, is_object, goal, hot):
 
 @njit(cache=True)
 def voxels_of(depth, left, up, x_m, y_m, yaw_rad, height_m, near_m, far_m, origin_x_m, origin_y_m, edge_m, shape):
-    """Returns the row-major voxel of each depth pixel, -1 without one.
+    """Returns the row-major voxel of each depth pixel, -1 for pixels without a voxel.
 
     Args:
         depth: (rows, cols) float32, metres along the optical axis.
         left: (cols,) metres to the left per metre of depth.
         up: (rows,) metres upwards per metre of depth.
-        x_m: position of the camera; also `y_m`, `yaw_rad` and its `height_m` above the floor.
+        x_m: position of the camera, with `y_m`, `yaw_rad` and its `height_m` above the floor.
         near_m: depths from here to `far_m` are valid.
         origin_x_m: outer corner of the first voxel; also `origin_y_m`.
         edge_m: edge of a voxel.
@@ -79,7 +79,7 @@ def _root(parent, i):
 
 @njit(cache=True)
 def regions_of(label, voxel, depth, jump):
-    """Returns the number of each pixel's region, 1 on, 0 for none, and the number of regions.
+    """Returns the number of each pixel's region, from 1 (0: no region), and the number of regions.
 
     Neighbours belong together if their labels are equal and their depths differ by less than `jump` of the depth.
     """
@@ -129,18 +129,18 @@ def overlaps_of(region, count, label, voxel, owner, tracks):
 
 @njit(cache=True)
 def claim(region, voxel, owner, track_of, takes_over, size, low, high, shape):
-    """Gives voxels to tracks: those without an owner and, where a region takes over, all of it.
+    """Gives voxels to tracks: voxels without an owner and, where a region takes over, all voxels of the region.
 
     Args:
-        region: (rows, cols) number of each pixel's region, 0: none.
+        region: (rows, cols) number of each pixel's region, 0: no region.
         voxel: (rows, cols) row-major voxel of each pixel.
-        owner: (voxels,) track of each voxel, 0: none; is changed.
-        track_of: (regions,) track of each region, 0: none.
+        owner: (voxels,) track of each voxel, 0: no track; it is changed.
+        track_of: (regions,) track of each region, 0: no track.
         takes_over: (regions,) True: voxels of other tracks change their owner.
-        size: (tracks,) number of voxels of each track; is changed.
-        low: (tracks, 3) least row, column and layer that each track ever owned; is changed.
-        high: (tracks, 3) highest ones; is changed.
-        shape: of the volume.
+        size: (tracks,) number of voxels of each track; it is changed.
+        low: (tracks, 3) smallest row, column and layer that each track ever owned; it is changed.
+        high: (tracks, 3) largest ones; it is changed.
+        shape: shape of the volume.
     """
     for r in range(region.shape[0]):
         for c in range(region.shape[1]):
@@ -167,7 +167,7 @@ def claim(region, voxel, owner, track_of, takes_over, size, low, high, shape):
 def means_by_track(posteriors, voxel, owner, tracks):
     """Returns the mean posterior of the pixels of each track, (tracks, classes), and how many pixels it has.
 
-    Every second pixel enters the mean, as on a chessboard: neighbours say the same.
+    Every second pixel enters the mean, as on a chessboard: neighbouring pixels hold nearly the same values.
     """
     classes, rows, cols = posteriors.shape
     flat = posteriors.reshape(classes, rows * cols)

@@ -1,8 +1,8 @@
 """Marks on the map where a move failed, and the ground that the body has driven over.
 
 Paper: Mapping Module, the multi-scale collision map. A depth image misses thin legs, glass and surfaces nearer than the
-camera's range. A failed move says that an obstacle is there, but not its exact place or size. So two marks are kept,
-one that is probably too large (pessimistic) and one that is probably too small (optimistic).
+camera's range. A failed move shows that an obstacle is there, but not its exact place or size. Therefore two marks are
+kept: one is probably too large (pessimistic) and one is probably too small (optimistic).
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ class CollisionConfig:
     narrow_m: float = 0.15
     """Edge of the optimistic square."""
     near_edge_m: float = 0.15
-    """From the robot's centre to the near edge of both squares."""
+    """Distance from the robot's centre to the near edge of both squares."""
     failed_below_m: float = 0.20
     """A MOVE_FORWARD that moved less than this is a collision. A real body slides, so that 0 would miss most."""
     jitter_sigmas: float = 2.5
-    """With a noisy gps, a failed forward must also fall short of a whole one by so many standard deviations."""
+    """With a noisy gps, a failed forward must also be shorter than a whole one by this many standard deviations."""
     least_failed_m: float = 0.10
-    """A forward that seems to have moved less than this is a collision, however noisy the gps."""
+    """A forward that seems to have moved less than this is always a collision, even if the gps is noisy."""
     trail_radius_m: float = 0.07
     """Half the width of the trail that the robot's centre leaves: a cell and its neighbours."""
 
@@ -53,7 +53,7 @@ class GpsNoise:
     """Estimates the noise of the gps from turns on the spot, during which the robot does not move.
 
     The distance between two readings with normal noise has a Rayleigh distribution, whose median is 1.177 standard
-    deviations. The median is robust against single turns that did push the robot aside.
+    deviations. The median is robust against single turns in which the robot was pushed aside.
     """
 
     _FEWEST = 3
@@ -74,7 +74,7 @@ class GpsNoise:
         return statistics.median(self._moved_m) / self._MEDIAN_SIGMAS
 
     def failed_below_m(self, config: CollisionConfig) -> float:
-        """Returns the distance below which a forward has failed: as configured, less where the noise is larger."""
+        """Returns the distance below which a forward has failed: the configured one, or less with larger noise."""
         return max(
             min(config.failed_below_m, FORWARD_M - config.jitter_sigmas * self.std_m()),
             min(config.least_failed_m, config.failed_below_m),

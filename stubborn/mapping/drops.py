@@ -1,8 +1,8 @@
-"""Missing floor from depth: where a ray passes through the plane of the floor, the robot would fall.
+"""Finds missing floor from depth: where a ray passes through the plane of the floor, the robot would fall.
 
-A depth camera shows a stairwell or the edge of a landing only by what is below it, or by nothing at all when that is
-out of range. The ground is known to be missing where a ray crosses the plane of the floor and goes on. Where already
-the lowest ray of a column does so, the ground from there back to the ground that was seen is unknown and may be missing
+A depth camera shows at a stairwell or at the edge of a landing only the surfaces below, or nothing if they are out of
+range. The ground is known to be missing where a ray crosses the plane of the floor and continues. If even the lowest
+ray of a column does so, the ground between that crossing and the ground that was seen is unknown and may be missing
 too: it is marked until a frame shows floor there.
 """
 
@@ -22,7 +22,7 @@ from stubborn.mapping.navmap import NavMap
 from stubborn.mapping.projection import Rays
 
 _EVERY_COLUMN = 2
-"""Columns that are used; neighbours are 3 cm apart at `DropConfig.range_m` with the default camera and stride."""
+"""One in this many columns is used; they are 3 cm apart at `DropConfig.range_m` with the default camera and stride."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class DropConfig:
     miss: int = 1
     """Evidence that a frame removes from a cell where it shows floor."""
     drop_from: int = 2
-    """A cell with at least so much evidence is a drop."""
+    """A cell with at least this much evidence is a drop."""
     most: int = 10
     """Evidence does not grow beyond this."""
 
@@ -54,7 +54,7 @@ class DropConfig:
 
 
 class Drops:
-    """Enters missing floor into a map. It keeps no memory of its own; the evidence is on the map."""
+    """Enters missing floor into a map. It has no memory of its own; the evidence is on the map."""
 
     def __init__(self, camera: CameraModel, rays: Rays, config: DropConfig) -> None:
         self._config = config
@@ -71,7 +71,7 @@ class Drops:
 
         Args:
             view: part of the map.
-            depth: metres, of the rays given to the constructor; the farthest depth also means anything beyond it.
+            depth: metres, for the rays given to the constructor; the farthest depth also stands for all larger depths.
             camera_pose: pose of the camera.
         """
         if not self._config.enabled or not len(self._floor_m):
@@ -106,7 +106,7 @@ class Drops:
     ) -> Bool[np.ndarray, "rows cols"]:
         """Returns a mask of the cells from the lowest ray's crossing back to ground that was seen or driven over.
 
-        `missing` says for which columns the lowest ray passes through the floor.
+        `missing` is True for the columns whose lowest ray passes through the floor.
         """
         if not missing.any():
             return np.zeros(view.frame.shape, np.bool_)
@@ -122,7 +122,7 @@ class Drops:
 def _cells_at(
     frame: GridFrame, pose: Pose, depth_m: Float32[np.ndarray, "h 1"], left: Float32[np.ndarray, " w"]
 ) -> Int[np.ndarray, "h w"]:
-    """Returns the row-major cells at some depths along the columns of the image; beyond the map those at its edge."""
+    """Returns the row-major cells at some depths along the columns of the image, clipped to the map."""
     cos, sin = math.cos(pose.yaw_rad), math.sin(pose.yaw_rad)
     x = (pose.x_m - frame.origin_xy_m[0]) + depth_m * (cos - sin * left)
     y = (pose.y_m - frame.origin_xy_m[1]) + depth_m * (sin + cos * left)

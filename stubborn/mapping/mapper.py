@@ -1,4 +1,4 @@
-"""Map layers from images: depth points become obstacles, scores become object layers (paper: Mapping Module)."""
+"""Makes map layers from images: depth points become obstacles, scores become object layers (paper: Mapping Module)."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ _GOAL_CHANNELS = np.array([MPCAT40_ID[goal] - 1 for goal in GOAL_CATEGORIES], np
 
 @dataclass(frozen=True, kw_only=True)
 class MappingConfig:
-    """Which depth points and scores enter which layer."""
+    """Defines which depth points and scores enter which layer."""
 
     obstacle_min_height_m: float = 0.10
-    """Lower surfaces are floor: rugs, thresholds, slabs that the robot drives over."""
+    """Surfaces below this height are floor, such as rugs, thresholds and slabs that the robot drives over."""
     obstacle_max_height_m: float | None = None
-    """Higher surfaces are overhead; None takes the robot's height (0.88 m)."""
+    """Surfaces above this height are overhead; None takes the robot's height (0.88 m)."""
     score_max_height_m: float = 2.2
     """Object layers take points up to this height: pictures, towels and wall screens are mounted high."""
     eye_level_halfwidth_m: float = 0.06
-    """Surfaces this near the camera's height can hide an object behind them."""
+    """Surfaces whose height differs from the camera's by at most this can hide an object behind them."""
     obstacle_stride_px: int = 2
-    """Every so many pixels of depth, in rows and columns, enter the obstacle layer."""
+    """Step between the depth pixels, in rows and columns, that enter the obstacle layer."""
     score_stride_px: int = 4
-    """Every so many pixels, in rows and columns, enter the object layers."""
+    """Step between the pixels, in rows and columns, that enter the object layers."""
     rim_px: int = 3
     """Width of the target's rim that does not count with inexact images, in pixels: depth and scores differ there."""
     candidate_score: float = 0.5
@@ -62,7 +62,7 @@ class Sighting:
     rows: Int[np.ndarray, " n"]
     cols: Int[np.ndarray, " n"]
     distance_m: Float32[np.ndarray, " n"]
-    """From the robot's centre, in plan."""
+    """Horizontal distance from the robot's centre."""
 
     def is_within(self, range_m: float) -> bool:
         """Returns whether a target point is within a distance."""
@@ -83,11 +83,11 @@ NOTHING_SIGHTED = Sighting(np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(
 
 @dataclass(frozen=True)
 class Frame:
-    """A frame of the camera that is entered into a map: from which pose, and into which part of the map."""
+    """The pose of a camera frame that is entered into a map, and the part of the map that it is entered into."""
 
     navmap: NavMap
     pose: Pose
-    """Of the robot, in the frame of the map."""
+    """Pose of the robot in the frame of the map."""
     camera_pose: Pose
     window: Window
     """The part of the map that the camera can see."""
@@ -104,7 +104,7 @@ class Mapper:
     def __init__(
         self, camera: CameraModel, robot: RobotModel, config: MappingConfig, layers: ObjectLayers | None = None
     ) -> None:
-        """Precomputes the rays of the camera. `layers` keeps the scores; None: those of all frames, as in the paper."""
+        """Precomputes the rays of the camera. `layers` keeps the scores, by default of all frames as in the paper."""
         self.layers = layers or ObjectLayersConfig().make(config.candidate_score)
         top_m = robot.height_m if config.obstacle_max_height_m is None else config.obstacle_max_height_m
         if config.obstacle_min_height_m >= top_m:
@@ -208,16 +208,18 @@ class Mapper:
             return
         points = rays.project(rays.sample(depth), bits != 0, camera_pose, window)
         counts = points.height_m <= self.config.score_max_height_m
-        counts &= window.frame.contains(points.rows, points.cols)  # at the edge of the map the camera sees beyond it
+        counts &= window.frame.contains(
+            points.rows, points.cols
+        )  # at the edge of the map the camera sees points outside the map
         seen = navmap.goals_seen[window.index]
         np.bitwise_or.at(seen, (points.rows[counts], points.cols[counts]), bits[points.valid][counts])
 
     def _confirm(
         self, found: Bool[np.ndarray, "h w"], d: Float32[np.ndarray, "h w"]
     ) -> tuple[Float32[np.ndarray, "h w"], Bool[np.ndarray, "h w"]]:
-        """Returns depth smoothed over the target, and False at target pixels off the surface of most neighbours.
+        """Returns depth smoothed over the target, and False at target pixels off their neighbours' surface.
 
-        At the rim of an object a noisy depth image shows what is behind or in front of it.
+        At the rim of an object a noisy depth image shows points behind it or in front of it.
         """
         confirmed = np.ones(d.shape, np.bool_)
         rows, cols = np.flatnonzero(found.any(axis=1)), np.flatnonzero(found.any(axis=0))
@@ -245,7 +247,7 @@ class Mapper:
     def _drop_candidates(
         self, view: NavMap, d: Float32[np.ndarray, "h w"], found: Bool[np.ndarray, "h w"], rays: Rays, camera_pose: Pose
     ) -> None:
-        """Removes candidates in free air in front of the target: from afar a noisy image shows it too near."""
+        """Removes candidates in free space in front of the target: a noisy image shows far targets too near."""
         rows, cols = np.divmod(np.flatnonzero(view.score_max > self.config.candidate_score), view.frame.shape[1])
         target_m = np.where(found, d, np.float32(np.inf)).min(axis=0)
         sight = SightLines.of_frame(
@@ -267,7 +269,7 @@ class Mapper:
         every = max(1, self.config.score_stride_px // block_px)
         pick = slice(every // 2, None, every)
         if block_px not in self._score_rays:
-            first_px = (every // 2) * block_px + block_px // 2  # depth in the middle of the score's block
+            first_px = (every // 2) * block_px + block_px // 2  # the depth pixel in the middle of the score's block
             self._score_rays[block_px] = Rays(self.camera, first_px, every * block_px)
         return self._score_rays[block_px], (pick, pick)
 
@@ -282,7 +284,7 @@ def note_sighting(
         window: a part of the map.
         rows: rows of the cells in the window, each cell once.
         cols: their columns.
-        pose: of the robot, in the frame of the map.
+        pose: pose of the robot in the frame of the map.
     """
     x_m, y_m = window.frame.centres(rows, cols)
     to_x_m, to_y_m = pose.x_m - x_m, pose.y_m - y_m

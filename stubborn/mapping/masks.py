@@ -16,14 +16,14 @@ Cells = tuple[Int[np.ndarray, " n"], Int[np.ndarray, " n"]]
 
 
 def distance_to(mask: Bool[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
-    """Returns the exact distance from every cell's centre to that of the nearest True cell; huge when there is none."""
+    """Returns the exact distance from every cell's centre to that of the nearest True cell; huge in an empty mask."""
     return np.asarray(cv2.distanceTransform((~mask).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE), np.float32)
 
 
 def farther_than(
     mask: Bool[np.ndarray, "rows cols"], distance_m: float, cell_m: float
 ) -> Bool[np.ndarray, "rows cols"]:
-    """Returns the cells whose centre is farther than some metres, at most 178 cells, from that of any True cell."""
+    """Returns the cells whose centre is farther than a distance (at most 178 cells) from that of any True cell."""
     reach = math.floor(distance_m / cell_m) + 2  # one for rounding
     return distance_within(mask, reach) * np.float32(cell_m) > np.float32(distance_m)
 
@@ -32,7 +32,7 @@ class NearestCells(NamedTuple):
     """For every cell of a grid, the nearest cell of a mask."""
 
     gap_cells: Float32[np.ndarray, "rows cols"]
-    """Distance to it, good to 2 %."""
+    """Distance to it, with an error of at most 2 %."""
     rows: Int[np.ndarray, "rows cols"]
     cols: Int[np.ndarray, "rows cols"]
 

@@ -13,7 +13,7 @@ from jaxtyping import Bool, Float32, Int8, Int16, UInt16, UInt32
 from sim.geometry.grid import GridFrame, Window
 
 _LAYERS: Mapping[str, type] = MappingProxyType(
-    {  # the widest first, so that each is aligned
+    {  # the widest types first, so that each layer is aligned
         **dict.fromkeys(("score_sum", "score_max", "other_max", "shown_x", "shown_y"), np.float32),
         "goals_seen": np.uint32,
         **{"frames_in_view": np.uint16, "found_step": np.int16},
@@ -45,9 +45,9 @@ class NavMap:
     seen_obstacle: Bool[np.ndarray, "rows cols"]
     """True: depth saw a surface between step height and robot height [1]."""
     obstacle_evidence: Int8[np.ndarray, "rows cols"]
-    """Evidence for an obstacle, from depth; `seen_obstacle` is True where it suffices."""
+    """Evidence for an obstacle, from depth; `seen_obstacle` is True where there is enough of it."""
     seen_at_eye_level: Bool[np.ndarray, "rows cols"]
-    """True: depth saw a surface at the camera's height, so a wall or an object as tall."""
+    """True: depth saw a surface at the camera's height: a wall or an object of this height."""
     drop_evidence: Int8[np.ndarray, "rows cols"]
     """Evidence that the floor is missing, from depth."""
     seen_drop: Bool[np.ndarray, "rows cols"]
@@ -63,7 +63,7 @@ class NavMap:
     frames_in_view: UInt16[np.ndarray, "rows cols"]
     """Number of frames with a depth point in this cell, floor included [4]."""
     score_sum: Float32[np.ndarray, "rows cols"]
-    """Sum over frames of the target's score, each frame giving its highest in the cell [5]."""
+    """Sum over frames of the target's score; each frame adds its highest score in the cell [5]."""
     score_max: Float32[np.ndarray, "rows cols"]
     """Highest score of the target in any frame [6]."""
     other_max: Float32[np.ndarray, "rows cols"]
@@ -82,7 +82,7 @@ class NavMap:
     set_aside: Bool[np.ndarray, "rows cols"]
     """True: a candidate here could not be reached; it is tried again later."""
     known: tuple[slice, slice] | None = None
-    """Rows and columns of a rectangle that holds all ground seen or driven over; None: nothing yet."""
+    """Rows and columns of a rectangle that holds all ground seen or driven over; None: no ground yet."""
 
     @classmethod
     def empty(cls, frame: GridFrame) -> NavMap:
@@ -105,7 +105,7 @@ class NavMap:
         return NavMap(frame=window.frame, **{name: getattr(self, name)[index] for name in _LAYERS})
 
     def collision_marks(self, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the marks of a collision layer; without a layer there are none."""
+        """Returns the marks of a collision layer; the mask of `CollisionLayer.NONE` is empty."""
         if layer is CollisionLayer.NONE:
             return np.zeros_like(self.seen_obstacle)
         return self.pessimistic_marks if layer is CollisionLayer.PESSIMISTIC else self.optimistic_marks

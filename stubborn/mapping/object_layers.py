@@ -1,7 +1,7 @@
-"""How the scores of one frame enter the object layers of the map (paper: Mapping Module, channels 4 to 7).
+"""Enters the scores of one frame into the object layers of the map (paper: Mapping Module, channels 4 to 7).
 
 Of the pixels in a cell, the one with the highest target score counts: a picture shares its cell with the wall above and
-below it, whose scores say nothing about the picture.
+below it, whose scores contain no information about the picture.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from stubborn.mapping.navmap import NavMap
 
 @dataclass(frozen=True, kw_only=True)
 class ObjectLayersConfig:
-    """How long the object layers remember scores."""
+    """Defines how long the object layers remember scores."""
 
     latest_frame_only: bool = False
     """False: the layers of the paper, over all frames. True: the score of the frame that showed a cell last."""
@@ -47,7 +47,7 @@ class FrameScores:
         target: Float32[np.ndarray, "h w"],
         other: Float32[np.ndarray, "h w"],
     ) -> None:
-        """`rows` and `cols` are the cell of each pixel, negative: none; `target` and `other` are scores in [0, 1]."""
+        """`rows` and `cols` are the cell of each pixel (negative: no cell); `target` and `other` are in [0, 1]."""
         in_view, highest, other_of = np.zeros(shape, np.bool_), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
         scored = highest_scores(rows, cols, target, other, in_view, highest, other_of)
         self.in_view: Bool[np.ndarray, "rows cols"] = in_view

@@ -1,9 +1,9 @@
-"""Obstacle evidence from depth pixels: their neighbours confirm them, and later frames may contradict them.
+"""Collects obstacle evidence from depth pixels, which their neighbours confirm and later frames may contradict.
 
-A depth camera shows points that are not there: flying pixels between the two sides of an edge, floor that seems to rise
+A depth camera shows points that do not exist: flying pixels between the two sides of an edge, floor that seems to rise
 far away, walls that shift with a noisy pose. Three tests keep them off the map: a pixel must lie on a surface, that is,
 at the depth of some of its neighbours; a cell must hold more than one such point; and later frames must not see through
-it. Exact depth passes all three, so that they change little there.
+it. Exact depth passes all three tests, so that they change little.
 """
 
 from __future__ import annotations
@@ -35,17 +35,19 @@ class OccupancyConfig:
     jump_1_m: float = 0.03
     """Two pixels lie on one surface when their 1 / depth differs by less: 3 cm at 1 m, 27 cm at 3 m."""
     neighbours: int = 2
-    """Of a pixel's eight neighbours so many must lie on its surface: a thin leg is one pixel wide; 0: no test."""
+    """At least this many of a pixel's eight neighbours must lie on its surface: a thin leg is one pixel wide; 0: no
+    test."""
     exact_1_m: float = 0.0005
     """An image whose 1 / depth differs from the smoothed image by less, at the median, is exact and not smoothed."""
     hit: int = 2
     """Evidence that a frame adds to a cell with at least two points; a single noisy point adds half."""
     miss: int = 1
-    """Evidence that a frame removes where it sees through a cell at all heights of the obstacle band; 0: none."""
+    """Evidence that a frame removes where it sees through a cell at all heights of the obstacle band; 0: nothing is
+    removed."""
     obstacle_from: int = 2
-    """A cell with at least so much evidence is an obstacle."""
+    """A cell with at least this much evidence is an obstacle."""
     most: int = 10
-    """Evidence does not grow beyond this, so that an object that was moved disappears after so many frames."""
+    """Evidence does not grow beyond this, so that an object that was moved disappears after a few frames."""
     margin_m: float = 0.05
     """A frame sees through a cell when it sees farther than this past the cell's centre."""
 
@@ -69,10 +71,10 @@ class Surfaces:
 
     @classmethod
     def of(cls, depth: Float32[np.ndarray, "h w"], config: OccupancyConfig) -> Surfaces:
-        """Returns the surfaces of an image in metres, where 0 is no distance."""
+        """Returns the surfaces of an image in metres, in which 0 means no distance."""
         every = 4
         change, count = _smoothed(depth, config, every)
-        # At a silhouette the mean of one side leans inwards: exact depth is better left alone.
+        # At a silhouette the mean of one side is biased inwards: exact depth is better without smoothing.
         if shows_no_noise(depth, every, change, count, np.float32(config.exact_1_m)):
             return cls(depth, None)
         some = bool(count.any())
@@ -85,7 +87,7 @@ class Surfaces:
         return self.neighbours is None
 
     def confirmed(self, least: int) -> Bool[np.ndarray, "h w"]:
-        """Returns True where a pixel has so many neighbours on its surface; everywhere in an exact image."""
+        """Returns True where a pixel has at least `least` neighbours on its surface; everywhere in an exact image."""
         if self.neighbours is None:
             return np.ones(self.depth.shape, np.bool_)
         return self.neighbours >= least
@@ -96,7 +98,7 @@ def _smoothed(
 ) -> tuple[Float32[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
     """Returns the mean of a pixel and its neighbours on one surface with it, less the pixel, and their number.
 
-    Only every so many rows and columns are computed.
+    Only every `every`-th row and column is computed.
     """
     shape = -(-depth.shape[0] // every), -(-depth.shape[1] // every)
     change, count = np.empty(shape, np.float32), np.empty(shape, np.uint8)
@@ -107,7 +109,7 @@ def _smoothed(
 def agreeing(
     depth: Float32[np.ndarray, "h w"], config: OccupancyConfig
 ) -> tuple[Bool[np.ndarray, "h w"], Float32[np.ndarray, "h w"]]:
-    """Returns which pixels lie on one surface with most of their neighbours, and the smoothed depth.
+    """Returns a mask of the pixels that lie on one surface with most of their neighbours, and the smoothed depth.
 
     `depth` is in metres, 0 where there is no distance; such neighbours do not count.
     """
@@ -124,7 +126,7 @@ class SightLines:
     """The range of sight of one frame through the obstacle band, by image column and lowest row."""
 
     nearest_m: Float32[np.ndarray, "h w"]
-    """Depth of the nearest surface between the band's top row and this one; 0 where one is unknown."""
+    """Depth of the nearest surface between the band's top row and this one; 0 where a depth is unknown."""
     up: Float32[np.ndarray, " h"]
     """Rise per metre of depth, decreasing in even steps."""
     left: Float32[np.ndarray, " w"]
@@ -143,7 +145,8 @@ class SightLines:
     ) -> SightLines:
         """Returns the lines of sight of an image whose pixels look `up` and `left`.
 
-        The band ends `rise_m` above the camera. Where this is positive, the rows count that reach its top a metre away.
+        The band ends `rise_m` above the camera. If `rise_m` is positive, rows that are above its top one metre away
+        are left out.
         """
         first = int(np.count_nonzero(up > max(rise_m, 0.0)))
         return cls(nearest_down_columns(depth[first:]), up[first:], left, pose)
@@ -177,7 +180,7 @@ class SightLines:
 
 
 class Occupancy:
-    """Adds and removes obstacle evidence. It keeps no memory of its own; the evidence is on the map."""
+    """Adds and removes obstacle evidence. It has no memory of its own; the evidence is on the map."""
 
     def __init__(self, camera: CameraModel, config: OccupancyConfig, min_height_m: float) -> None:
         """The obstacle band starts at `min_height_m`."""
@@ -196,8 +199,8 @@ class Occupancy:
     ) -> None:
         """Enters a frame into the obstacle layers of a view, where `part` contains everything in range.
 
-        `solid` and `tall` are the numbers of points in the obstacle band and at eye level in each cell, where 2 also
-        means more; `single` is the evidence from a cell's only point, see `evidence_of_one`.
+        `solid` and `tall` are the numbers of points in the obstacle band and at eye level in each cell, where 2 means
+        two or more; `single` is the evidence from a cell's only point, see `evidence_of_one`.
         """
         c, (rows, cols) = self.config, part
         bounds = rows.start, rows.stop, cols.start, cols.stop
@@ -221,5 +224,5 @@ class Occupancy:
         return sight.passes(frame, rows, cols, self._drop_m, range_m, margin_m)
 
     def evidence_of_one(self, surfaces: Surfaces) -> int:
-        """Returns the evidence from a single point in a cell: all in an exact image, half in a noisy one."""
+        """Returns the evidence from a single point in a cell: full evidence in an exact image, half in a noisy one."""
         return self.config.hit if surfaces.exact else self.config.hit // 2

@@ -43,7 +43,7 @@ class PixelCells:
     cols: Int32[np.ndarray, "h w"]
     """Column of it."""
     span: tuple[slice, slice] | None
-    """Rows and columns of the smallest rectangle that holds all points, those too high included; None: no point."""
+    """Rows and columns of the smallest rectangle that holds all points, including those too high; None: no point."""
 
 
 class Rays:
@@ -62,7 +62,7 @@ class Rays:
         self.pick = (slice(first_px + skipped * stride_px, None, stride_px), slice(first_px, None, stride_px))
 
     def sample(self, depth: Float32[np.ndarray, "height_px width_px"]) -> Float32[np.ndarray, "h w"]:
-        """Returns those pixels of a full-size depth image in metres, as a new array."""
+        """Returns the pixels of these rays in a full-size depth image in metres, as a new array."""
         return depth[self.pick].copy()
 
     def project(
@@ -70,8 +70,8 @@ class Rays:
     ) -> GroundPoints:
         """Returns cells of `window` and heights of the confirmed points of a sampled depth image.
 
-        The window contains everything in range (see `sight_window_cells`) but at the edge of the map, where cells may
-        lie outside of it.
+        The window contains everything in range (see `sight_window_cells`), except at the edge of the map, where cells
+        may lie outside the window.
         """
         valid = np.empty(d.shape, np.bool_)
         rows, cols, height_m = np.empty(d.size, np.int32), np.empty(d.size, np.int32), np.empty(d.size, np.float32)
@@ -79,7 +79,7 @@ class Rays:
         return GroundPoints(valid, rows[:n], cols[:n], height_m[:n])
 
     def cells_below(self, d: Float32[np.ndarray, "h w"], camera_pose: Pose, window: Window, top_m: float) -> PixelCells:
-        """Returns the cells of the points that `project` gives, as far as they are not higher than `top_m`."""
+        """Returns the cells of those points of `project` that are not higher than `top_m`."""
         rows, cols = np.empty(d.shape, np.int32), np.empty(d.shape, np.int32)
         onto = self._onto_ground(camera_pose, window)
         first_row, last_row, first_col, last_col = cells_of_pixels(
@@ -98,10 +98,10 @@ class Rays:
         band_m: tuple[float, float],
         eye_level_halfwidth_m: float,
     ) -> tuple[UInt8[np.ndarray, "rows cols"], UInt8[np.ndarray, "rows cols"]]:
-        """Returns how many points that `project` gives are in each cell within a band of heights, and at eye level.
+        """Returns the number of points of `project` in each cell within a band of heights, and the number at eye level.
 
-        Two also means more. At eye level is what differs by no more than `eye_level_halfwidth_m` from the camera's
-        height.
+        Two means two or more. A point is at eye level if its height differs from the camera's by at most
+        `eye_level_halfwidth_m`.
         """
         solid, tall = np.zeros(window.frame.shape, np.uint8), np.zeros(window.frame.shape, np.uint8)
         limits_m = (np.float32(limit_m) for limit_m in (*band_m, eye_level_halfwidth_m))

@@ -1,4 +1,4 @@
-"""The paper's four measures against collisions, and what each of them means for mapping and planning."""
+"""The paper's four measures against collisions, and their effect on mapping and planning."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class CollisionAvoidance:
     collision_layers: bool = True
     """Collision marks are kept and planned around."""
     averse_exploration: bool = True
-    """Exploration plans on the pessimistic layer; without this measure on the optimistic one."""
+    """Exploration plans on the pessimistic layer; without this measure it plans on the optimistic layer."""
     visited_is_free: bool = True
     """Collision marks do not count where the body has been."""
 
@@ -32,9 +32,9 @@ class ProvenFree(NamedTuple):
     """Ground that the robot's own motion has proved free."""
 
     body: Bool[np.ndarray, "rows cols"]
-    """The body was here: no collision mark counts."""
+    """True: the body was here, so no collision mark counts."""
     centre: Bool[np.ndarray, "rows cols"]
-    """The robot's centre was here: no obstacle counts."""
+    """True: the robot's centre was here, so no obstacle counts."""
 
 
 ProvenGround = Callable[[NavMap], ProvenFree]
@@ -54,7 +54,7 @@ def no_ground(view: NavMap) -> ProvenFree:
 
 @dataclass(frozen=True, kw_only=True)
 class CollisionPolicies:
-    """The values that the parts of the agent are given for a choice of measures."""
+    """The values that the parts of the agent get for a choice of measures."""
 
     marked: tuple[CollisionLayer, ...]
     """Layers that a failed move is marked in."""

@@ -1,4 +1,4 @@
-"""Free space and routes over the map by fast marching (paper: Path Planning Module)."""
+"""Computes free space and routes over the map by fast marching (paper: Path Planning Module)."""
 
 from __future__ import annotations
 
@@ -23,28 +23,30 @@ class PlanningConfig:
     """Safety distances, traversability costs and the choice of the next step."""
 
     dilation_m: float = 0.15
-    """Obstacles grow by this much; the robot's centre stays out."""
+    """Obstacles grow by this distance; the robot's centre stays outside the grown obstacles."""
     clearance_m: float = 0.30
-    """Nearer to an obstacle than this the speed of the front falls, so that routes keep clear where there is room."""
+    """The speed of the front is lower at cells nearer to an obstacle than this, so that routes keep clear of obstacles
+    where there is space."""
     edge_speed: float = 0.35
     """Speed of the front at the edge of a dilated obstacle, rising to 1 at `clearance_m`; 1: no such cost."""
     unseen_speed: float = 0.4
     """Speed of the front over ground that was never in view, for routes on which unseen ground costs more: they may
     end at a wall, so that a detour over known ground pays."""
     unseen_gap_m: float = 0.20
-    """Ground this far from all ground that was in view counts as unseen."""
+    """Ground farther than this from all ground that was in view counts as unseen."""
     own_ground_m: float = 0.12
-    """Around the robot's centre the ground is free, whatever the map says."""
+    """The ground within this distance of the robot's centre is free, whatever the map shows."""
     ring_m: float = FORWARD_M
     """Distance of the short-term goal: 5 cells, one forward."""
     turn_cost_m: float = 0.02
-    """Cost of a turn of 30 degrees, in metres of path; keeps the choice from alternating."""
+    """Cost of a turn of 30 degrees, in metres of path; it keeps the choice from alternating."""
     preferred_clearance_m: float = 0.24
-    """A forward that comes nearer to an obstacle than this is taken only where the others are worse."""
+    """A forward that comes nearer to an obstacle than this is chosen only if the other directions are worse."""
     clearance_cost: float = 1.5
     """Cost of each metre short of `preferred_clearance_m`, in metres of path."""
     aligned_rad: float = math.radians(15.0)
-    """The robot turns when the short-term goal is farther off the heading than this, else it goes forward."""
+    """The robot turns when the angle from its heading to the short-term goal is larger than this, else it goes
+    forward."""
 
     def __post_init__(self) -> None:
         for name in ("edge_speed", "unseen_speed"):
@@ -76,12 +78,12 @@ class FreeSpace:
     reachable: Bool[np.ndarray, "rows cols"]
     """True: traversable and connected to the robot's cell (4-neighbourhood)."""
     speed: Float32[np.ndarray, "rows cols"]
-    """Speed of the front: 1 in the open, less near obstacles and, where asked for, on unseen ground."""
+    """Speed of the front: 1 in open space, less near obstacles and, if requested, on unseen ground."""
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Cells to reach; any of them will do."""
+    """Cells to reach; it is enough to reach any of them."""
 
     free: FreeSpace
     """The free space to plan on."""
@@ -95,13 +97,13 @@ class Goal:
 
 @dataclass(frozen=True)
 class Route:
-    """Distances to a goal, to be followed downhill."""
+    """Distances to a goal; a path follows their descent."""
 
     goal: Goal
     """The goal; its cells are the reachable ones only."""
     distance_m: Float32[np.ndarray, "rows cols"]
-    """From each cell to the goal, slow ground counted longer: a metre at speed 0.4 counts as 2.5 m. Infinite where
-    there is no path, and where the front did not need to go."""
+    """Distance from each cell to the goal; slow ground counts as longer: a metre at speed 0.4 counts as 2.5 m. It is
+    infinite where there is no path, and where the front did not have to go."""
     length_m: float
     """`distance_m` of the robot's cell."""
 
@@ -115,24 +117,24 @@ class Planner:
     """Plans on a window of the map."""
 
     def __init__(self, config: PlanningConfig, proven_ground: ProvenGround) -> None:
-        """`proven_ground` says where the robot's own motion overrules marks and obstacles."""
+        """`proven_ground` returns the ground on which the robot's own motion overrules marks and obstacles."""
         self.config = config
         self.proven_ground = proven_ground
 
     def obstacles(self, view: NavMap, layer: CollisionLayer) -> Bool[np.ndarray, "rows cols"]:
-        """Returns a new mask of depth obstacles, drops, and the marks of a layer that the body has not proved wrong."""
+        """Returns a new mask of depth obstacles, drops, and those marks of a layer that the body has not refuted."""
         blocked = view.collision_marks(layer) > self.proven_ground(view).body
         blocked |= view.seen_obstacle
         blocked |= view.seen_drop
         return blocked
 
     def unseen(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the ground at some distance from all that was in view: distant floor is seen with gaps."""
+        """Returns the ground at some distance from all ground that was in view: distant floor is seen with gaps."""
         seen = (view.frames_in_view > 0) | view.visited
         return farther_than(seen, self.config.unseen_gap_m, view.frame.cell_m)
 
     def unknown(self, view: NavMap) -> Bool[np.ndarray, "rows cols"]:
-        """Returns the ground never in view, up to the border of what was; gaps within that are closed."""
+        """Returns the ground that was never in view, up to the border of the seen ground, whose gaps are closed."""
         return ~farther_than(self.unseen(view), self.config.unseen_gap_m, view.frame.cell_m)
 
     def free_space(
@@ -146,7 +148,7 @@ class Planner:
         own_index, own = cells_near_segment(
             view.frame, pose.xy_m, pose.xy_m, max(self.config.own_ground_m, view.frame.cell_m)
         )
-        # An obstacle cell under the robot is a cell that the obstacle only just enters.
+        # If an obstacle cell is under the robot, the obstacle covers only the edge of that cell.
         obstacles[own_index][own] = False
         cell_m = view.frame.cell_m
         clearance_m = distance_within(obstacles, self.config.reach_cells(cell_m)) * np.float32(cell_m)
@@ -163,7 +165,7 @@ class Planner:
     def route(self, goal: Goal, pose: Pose) -> Route | None:
         """Returns the route to the nearest goal cell by travel time.
 
-        None when no goal cell is connected to the robot, or the route is longer than `goal.longest_m`.
+        Returns None when no goal cell is connected to the robot, or the route is longer than `goal.longest_m`.
         """
         free = goal.free
         goal = replace(goal, cells=goal.cells & free.reachable)
@@ -183,7 +185,7 @@ class Planner:
         return Route(goal, distance_m, length_m) if math.isfinite(length_m) else None
 
     def _speed(self, clearance_m: Float32[np.ndarray, "rows cols"]) -> Float32[np.ndarray, "rows cols"]:
-        """Returns 1 in the open and less near obstacles."""
+        """Returns the speed of the front: 1 in open space and less near obstacles."""
         c = self.config
         numbers = c.dilation_m, max(c.clearance_m - c.dilation_m, 1e-6), c.edge_speed, 1.0 - c.edge_speed
         return speeds(clearance_m, *(np.float32(number) for number in numbers))

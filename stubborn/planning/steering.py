@@ -1,4 +1,4 @@
-"""From a route to the next action (paper: Path Planning Module, the short-term goal)."""
+"""Chooses the next action on a route (paper: Path Planning Module, the short-term goal)."""
 
 from __future__ import annotations
 
@@ -27,8 +27,9 @@ def next_action(route: Route, pose: Pose, config: PlanningConfig) -> Action:
 def short_term_turn(route: Route, pose: Pose, config: PlanningConfig) -> float:
     """Returns the angle from the heading to the short-term goal, radians, positive to the left.
 
-    Short-term goals lie on a ring one forward away, in the directions that the robot can turn to. Only those count to
-    which the straight path keeps the safety distance, so that none lies behind a thin wall. The steepest descent wins.
+    Short-term goals lie on a ring one forward away, in the directions that the robot can turn to. Only short-term goals
+    to which the straight path keeps the safety distance count, so that none is behind a thin wall. The one with the
+    steepest descent is chosen.
     """
     turns_rad = np.arange(-5, 7) * TURN_RAD
     yaw_rad = pose.yaw_rad + turns_rad
@@ -50,9 +51,9 @@ def short_term_turn(route: Route, pose: Pose, config: PlanningConfig) -> float:
 
 
 def trace(route: Route, pose: Pose, max_cells: int) -> list[tuple[int, int]]:
-    """Returns the steepest descent from the robot's cell, at most so many cells on, as rows and columns.
+    """Returns the steepest descent from the robot's cell, at most `max_cells` cells long, as rows and columns.
 
-    Steps go to 8 neighbours, diagonally only past two passable cells.
+    Steps go to the 8 neighbours; a diagonal step needs two passable cells next to it.
     """
     cells = [route.frame.cell(pose.x_m, pose.y_m)]
     while len(cells) <= max_cells:
@@ -69,7 +70,7 @@ def route_end(route: Route, pose: Pose) -> tuple[int, int]:
 
 
 def to_nearest_part(route: Route, pose: Pose) -> Route:
-    """Returns the same route with only that connected part of the goal cells at which it ends."""
+    """Returns the same route with only the connected part of the goal cells at which it ends."""
     cells = route.goal.cells
     row, col = route_end(route, pose)
     return replace(route, goal=replace(route.goal, cells=connected(cells, row, col, connectivity=8)))
@@ -78,7 +79,7 @@ def to_nearest_part(route: Route, pose: Pose) -> Route:
 def descent_direction(route: Route, pose: Pose, length_m: float) -> float:
     """Returns the world angle from the robot to the end of a steepest descent of `length_m`, cell by cell.
 
-    For passages that are too narrow for a straight forward.
+    It is used in passages that are too narrow for a straight forward.
     """
     row, col = trace(route, pose, max(1, round(length_m / route.frame.cell_m)))[-1]
     x_m, y_m = route.frame.centres(row, col)
@@ -91,7 +92,7 @@ def _sweep(
 ) -> tuple[Bool[np.ndarray, " n"], Float32[np.ndarray, " n"]]:
     """Returns whether a straight move in each direction stays traversable, and its least clearance in metres.
 
-    A robot that is already nearer than the safety distance may leave, but not come nearer still.
+    A robot that is already nearer than the safety distance may move away, but must not come nearer.
     """
     along_m = np.arange(1, 11)[:, None] * (length_m / 10)
     x_m, y_m = pose.x_m + along_m * np.cos(yaw_rad), pose.y_m + along_m * np.sin(yaw_rad)  # (10, directions)
@@ -123,6 +124,6 @@ def _interpolate(
 ) -> Float64[np.ndarray, " n"]:
     """Returns bilinear values at points, over the finite ones of the four cells around each.
 
-    The value is infinite where that of the point's own cell is.
+    The value is infinite where the value of the point's own cell is infinite.
     """
     return bilinear(values, *frame.origin_xy_m, frame.cell_m, x_m, y_m)

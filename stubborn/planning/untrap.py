@@ -9,10 +9,10 @@ from sim.interface import Action, ConfigError
 
 @dataclass(frozen=True, kw_only=True)
 class UntrapConfig:
-    """When the mode begins."""
+    """Defines when the mode begins."""
 
     failed_forwards: int = 10
-    """Failed forwards in a row; turns in between do not reset the count."""
+    """The mode begins after this many failed forwards in a row; turns in between do not reset the count."""
 
     def __post_init__(self) -> None:
         if self.failed_forwards < 1:
@@ -26,7 +26,7 @@ class Untrap:
     """
 
     def __init__(self, failed_forwards: float) -> None:
-        """The mode begins after so many failed forwards in a row; infinite: never."""
+        """The mode begins after `failed_forwards` failed forwards in a row; infinite: never."""
         self.failed_forwards = failed_forwards
         self.reset()
 

@@ -1,7 +1,8 @@
-"""Draws training views by the objects that they show: first the category, then the style, then the object.
+"""Samples training views by the objects that they show: first the category, then the style, then the object.
 
-Views at random show hundreds of chairs for each stool. Here each goal category is drawn equally often, and in it each
-style, so that a network learns from many designs. It reads views in any order, from their places in the tar files.
+Random views show hundreds of chairs for each stool. Here each goal category is sampled equally often, and each style
+within it, so that a network learns from many designs. Views are read in any order, from their positions in the tar
+files.
 """
 
 from __future__ import annotations
@@ -19,11 +20,11 @@ from sim.interface import GOAL_CATEGORIES, MPCAT40, ConfigError
 from stubborn.segmentation.dataset import LabelledView, decode_view, read_members
 
 SMALLEST_PX = 40
-"""Visible pixels, of 320 x 240, from which an object is drawn."""
+"""An object with at least this many visible pixels, of 320 x 240, can be sampled."""
 
 
 class StoredView(NamedTuple):
-    """Where a view is stored: its file, and offset and size in bytes of each of its members."""
+    """The place of a stored view: its file, and offset and size in bytes of each of its members."""
 
     file: Path
     key: str
@@ -38,7 +39,7 @@ class StoredView(NamedTuple):
         parts: dict[str, bytes] = {}
         with self.file.open("rb") as stream:
             for name, offset, size in self.members:
-                if name != "coco":  # the image of instances has the same masks
+                if name != "coco":  # the instance image holds the same masks
                     stream.seek(offset)
                     parts[name] = stream.read(size)
         return decode_view(self.file, self.key, parts)
@@ -50,11 +51,11 @@ class ShownObject(NamedTuple):
     view: int
     """Index of the view."""
     number: int
-    """Its number in the image of instances."""
+    """Its number in the instance image."""
 
 
 class _Annotation(msgspec.Struct):
-    """The part of an annotation that says what an object is and how large."""
+    """The part of an annotation that holds the category and the size of an object."""
 
     id: int
     category_id: int
@@ -68,7 +69,7 @@ class ViewIndex:
 
     views: tuple[StoredView, ...]
     objects: dict[str, dict[str, list[ShownObject]]]
-    """By category, then by style; "" where the style is not known."""
+    """Objects by category, then by style; "" where the style is not known."""
 
     @classmethod
     def of(cls, shards: Sequence[Path]) -> ViewIndex:
@@ -96,18 +97,18 @@ class ViewIndex:
         return {name: (sum(map(len, styles.values())), len(styles)) for name, styles in sorted(self.objects.items())}
 
     def draw(self, rng: np.random.Generator) -> ShownObject:
-        """Returns an object: category, style and object are drawn one after the other, each equally often."""
+        """Returns a random object: first the category, then the style, then the object is sampled uniformly."""
         styles = self.objects[_one_of(list(self.objects), rng)]
         return _one_of(styles[_one_of(list(styles), rng)], rng)
 
 
 class BalancedViews(IterableDataset):
-    """A data set of views without end: some are drawn by an object that they show, the others at random.
+    """An endless data set of views: some are sampled by an object that they show, the others at random.
 
     Args:
         index: the views.
         transform: converts a view to a sample; it gets the object that was chosen, so that a window shows it.
-        object_share: share of the views that are drawn by an object.
+        object_share: share of the views that are sampled by an object.
         seed: seeds the order and the transform, together with `epoch`.
     """
 
@@ -121,7 +122,7 @@ class BalancedViews(IterableDataset):
         self.epoch = 0
 
     def __iter__(self) -> Iterator[Any]:
-        """Yields the samples of this worker; views without a transform."""
+        """Yields the samples of this worker, or views if there is no transform."""
         info = get_worker_info()
         rng = np.random.default_rng([self.seed, self.epoch, 0 if info is None else info.id])
         while True:
@@ -138,7 +139,7 @@ def _annotations(
     decoder: msgspec.json.Decoder[list[_Annotation]], shard: Path, key: str, members: dict[str, tuple[int, int]],
     stream: Any,
 ) -> list[_Annotation]:  # fmt: skip
-    """Returns the objects of a view; raises ConfigError where the shard has none or they are broken."""
+    """Returns the objects of a view; raises ConfigError if the shard has no objects or they are broken."""
     if "coco" not in members:
         raise ConfigError(f"Shard '{shard}': view '{key}' has no objects; make it with --extras instances.")
     offset, size = members["coco"]

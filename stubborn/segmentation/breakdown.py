@@ -1,7 +1,7 @@
-"""Where a network is right and wrong: pixels by distance, and objects by their size in the image.
+"""Measures where a network is right and wrong: pixels by distance, and objects by their size in the image.
 
 An object is a connected region of one goal category in the true labels; two chairs that overlap in the image count as
-one. It is found if at least half of its pixels get its category.
+one. An object is found if at least half of its pixels get its category.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DISTANCES_M = (1.0, 2.0, 3.0, 4.0, 5.0)
 EDGES_PX = (0, 16, 32, 64, 128, 640)
 """Edges of the bins of size: the square root of an object's area, in pixels of the 640 x 480 image."""
 FEWEST_PIXELS = 4
-"""Objects of fewer pixels at the network's resolution are not counted."""
+"""Objects with fewer pixels at the network's resolution are not counted."""
 FOUND_SHARE = 0.5
 
 
@@ -60,7 +60,7 @@ class Breakdown:
         Args:
             predicted: class channels (mpcat40 id - 1).
             semantic: true mpcat40 ids; 0 is void.
-            depth_m: metres, 0 without a return.
+            depth_m: metres; 0: no return.
             block_px: edge of the square of pixels of the 640 x 480 image that one pixel stands for.
         """
         truth = semantic.astype(np.int64) - 1
@@ -71,12 +71,12 @@ class Breakdown:
         self.objects += _objects(predicted, semantic, block_px)
 
     def iou_by_distance(self) -> list[tuple[float, float, Iou]]:
-        """Returns the ends of each bin of depth in metres and the intersection over union of its pixels."""
+        """Returns the limits of each bin of depth in metres and the intersection over union of its pixels."""
         ends = itertools.pairwise(DISTANCES_M)
         return [(low, high, Iou.of(counts)) for (low, high), counts in zip(ends, self.by_distance, strict=True)]
 
     def found_by_size(self) -> list[tuple[int, int, int, float]]:
-        """Returns the ends of each bin of size in pixels, the number of objects in it and the share that is found.
+        """Returns the limits of each bin of size in pixels, the number of objects in it and the share that is found.
 
         Bins without an object are left out.
         """

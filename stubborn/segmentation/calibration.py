@@ -1,7 +1,7 @@
 """Calibration of a network's logits, so that a score of 0.8 means that the category is right in 80 % of such pixels.
 
 Vector scaling (Guo et al. 2017, arXiv:1706.04599) multiplies each category's logit by a factor and adds an offset. It
-is fitted to views of houses that the network was not trained on, and is held near one temperature, because rare
+is fitted to views of houses that the network was not trained on. A penalty keeps it near one temperature, because rare
 categories have few pixels.
 """
 
@@ -42,10 +42,10 @@ class Calibration:
 
     @classmethod
     def from_metadata(cls, metadata: Mapping[str, Any]) -> Calibration:
-        """Returns the calibration that is stored with weights; temperature 1 where there is none.
+        """Returns the calibration that is stored with weights; temperature 1 if no calibration is stored.
 
         Raises:
-            ConfigError: the stored numbers are not one for each category.
+            ConfigError: there is not exactly one stored number for each category.
         """
         stored = metadata.get("calibration")
         if stored is None:
@@ -70,11 +70,11 @@ class Calibration:
 def fit_calibration(
     logits: Float32[Tensor, "k classes"], truth: Int64[Tensor, " k"], *, hold: float = HOLD
 ) -> Calibration:
-    """Returns the calibration that maximises the likelihood of the true classes, held near one temperature.
+    """Returns the calibration of highest likelihood, with a penalty that keeps it near one temperature.
 
     Args:
-        logits: of the pixels that count.
-        truth: their class channels.
+        logits: logits of the pixels that count.
+        truth: class channels of these pixels.
         hold: weight of the squared distance from one temperature without offsets; infinity gives the temperature alone.
     """
     temperature = fit_temperature(logits, truth)
@@ -95,8 +95,8 @@ def fit_temperature(logits: Float32[Tensor, "k classes"], truth: Int64[Tensor, "
     """Returns the temperature that maximises the likelihood of the softmax of the logits (Guo et al. 2017).
 
     Args:
-        logits: of the pixels that count.
-        truth: their class channels.
+        logits: logits of the pixels that count.
+        truth: class channels of these pixels.
     """
     log_t = torch.zeros((), requires_grad=True)
     _minimise([log_t], lambda: nn.functional.cross_entropy(logits / log_t.exp(), truth))

@@ -31,7 +31,7 @@ _BROKEN_PICKLE = (
     pickle.UnpicklingError, RuntimeError, OSError, EOFError, LookupError, ValueError, TypeError, AttributeError,
     AssertionError, ArithmeticError, MemoryError, struct.error,
 )  # fmt: skip
-"""What `torch.load` raises for files that are no checkpoints."""
+"""The exceptions that `torch.load` raises for files that are not checkpoints."""
 MAX_CHECKPOINT_BYTES = 2 << 30
 MAX_SIZE = 4096
 """Largest number of channels, blocks or classes that a header may give."""
@@ -57,7 +57,7 @@ def save_network(file: Path, model: Network, metadata: Mapping[str, Any] | None 
         file: the file to write.
         model: the network.
         metadata: values that JSON can hold, for the file's header.
-        half: store numbers with 16 bits.
+        half: True stores numbers with 16 bits.
     """
     key = _CONFIG_KEY.format(family=family(model))
     write_weights(file, model, {key: asdict(model.config)} | dict(metadata or {}), half=half)
@@ -121,15 +121,15 @@ def read_checkpoint(file: Path, *, device: torch.device | str = "cpu") -> Mappin
 def _is_zip(file: Path) -> bool:
     try:
         return zipfile.is_zipfile(file)
-    except zipfile.BadZipFile:  # it is one, in several parts
+    except zipfile.BadZipFile:  # it is a zip file, in several parts
         return True
 
 
 def _config(file: Path, metadata: dict[str, Any]) -> Architecture:
-    """Takes the configuration of the network out of the metadata and returns it; the published one where there is none.
+    """Takes the configuration of the network out of the metadata and returns it; by default the published one.
 
     Raises:
-        ConfigError: the stored configuration is of no network of ours.
+        ConfigError: the stored configuration does not belong to a network of this project.
     """
     for name, (config_class, _) in FAMILIES.items():
         stored = metadata.pop(_CONFIG_KEY.format(family=name), None)

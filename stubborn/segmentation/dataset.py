@@ -1,7 +1,7 @@
 """Reads labelled views from WebDataset shards, as arrays and as a PyTorch data set.
 
 A shard is a tar file in which the members of one view share a key: `key.rgb.jpg` (or `.png`), `key.depth.png` (uint16
-millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, where they were asked for, `key.instances.png`,
+millimetres), `key.semantic.png` (uint8 mpcat40 id), `key.json` and, if requested, `key.instances.png`,
 `key.coco.json` and `key.normals.png` (docs/datasets.md). The `webdataset` package reads them as well, with
 `decode_member`; this reader needs only the standard library and OpenCV, and its errors name the broken file and view.
 """
@@ -68,27 +68,27 @@ class LabelledView:
     record: dict[str, Any] = field(default_factory=dict)
     """Content of `key.json`."""
     instances: UInt16[np.ndarray, "h w"] | None = None
-    """Number of the instance of each pixel, from 1; 0: none. None: the shard has no such member."""
+    """Number of the instance of each pixel, from 1; 0: no instance. None: the shard has no such member."""
     annotations: list[dict[str, Any]] | None = None
     """The objects in the format of COCO: boxes and masks; None: the shard has no such member."""
     normals: Float32[np.ndarray, "h w 3"] | None = None
-    """Unit surface normals in the camera's frame (x right, y down, z forward); 0 where there is none. None: the shard
-    has no such member."""
+    """Unit surface normals in the camera's frame (x right, y down, z forward); 0 where there is no normal. None: the
+    shard has no such member."""
 
 
 def decode_member(name: str, content: bytes) -> Any:
     """Returns a member of a view as it was stored, for `webdataset.WebDataset(...).decode(decode_member)`.
 
-    The decoders of `webdataset` (`"rgb8"`, `"pil"`) take every PNG file for a colour image and reduce depth in
-    millimetres to 8 bits. This one keeps it.
+    The decoders of `webdataset` (`"rgb8"`, `"pil"`) treat every PNG file as a colour image and reduce depth in
+    millimetres to 8 bits. This decoder keeps 16 bits.
 
     Args:
-        name: name of the member, of which the ending counts: `rgb.jpg`, `depth.png`, ...
+        name: name of the member; its ending selects the decoder: `rgb.jpg`, `depth.png`, ...
         content: the file.
 
     Returns:
         `rgb` and `normals` as uint8 (h, w, 3), `depth` and `instances` as uint16 (h, w), `semantic` as uint8 (h, w),
-        JSON as what it holds; None for another ending, which leaves it to the next decoder.
+        and the content of JSON; None for another ending, so that the next decoder handles it.
 
     Raises:
         ConfigError: an image or a JSON text cannot be read.
@@ -107,7 +107,7 @@ def list_shards(folder: Path) -> list[Path]:
     """Returns the shards of a folder, sorted by name.
 
     Raises:
-        ConfigError: the folder holds none.
+        ConfigError: the folder holds no shard.
     """
     shards = sorted(folder.glob("*.tar"))
     if not shards:
@@ -126,13 +126,14 @@ def read_shard(file: Path) -> Iterator[LabelledView]:
 
 
 def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tuple[str, dict[str, bytes]]]:
-    """Yields key and members of the views of a shard in their order; {} where its number is not among the wanted ones.
+    """Yields key and members of the views of a shard in their order; {} for views that are not in `wanted`.
 
     Raises:
         ConfigError: the file is not a tar file or truncated.
     """
     parts: dict[str, bytes] = {}
     key, number = "", -1
+    once = _Once(file)
     try:
         with (
             open_plain(file, what="Shard") as stream,
@@ -141,6 +142,7 @@ def _members(file: Path, wanted: Collection[int] | None = None) -> Iterator[tupl
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
+                once.require(name, suffix.split(".")[0])
                 if name != key or number < 0:
                     if number >= 0:
                         yield key, parts
@@ -163,11 +165,13 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
         ConfigError: the file is not a tar file or truncated.
     """
     key, places = "", {}
+    once = _Once(file)
     try:
         with tarfile.open(file, mode="r:") as archive:
             for member in archive:
                 _require_small_file(file, member)
                 name, _, suffix = member.name.partition(".")
+                once.require(name, suffix.split(".")[0])
                 if name != key and places:
                     yield key, places
                     places = {}
@@ -181,10 +185,30 @@ def read_members(file: Path) -> Iterator[tuple[str, dict[str, tuple[int, int]]]]
         raise ConfigError(f"Shard '{file}' is broken: {error}. `stubborn views` makes it again.") from None
 
 
+class _Once:
+    """Refuses a shard that holds a view twice, or one part of a view twice, such as `rgb.jpg` and `rgb.png`."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+        self._keys: set[str] = set()
+        self._key, self._parts = "", set[str]()
+
+    def require(self, key: str, part: str) -> None:
+        """Raises ConfigError where a member, which follows the earlier ones, is a second one of its kind."""
+        if key != self._key or not self._keys:
+            if key in self._keys:
+                raise ConfigError(f"Shard '{self._file}' holds the view '{key}' twice; a view is stored once.")
+            self._keys.add(key)
+            self._key, self._parts = key, set()
+        if part in self._parts:
+            raise ConfigError(f"Shard '{self._file}': view '{key}' has '{part}' twice; a view has one of each kind.")
+        self._parts.add(part)
+
+
 def _require_small_file(file: Path, member: tarfile.TarInfo) -> None:
-    """Raises ConfigError where a member of a shard is a link, a device, a sparse file or too large."""
+    """Raises ConfigError if a member of a shard is a link, a device, a sparse file or too large."""
     if not member.isreg() or member.issparse():
-        raise ConfigError(f"Shard '{file}': '{member.name}' is no plain file; a shard holds plain files only.")
+        raise ConfigError(f"Shard '{file}': '{member.name}' is not a plain file; a shard holds plain files only.")
     if member.size > MAX_BYTES:
         raise ConfigError(f"Shard '{file}': '{member.name}' has {member.size >> 20} MB, at most {MAX_BYTES >> 20}.")
 
@@ -198,8 +222,8 @@ class ViewDataset(IterableDataset):
         shards: files.
         transform: converts a view to a sample; each worker has a random generator of its own. None: the samples are
             the views, `LabelledView`, for which a `DataLoader` needs `collate_fn=list` or `batch_size=None`.
-        buffer: number of views among which the next one is drawn.
-        repeats: returns how often a view is used in an epoch on average, at least once; None: once.
+        buffer: number of views from which the next one is sampled.
+        repeats: a function that returns the mean number of uses of a view in an epoch, at least 1; None: once.
         seed: seeds the order and the transform, together with the epoch.
         shuffle: False reads in order, for evaluation.
     """
@@ -239,14 +263,14 @@ class ViewDataset(IterableDataset):
 def _repeated(
     views: Iterator[LabelledView], repeats: Callable[[LabelledView], float], rng: np.random.Generator
 ) -> Iterator[LabelledView]:
-    """Yields each view as often as `repeats` says; fractions are rounded at random."""
+    """Yields each view as often as `repeats` returns; fractions are rounded at random."""
     for view in views:
         for _ in range(int(repeats(view) + rng.random())):
             yield view
 
 
 def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: int) -> Iterator[LabelledView]:
-    """Yields the same views, each drawn from the next `buffer` ones."""
+    """Yields the same views in random order; each is sampled from the next `buffer` ones."""
     held: list[LabelledView] = []
     for view in views:
         if len(held) < buffer:
@@ -262,7 +286,7 @@ def _shuffled(views: Iterator[LabelledView], rng: np.random.Generator, buffer: i
 def pixel_counts(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     """Returns the number of pixels of each mpcat40 category.
 
-    It is read from the JSON note next to each shard, or counted where there is no note.
+    The number is read from the JSON note next to each shard, or counted if there is no note.
     """
     counts = np.zeros(len(MPCAT40))
     for shard in shards:
@@ -286,7 +310,7 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
     for shard in shards:
         note = shard.with_suffix(".json")
         if not note.is_file():
-            raise ConfigError(f"Shard '{shard}' has no note '{note.name}' beside it; `stubborn views` writes it.")
+            raise ConfigError(f"Shard '{shard}' has no note '{note.name}' next to it; `stubborn views` writes it.")
         content = read_json(note, _ViewNote, what="Note of a shard")
         counts += [content.views_with.get(name, 0) for name in MPCAT40]
         total += content.views
@@ -295,11 +319,11 @@ def views_with(shards: Sequence[Path]) -> Float64[np.ndarray, " 41"]:
 
 @dataclass(frozen=True)
 class RareObjectRepeats:
-    """A function from a view to how often it is used: views that show rare goal categories are used more often.
+    """A function that returns how often a view is used: views that show rare goal categories are used more often.
 
-    A category that a share f of the views show gives max(1, sqrt(wanted / f)), and a view takes the largest value of
-    the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). It counts objects
-    and not pixels, so that a large object is not preferred to a small one.
+    A category that is in a share f of the views has the value max(1, sqrt(wanted / f)), and a view gets the largest
+    value of the goal categories that it shows (repeat factor sampling, Gupta et al. 2019, arXiv:1908.03195). It counts
+    views and not pixels, so that a large object is not preferred to a small one.
     """
 
     share: Float64[np.ndarray, " 41"]
@@ -309,7 +333,7 @@ class RareObjectRepeats:
     most: float = 4.0
     """Largest number of repetitions."""
     pixels: int = 30
-    """A view shows a category of which it has at least this many pixels."""
+    """A view shows a category if it has at least this many pixels of it."""
 
     def __call__(self, view: LabelledView) -> float:
         """Returns the mean number of uses of a view in an epoch."""
@@ -321,7 +345,7 @@ class RareObjectRepeats:
 
 
 def stored_block_px(shards: Sequence[Path]) -> int:
-    """Returns the factor by which the views were shrunk before they were stored; 1 without a note next to the shards.
+    """Returns the factor by which the views were shrunk before they were stored; 1 if the shards have no note.
 
     Raises:
         ConfigError: the shards have different factors.
@@ -337,9 +361,10 @@ def stored_block_px(shards: Sequence[Path]) -> int:
 
 
 def spread_views(shards: Sequence[Path], count: int) -> list[LabelledView]:
-    """Returns `count` views, the same number of each shard, evenly over the shard; all views when `count` is 0.
+    """Returns `count` views, the same number from each shard, evenly spread over it; all views when `count` is 0.
 
-    With fewer views than shards each is of another shard, evenly over the shards. Other views are not decoded.
+    With fewer views than shards each view is from another shard, evenly spread over the shards. Other views are not
+    decoded.
     """
     if 0 < count < len(shards):
         shards = [shards[i] for i in np.linspace(0, len(shards) - 1, count).round().astype(int).tolist()]
@@ -360,8 +385,8 @@ def class_weights(pixels: Float64[np.ndarray, " 41"], *, smallest: float = 1.10)
 
     Args:
         pixels: pixels of each mpcat40 category, with void.
-        smallest: bounds the largest weight: with ENet's 1.02 the rarest category weighs 30 times as much as walls, with
-            1.10 five times.
+        smallest: limits the largest weight: with ENet's 1.02 the rarest category weighs 30 times as much as walls, with
+            1.10 it weighs five times as much.
     """
     counts = np.asarray(pixels, np.float64)[1:]
     share = counts / max(counts.sum(), 1.0)
@@ -384,7 +409,7 @@ def decode_view(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
     semantic = _image(file, key, "semantic", parts, cv2.IMREAD_UNCHANGED)
     if (depth.dtype, semantic.dtype) != (np.uint16, np.uint8):
         raise ConfigError(
-            f"Shard '{file}': view '{key}' has depth of {depth.dtype} and labels of {semantic.dtype}; wanted are "
+            f"Shard '{file}': view '{key}' has depth of {depth.dtype} and labels of {semantic.dtype}; it needs "
             "uint16 and uint8."
         )
     if not rgb.shape[:2] == depth.shape == semantic.shape:
@@ -398,12 +423,12 @@ def decode_view(file: Path, key: str, parts: dict[str, bytes]) -> LabelledView:
 
 
 def _with_extras(file: Path, view: LabelledView, parts: dict[str, bytes]) -> LabelledView:
-    """Returns the view with those of the optional members that there are; raises ConfigError where one is broken."""
+    """Returns the view with the optional members that exist; raises ConfigError if one is broken."""
     where = f"Shard '{file}': view '{view.key}'"
     if "instances" in parts:
         instances = _image(file, view.key, "instances", parts, cv2.IMREAD_UNCHANGED)
         if instances.dtype != np.uint16 or instances.shape != view.semantic.shape:
-            raise ConfigError(f"{where} has instances of {instances.dtype} {instances.shape}; wanted is uint16 (h, w).")
+            raise ConfigError(f"{where} has instances of {instances.dtype} {instances.shape}; it needs uint16 (h, w).")
         view = replace(view, instances=instances)
     if "coco" in parts:
         view = replace(view, annotations=parse_json(parts["coco"], list[dict[str, Any]], where=f"{where}: its objects"))
@@ -421,7 +446,7 @@ def _image(file: Path, key: str, part: str, parts: dict[str, bytes], flag: int) 
 
 
 def _read_image(content: bytes, flag: int, where: str) -> Shaped[np.ndarray, "h w *channels"]:
-    """Returns an image; raises ConfigError where it is too large or cannot be read."""
+    """Returns an image; raises ConfigError if it is too large or cannot be read."""
     require_small_image(content, where=where)
     image = cv2.imdecode(np.frombuffer(content, np.uint8), flag)
     if image is None:
@@ -430,7 +455,7 @@ def _read_image(content: bytes, flag: int, where: str) -> Shaped[np.ndarray, "h 
 
 
 def tile(pictures: Sequence[UInt8[np.ndarray, "h w 3"]], columns: int) -> UInt8[np.ndarray, "rows cols 3"]:
-    """Returns one picture with pictures of the same size side by side, row by row."""
+    """Returns one picture that shows pictures of the same size in a grid, row by row."""
     height, width = pictures[0].shape[:2]
     sheet = np.full((math.ceil(len(pictures) / columns) * height, columns * width, 3), 255, np.uint8)
     for i, picture in enumerate(pictures):

@@ -1,4 +1,4 @@
-"""Evaluation of a network: intersection over union, and how often its scores are right."""
+"""Evaluates a network: intersection over union, and the reliability of its scores."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Iou:
 
 @dataclass
 class Reliability:
-    """How often a class with a score p is correct, in bins of p, over the goal categories' scores of every pixel."""
+    """The share of correct classes at a score p, in bins of p, over the goal categories' scores of every pixel."""
 
     count: Int64[np.ndarray, " bins"]
     """Number of scores."""
@@ -74,7 +74,7 @@ class Reliability:
 
     @classmethod
     def empty(cls) -> Reliability:
-        """Returns a count of nothing."""
+        """Returns counts of zero."""
         n = RELIABILITY_BINS
         return cls(np.zeros(n, np.int64), np.zeros(n), np.zeros(n))
 
@@ -108,12 +108,12 @@ class Evaluation(NamedTuple):
     """Results of a network on some views."""
 
     iou: Iou
-    """Of the network's own logits."""
+    """Intersection over union of the network's own logits."""
     reliability: Reliability
-    """Of the network's own scores."""
+    """Reliability of the network's own scores."""
     calibrated: Iou
-    """Of logits calibrated as the agent uses them: each half of the views by a calibration fitted to the other half.
-    It uses every second pixel in each direction."""
+    """Intersection over union of logits calibrated as the agent uses them: each half of the views by a calibration that
+    was fitted to the other half. It uses every second pixel in each direction."""
 
 
 def evaluate(
@@ -126,8 +126,8 @@ def evaluate(
 
     Args:
         model: the network.
-        batches: samples without augmentation; see `stubborn.segmentation.samples.Sample`. Views of one house follow one
-            another, so that the two halves of the views show different houses.
+        batches: samples without augmentation; see `stubborn.segmentation.samples.Sample`. Views of one house must
+            follow one another, so that the two halves of the views show different houses.
         device: device of the model.
     """
     matrix = np.zeros((CLASSES, CLASSES), np.int64)
@@ -150,7 +150,7 @@ def evaluate(
 
 
 def calibrated_iou(views: Sequence[tuple[Tensor, Tensor]]) -> Iou:
-    """Returns the intersection over union of calibrated logits: each half by a calibration fitted to the other half.
+    """Returns the intersection over union of logits, each half of them calibrated by a fit to the other half.
 
     Args:
         views: logits (classes, h, w) and true channels (h, w) of each view, at least two.

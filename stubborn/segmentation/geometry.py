@@ -1,8 +1,8 @@
 """Computes geometric input channels of a network from a depth image and the known camera.
 
-Height above the floor, surface normals and inverse depth say what a pixel belongs to whatever its colour (Gupta et al.
-2014, arXiv:1407.5736, encode depth by disparity, height and angle for this reason). They are computed from the whole
-image, before any crop, so that a window of it still knows its height and its metric size.
+Height above the floor, surface normals and inverse depth show what a pixel belongs to, independent of its colour (Gupta
+et al. 2014, arXiv:1407.5736, encode depth by disparity, height and angle for this reason). They are computed from the
+whole image, before any crop, so that heights and metric sizes are right in a window of it.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ of the unit normal, which points to the camera, in the camera's level frame."""
 INVERSE_DEPTH, VALID, HEIGHT, RIGHT, UP, FORWARD = range(len(CHANNELS))
 _MEAN = tuple(map(np.float32, (0.5, 0.8, 0.9, 0.0, 0.1, -0.5)))
 _STD = tuple(map(np.float32, (0.5, 0.4, 0.7, 0.5, 0.4, 0.4)))
-"""Round values near the statistics of generated houses; the network's first normalisation does the rest."""
+"""Rounded values near the statistics of generated houses; the network's first normalisation corrects the rest."""
 BASELINE_DEG = 0.5
-"""Angle between the pixels whose positions give a normal: narrower is noisier, wider rounds off more edges."""
+"""Angle between the pixels whose positions give a normal: a smaller angle gives more noise, a larger one rounds more
+edges."""
 
 
 def geometry_image(depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> Float32[np.ndarray, "h w 6"]:
@@ -33,12 +34,12 @@ def geometry_image(depth_m: Float32[np.ndarray, "h w"], camera: CameraModel) -> 
     Normals are zero where the depth is not valid, or has no valid neighbour.
 
     Args:
-        depth_m: whole image of the camera, at its resolution or shrunk; 0: no return; the camera's largest depth: that
-            far or farther.
+        depth_m: whole image of the camera, at its resolution or shrunk; 0: no return; the camera's largest depth: this
+            depth or more.
         camera: field of view, height above the floor and range of depth.
 
     Raises:
-        ConfigError: the camera's range is not finite, or the image has other proportions than the camera's.
+        ConfigError: the camera's range is not finite, or the proportions of the image differ from the camera's.
     """
     height, width = depth_m.shape
     if not math.isfinite(camera.max_depth_m):
@@ -73,7 +74,7 @@ def mirrored(channels: Float32[np.ndarray, "h w 6"]) -> Float32[np.ndarray, "h w
 def zoomed(
     channels: Float32[np.ndarray, "h w 6"], width_px: int, height_px: int, enlargement: float
 ) -> Float32[np.ndarray, "rows cols 6"]:
-    """Returns a window of the channels at another resolution, as seen from a place at which its objects are as large.
+    """Returns a window of the channels at another resolution, as seen from the place where its objects have that size.
 
     A window that is enlarged by a factor shows its objects as from a place that is nearer by this factor, so inverse
     depth is multiplied by it: the size in pixels times the depth stays the same. Heights and normals do not depend on

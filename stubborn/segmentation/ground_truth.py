@@ -21,7 +21,7 @@ class GroundTruthSegmenter:
         """Returns scores at the resolution of the image; void pixels score 0 for every category.
 
         Raises:
-            ConfigError: there is no such category.
+            ConfigError: the goal is not a category of mpcat40.
         """
         if goal not in MPCAT40_ID:
             raise ConfigError(f"No category {goal!r} in mpcat40. There is: {', '.join(MPCAT40_ID)}.")
@@ -32,7 +32,7 @@ class GroundTruthSegmenter:
         return observation["semantic"]
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
-        """Returns 1 for the category in the middle of each 4 x 4 pixels, else 0, (40, h / 4, w / 4); void has 0."""
+        """Returns 1 for the category in the middle of each 4 x 4 block, else (and for void) 0, (40, h / 4, w / 4)."""
         every = STRIDE_PX
         semantic = observation["semantic"][every // 2 :: every, every // 2 :: every]
         by_id = np.zeros((len(MPCAT40), semantic.size), np.float32)

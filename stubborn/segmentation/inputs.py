@@ -1,7 +1,7 @@
 """The second input of a network, in addition to colour: the depth of the published RedNet, geometry, or both.
 
-All are computed from the whole image before any crop. A network names the kind that it takes; training and the agent
-use the same functions.
+All kinds are computed from the whole image before any crop. A network states the kind that it takes; training and the
+agent use the same functions.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class SecondInput(Protocol):
         """Returns the channels of a whole depth image, not yet normalised.
 
         Raises:
-            ConfigError: the camera's range is not finite, or the image is not the whole image of this camera.
+            ConfigError: the camera's range is not finite, or the image is not a whole image of this camera.
         """
         ...
 
@@ -42,10 +42,10 @@ class SecondInput(Protocol):
     def zoomed(
         self, channels: Float32[np.ndarray, "h w c"], width_px: int, height_px: int, enlargement: float
     ) -> Float32[np.ndarray, "rows cols c"]:
-        """Returns a window at another resolution, with distances for which its objects keep their metric size.
+        """Returns a window at another resolution, with distances that keep the metric size of its objects.
 
-        `enlargement` is the size of objects in the result relative to their size in the images that the network is
-        made for.
+        `enlargement` is the size of objects in the result relative to their size in the images for which the network is
+        made.
         """
         ...
 
@@ -110,7 +110,7 @@ class GeometryInput:
 
 
 class DepthGeometryInput:
-    """Depth, then the geometric channels: a network that took depth can be trained further with them."""
+    """Depth, then the geometric channels: a network that takes depth can be trained further with these channels."""
 
     channels = DepthInput.channels + GeometryInput.channels
 

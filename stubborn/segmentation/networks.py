@@ -1,4 +1,4 @@
-"""The networks that can be trained, by name, and how one is built from its configuration."""
+"""Names the networks that can be trained, and builds a network from its configuration."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NETWORKS: Mapping[str, Architecture] = MappingProxyType(
         "lite0": UNetConfig(encoder="lite0", widths=(8, 16, 24, 48, 96), decoder=(16, 32, 48, 80)),
     }
 )
-"""Networks by the name that `--size` of `stubborn train segmentation` takes."""
+"""Configurations by the name that `--size` of `stubborn train segmentation` takes."""
 
 
 def build_network(config: Architecture) -> Network:
@@ -40,7 +40,7 @@ def build_network(config: Architecture) -> Network:
 def with_geometry(network: RedNet) -> RedNet:
     """Returns a network that takes the geometric channels in addition to depth, with the same weights and output.
 
-    The weights of the new channels are zero: training starts from what the network knows.
+    The weights of the new channels are zero: training starts from the behaviour of the old network.
 
     Raises:
         ConfigError: the network's second input is not depth.
@@ -63,7 +63,7 @@ def load_imagenet(network: Network) -> None:
     """Loads ImageNet weights into the colour encoder of a network that has such an encoder.
 
     Raises:
-        ConfigError: the network has none, or the package of the weights is not installed.
+        ConfigError: the network has no such encoder, or the package of the weights is not installed.
     """
     if not isinstance(network, UNet) or not isinstance(network.encoder, MobileEncoder):
         raise ConfigError("Only the network 'lite0' has an encoder for which there are ImageNet weights.")

@@ -41,11 +41,13 @@ class Padding(NamedTuple):
 def require_whole_strides(height_px: int, width_px: int) -> None:
     """Raises ConfigError where height or width is not a multiple of `STRIDE_PX`."""
     if height_px % STRIDE_PX or width_px % STRIDE_PX:
-        raise ConfigError(f"A network takes multiples of {STRIDE_PX} pixels each way, got {height_px} x {width_px}.")
+        raise ConfigError(
+            f"A network takes multiples of {STRIDE_PX} pixels in height and width, got {height_px} x {width_px}."
+        )
 
 
 def padding(height_px: int, width_px: int) -> Padding:
-    """Returns the padding that an image of this size needs: even numbers at the top and the left, about half of it."""
+    """Returns the padding that an image of this size needs; an even number, about half, is at the top and left."""
     rows, cols = -height_px % STRIDE_PX, -width_px % STRIDE_PX
     top, left = rows // 4 * 2, cols // 4 * 2
     return Padding(top, rows - top, left, cols - left)
@@ -63,7 +65,7 @@ def shrink(image: Shaped[np.ndarray, "h w *channels"], block_px: int) -> Shaped[
     """
     height, width = image.shape[:2]
     if height % block_px or width % block_px:
-        raise ConfigError(f"An image of {height} x {width} pixels is no whole number of {block_px} pixel blocks.")
+        raise ConfigError(f"An image of {height} x {width} pixels is not a whole number of {block_px} pixel blocks.")
     if block_px == 1:
         return image
     if image.ndim == 3:

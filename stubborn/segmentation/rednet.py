@@ -32,13 +32,13 @@ class RedNetConfig:
     """The size of a RedNet; the default is the published network (81,972,552 parameters)."""
 
     width: int = 64
-    """Channels after the stem."""
+    """Number of channels after the stem."""
     encoder_blocks: tuple[int, int, int, int] = (3, 4, 6, 3)
     """Residual blocks of each encoder stage."""
     bottleneck: bool = True
     """True: blocks of 1x1, 3x3, 1x1 convolutions, 4 x the channels (ResNet-50); False: two 3x3 (ResNet-18)."""
     decoder_blocks: tuple[int, int, int, int] = (6, 4, 3, 3)
-    """Residual blocks of each decoder stage, with the upsampling block."""
+    """Residual blocks of each decoder stage, including the upsampling block."""
     final_blocks: int = 3
     """Residual blocks at half the input's resolution, before the last upsampling."""
     classes: int = CLASSES
@@ -184,8 +184,8 @@ class RedNet(nn.Module):
     ) -> tuple[Float[Tensor, "n classes _ _"], ...]:
         """Returns the logits at full size and, with `sides`, at 1/2, 1/4, 1/8 and 1/16 of it.
 
-        With `subpixel`, row and column in {0, 1}, the first logits are only those of this pixel of every 2 x 2 block:
-        `full[..., row::2, column::2]`. They cost a quarter in training.
+        With `subpixel`, row and column in {0, 1}, the first logits are those of this pixel of every 2 x 2 block only:
+        `full[..., row::2, column::2]`. They cost a quarter of the time in training.
 
         Raises:
             ConfigError: height or width is not a multiple of 32.
@@ -209,12 +209,12 @@ class RedNet(nn.Module):
         if subpixel is None:
             return head(x)
         row, column = (
-            subpixel  # the kernel is as large as its stride: each of its elements makes one of the four pixels
+            subpixel  # the kernel is as large as its stride: each of its elements gives one of the four pixels
         )
         return functional.conv2d(x, head.weight[:, :, row, column].t()[..., None, None], head.bias)
 
     def _encode(self, rgb: Tensor, depth: Tensor) -> list[Tensor]:
-        """Returns the skips from the finest (half the input) to the coarsest (a 32nd), with the decoder's channels."""
+        """Returns the skips from the finest (1/2 of the input) to the coarsest (1/32), with the decoder's channels."""
         y = self.relu(self.bn1_d(self.conv1_d(depth)))
         x = self.relu(self.bn1(self.conv1(rgb))) + y
         skips = [self.agant0(x)]
@@ -242,7 +242,7 @@ def folded(model: nn.Module) -> nn.Module:
     """Returns a copy for inference whose batch normalisations are part of the convolutions before them.
 
     The copy is faster and cannot be trained. Its outputs differ from the model's by rounding only. It shares the
-    numbers that the folding does not change.
+    tensors that the folding does not change.
     """
     shared = {id(tensor): tensor for tensor in (*model.parameters(), *model.buffers())}
     copied = copy.deepcopy(model, shared).eval()

@@ -1,4 +1,4 @@
-"""Training samples of a network: labels, random windows and augmentation of labelled views."""
+"""Makes training samples of a network from labelled views: labels, random windows and augmentation."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ IGNORED = -100
 """Label of pixels that do not count: void and padding."""
 
 SMALL_SHARE, MOST_WEIGHT = 1 / 16, 4.0
-"""Objects with a smaller share of the image than this weigh more per pixel: area^-0.5, at most so much."""
+"""Objects with a smaller share of the image weigh more per pixel: area^-0.5, at most this much."""
 SURFACES = np.array([MPCAT40_ID[name] for name in ("void", "wall", "floor", "ceiling")])
 """Categories whose pixels weigh 1."""
 
@@ -39,15 +39,15 @@ class Augmentation:
     mirror: bool = True
     """Half of the samples are mirrored left to right."""
     brightness: float = 0.3
-    """Colour is scaled by 1 +- this, and each channel by half of it more: other walls and lamps."""
+    """Colour is scaled by 1 +- this, and each channel also by 1 +- half of it, to imitate other walls and lamps."""
     contrast: float = 0.3
     saturation: float = 0.6
     hue_rad: float = 0.6
-    """Colours are rotated about grey by up to this: furniture has other colours in other houses."""
+    """Largest rotation of the hue: furniture has other colours in other houses."""
     grey: float = 0.1
-    """Share of the samples without colour: shapes are to be learnt."""
+    """Share of the samples without colour, so that the network learns shapes."""
     noise_rgb: float = 4.0
-    """Largest standard deviation of Gaussian noise, of 255."""
+    """Largest standard deviation of Gaussian noise, for colours from 0 to 255."""
     depth_noise: float = 0.0012
     """The standard deviation of depth is this times depth squared, as with structured light (Nguyen et al. 2012)."""
     holes: int = 6
@@ -69,7 +69,7 @@ NONE = Augmentation(
 
 @dataclass(frozen=True)
 class Sampler:
-    """A function from a view to a training sample. It is a class so that it can be pickled for a loader's workers."""
+    """A function that returns a training sample of a view; as a class it can be pickled for a loader's workers."""
 
     camera: CameraModel
     block_px: int = 1
@@ -78,16 +78,16 @@ class Sampler:
     window_px: int | None = None
     """Samples are windows of this width, see `random_window`; None: whole views."""
     whole_share: float = 0.0
-    """Share of the windows that show the whole view, shrunk, as in the input of a network that works on such images."""
+    """Share of the windows that show the whole view, shrunk, for a network that works on shrunk images."""
     focus_share: float = 0.0
     """Share of the windows that show some pixel of a goal category, each category in the view equally often."""
     second: InputKind = "depth"
     """Kind of the network's second input. It is computed from the whole view, before the window is cut out."""
     used_block_px: int | None = None
-    """Factor by which views are shrunk where the network is used: the windows' distances are those at which objects are
-    as large in such images. None: as `block_px`."""
+    """Factor by which views are shrunk when the network is used. The distances in a window are changed to those at
+    which objects have the same size in such images. None: `block_px`."""
     area_weights: bool = False
-    """Samples have weights of their pixels, larger for small objects (`pixel_weights`)."""
+    """True: samples include weights of their pixels, which are larger for small objects (`pixel_weights`)."""
 
     def __call__(
         self, view: LabelledView, rng: np.random.Generator, *, instance: int | None = None
@@ -122,7 +122,7 @@ class Sampler:
 
 
 class Samples(Dataset):
-    """A data set of the samples of views in memory; the randomness of a sample depends on its place only."""
+    """A data set of the samples of views in memory; the random numbers of a sample depend only on its index."""
 
     def __init__(self, views: Sequence[LabelledView], sampler: Sampler) -> None:
         self._views, self._sampler = views, sampler
@@ -137,7 +137,8 @@ class Samples(Dataset):
 def pixel_weights(view: LabelledView, block_px: int) -> Float32[np.ndarray, "h w"]:
     """Returns the weight of each pixel of a shrunk view: area^-0.5 of its object in the view, from 1 to `MOST_WEIGHT`.
 
-    It depends on the whole object in the view and not on the part of it in a window. Pixels of surfaces weigh 1.
+    The weight depends on the whole object in the view and not on the part of it in a window. Pixels of surfaces weigh
+    1.
 
     Raises:
         ConfigError: the view has no instances.
@@ -196,9 +197,9 @@ class Window:
 
 
 def random_goal_pixel(semantic: UInt8[np.ndarray, "h w"], rng: np.random.Generator) -> tuple[int, int] | None:
-    """Returns row and column of a pixel of a goal category, each category in the view equally often; None without one.
+    """Returns row and column of a random pixel of a goal category; None if there is no such pixel.
 
-    Categories and not pixels are drawn, so that windows show small objects as often as large ones.
+    Each category in the view is sampled equally often, so that windows show small objects as often as large ones.
     """
     present = np.flatnonzero(np.bincount(semantic.reshape(-1), minlength=len(MPCAT40)))
     goals = np.intersect1d(present, GOAL_IDS)
@@ -225,7 +226,7 @@ def random_window(
     *,
     shown: tuple[int, int] | None = None,
 ) -> Window:
-    """Returns a window at a random position and scale: fewer pixels per step, objects in several sizes.
+    """Returns a window at a random position and scale, for fewer pixels per step and objects in several sizes.
 
     A window has the proportions of the view and is `window_px` wide. Its scale is between that of the whole view,
     shrunk, and that of the view's own pixels. With a probability of `whole_share` it is the whole view. If a pixel is
@@ -287,7 +288,7 @@ def jitter_colour(
 def jitter_depth(
     depth_m: Float32[np.ndarray, "h w"], augmentation: Augmentation, rng: np.random.Generator
 ) -> Float32[np.ndarray, "h w"]:
-    """Returns depth with noise that grows with the square of the distance, and with rectangles without return."""
+    """Returns depth with noise that grows with the square of the distance, and with rectangles that have no return."""
     if augmentation.depth_noise == 0.0 and augmentation.holes == 0:
         return depth_m
     scale = np.float32(rng.uniform(0.0, 2.0) * augmentation.depth_noise)

@@ -1,4 +1,4 @@
-"""Leaves out of an evaluation what the image's edge cuts to a sliver: a person does not recognise it either."""
+"""Excludes narrow regions at the edge of the image from an evaluation: a person does not recognise the cut objects."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from jaxtyping import UInt8
 from stubborn.segmentation.samples import SURFACES
 
 SLIVER_PX = 24
-"""A region that touches an edge of the image reaches less than this far from it, in pixels of the 640 x 480 image."""
+"""A sliver at an edge of the image extends less than this from the edge, in pixels of the 640 x 480 image."""
 
 
 def without_slivers(semantic: UInt8[np.ndarray, "h w"], block_px: int) -> UInt8[np.ndarray, "h w"]:
     """Returns the labels with slivers at the image's edges as void, which no evaluation counts.
 
     A sliver is a connected region of one category, other than walls, floors and ceilings, that touches the left or the
-    right edge and is less than `SLIVER_PX` wide, or touches the upper or the lower edge and is less high.
+    right edge and is less than `SLIVER_PX` wide, or touches the upper or the lower edge and is less than `SLIVER_PX`
+    high.
 
     Args:
         semantic: mpcat40 ids.
@@ -28,8 +29,8 @@ def without_slivers(semantic: UInt8[np.ndarray, "h w"], block_px: int) -> UInt8[
         count, regions, boxes, _ = cv2.connectedComponentsWithStats((semantic == category).astype(np.uint8))
         for number in range(1, count):
             left, top, cols, rows = boxes[number, :4].tolist()
-            beside = (left == 0 or left + cols == width) and cols * block_px < SLIVER_PX
+            at_side = (left == 0 or left + cols == width) and cols * block_px < SLIVER_PX
             above = (top == 0 or top + rows == height) and rows * block_px < SLIVER_PX
-            if beside or above:
+            if at_side or above:
                 kept[regions == number] = 0
     return kept

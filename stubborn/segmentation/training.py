@@ -21,13 +21,13 @@ def pyramid_loss(
     subpixel: tuple[int, int] | None = None,
     pixels: Float32[Tensor, "n h w"] | None = None,
 ) -> Float[Tensor, ""]:
-    """Returns the sum over scales of the weighted cross entropy, with every 2nd, 4th, 8th and 16th label.
+    """Returns the sum of the weighted cross entropies of all scales; coarser ones use every 2nd, 4th, ... label.
 
     Args:
         outputs: logits at full size, and at 1/2, 1/4, ... of it.
         target: class channels, or `IGNORED`.
-        weights: of the classes.
-        subpixel: the first logits are those of this pixel of every 2 x 2 block (`RedNet.pyramid`).
+        weights: weights of the classes.
+        subpixel: pixel of every 2 x 2 block that the first logits are for (see `RedNet.pyramid`).
         pixels: weights of the pixels; None: all are 1.
     """
     total = outputs[0].new_zeros(())
@@ -35,7 +35,7 @@ def pyramid_loss(
         step = target.shape[-1] // out.shape[-1]
         row, column = subpixel if subpixel is not None and number == 0 else (step // 2, step // 2)
         small = target[:, row::step, column::step].reshape(-1)
-        logits = out.permute(0, 2, 3, 1).reshape(-1, out.shape[1]).float()  # classes last: faster on a CPU
+        logits = out.permute(0, 2, 3, 1).reshape(-1, out.shape[1]).float()  # classes last: this is faster
         if pixels is None:
             loss = nn.functional.cross_entropy(logits, small, weight=weights, ignore_index=IGNORED)
         else:
@@ -84,8 +84,8 @@ def exponential_average(decay: float) -> Callable[[Sequence[Tensor], Sequence[Te
 def set_normalisation(model: nn.Module, batches: Iterable[tuple[Tensor, Tensor]]) -> None:
     """Sets mean and variance of all batch normalisations to those of these batches of the two inputs.
 
-    Training on windows leaves those of windows, in which objects are larger and other surfaces frequent than in the
-    whole views that the network is used with. Weights do not change.
+    After training on windows the network has the statistics of windows, which differ from those of the whole views that
+    the network is used with: objects are larger, and other surfaces are frequent. Weights do not change.
 
     Raises:
         ValueError: there is no batch.

@@ -1,4 +1,4 @@
-"""U-Nets for colour and geometric channels, made for a CPU: an encoder, a narrow decoder, and logits at half the size.
+"""U-Nets for colour and geometric channels that run on a CPU: encoder, narrow decoder, logits at half the size.
 
 The dense encoder sees colour and geometry (`stubborn.segmentation.geometry`) together from the first convolution on.
 The mobile encoder is EfficientNet-Lite0 for colour (`stubborn.segmentation.lite0`), to which a small encoder adds
@@ -168,7 +168,7 @@ class _Fusion(nn.Module):
 
 
 class _Context(nn.Module):
-    """Adds the mean over the image to the coarsest features: which room it is says what may stand in it."""
+    """Adds the mean over the image to the coarsest features: the kind of room indicates which objects may be in it."""
 
     def __init__(self, channels: int) -> None:
         super().__init__()

@@ -12,13 +12,15 @@ import pytest
 from sim.commands.episodes import Args, balanced_goals, main
 from sim.episodes import habitat
 from sim.episodes.house_episodes import Ask
-from sim.episodes.recipes import DEFAULT_RECIPE
+from sim.episodes.recipes import DEFAULT_RECIPE, START_TURNS_RAD
 from sim.episodes.splits import load_split, read_unreachable
 from sim.errors import EpisodeError
+from sim.geometry.pose import Pose
 from sim.interface import ConfigError, SuccessRule
 from sim.task.config import TaskConfig
 from sim.task.objectnav import Task
 from sim.world.world import World
+from tests.helpers.foreign import TRAP, write_trap
 from tests.helpers.worlds import room, two_storeys, with_box
 
 
@@ -155,3 +157,26 @@ def test_starts_of_a_two_storey_house_are_on_both_and_ask_for_goals_of_their_own
         assert Task(world).distance_from(episode.goal, episode.start) == pytest.approx(
             episode.shortest_path_m, abs=1e-6
         )
+
+
+def test_a_sidecar_fixes_start_and_goal_of_the_episodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    house = write_trap(tmp_path / "mine")
+    assert main(Args(split=house.parent)) == 0
+    (episode,) = load_split(house.parent).episodes
+    assert (episode.goal, episode.start) == ("sofa", Pose(1.0, 2.5, 0.0))
+    assert (house.parent / "pictures" / "pane.png").is_file()
+    main(Args(split=house.parent, recipe="traps", pictures=False))
+    assert [each.start.yaw_rad for each in load_split(house.parent).episodes] == list(START_TURNS_RAD)
+    with pytest.raises(EpisodeError, match="there are 1 different episodes, and 4 were asked for"):
+        main(Args(split=house.parent, episodes=4))
+    house.with_suffix(".json").write_text(json.dumps(TRAP | {"goal": "bed"}))
+    with pytest.raises(EpisodeError, match="its sidecar asks for 'bed'"):
+        main(Args(split=house.parent))
+
+
+def test_a_packed_house_keeps_its_sidecar(tmp_path: Path) -> None:
+    house = write_trap(tmp_path / "mine")
+    main(Args(house=house, out=tmp_path / "packed", pictures=False))
+    split = load_split(tmp_path / "packed")
+    assert split.sidecar("pane").zone_m == (2.0, 1.0, 4.0, 4.0)
+    assert len(split.episodes) == 1

@@ -56,6 +56,7 @@ def test_help_of_a_command_has_its_name_and_says_what_it_does(name: str, capsys:
     assert importlib.import_module(COMMANDS[name].module).Args.__doc__.splitlines()[0][:40] in " ".join(shown.split())
     assert "Options of the" not in shown
     assert "tools/" not in shown
+    assert "(default: True)" not in shown  # `--no-NAME` is the option, so that its text would contradict it
 
 
 @pytest.mark.parametrize("words", [[], ["--help"], ["-h"]])

@@ -41,7 +41,7 @@ def log_after(split: Path, log: Path, episodes: int, *, max_steps: int = 30) -> 
     args = train_verifier.Args(
         split=str(split), episodes=episodes, max_steps=max_steps, least_of_either=500, log=log, out=log / "x.json"
     )
-    with pytest.raises(ConfigError, match="500 of either are needed"):
+    with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     return [json.loads(line) for line in (log / "results.jsonl").read_text().splitlines()]
 
@@ -92,7 +92,7 @@ def test_a_log_of_another_split_code_or_detector_is_refused_with_the_difference(
     args = train_verifier.Args(
         split=str(split), episodes=1, max_steps=3, least_of_either=500, log=tmp_path / "log", out=tmp_path / "x.json"
     )
-    with pytest.raises(ConfigError, match="500 of either are needed"):
+    with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     if change == "split_identity":  # the same name and version, another house
         other = tmp_path / split.name
@@ -155,7 +155,7 @@ def test_two_workers_log_the_same_as_one(split: Path, tmp_path: Path):
         workers=2,
         out=tmp_path / "x",
     )
-    with pytest.raises(ConfigError, match="500 of either are needed"):
+    with pytest.raises(ConfigError, match="500 of each are needed"):
         train_verifier.main(args)
     two = [json.loads(line) for line in (tmp_path / "two/results.jsonl").read_text().splitlines()]
     assert sorted(two, key=lambda line: line["episode_id"]) == one

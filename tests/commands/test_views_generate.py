@@ -54,9 +54,9 @@ def test_workers_and_machines_write_the_same_shards_as_one_process(split: Path, 
     ]
     command += ["--views", "9", "--views-per-shard", "3", "--shrink", "4", "--profile", "fast", "--workers", "2"]
     subprocess.run(command, check=True, capture_output=True)
-    main(options(split, tmp_path / "three", shard="1/2"))
+    main(options(split, tmp_path / "three", shard="2/2"))
     assert list(sums(tmp_path / "three")) == ["views-000001.tar"]
-    main(options(split, tmp_path / "three", shard="0/2"))
+    main(options(split, tmp_path / "three", shard="1/2"))
     assert len(sums(tmp_path / "one")) == 3
     assert sums(tmp_path / "one") == sums(tmp_path / "two") == sums(tmp_path / "three")
 
@@ -140,7 +140,7 @@ def test_the_wide_pool_has_new_houses_only(tmp_path: Path, monkeypatch: pytest.M
         ({"extras": ("boxes",)}, "--extras must be some of instances, normals, poses, got 'boxes'"),
         ({"sequence": 2}, "--sequence must divide --views and --views-per-shard, got 2"),
         ({"rgb": "bmp"}, "--rgb must be jpg or png, got 'bmp'"),
-        ({"shard": "2/2"}, '--shard must be "i/n" with 0 <= i < n, got "2/2"'),
+        ({"shard": "0/2"}, '--shard must be "i/n" with 1 <= i <= n'),
         ({"pool": "wide"}, "--pool must be wide, and needs --split train, got 'wide' with"),
         ({"pool": "heldout", "split": "train"}, "--pool must be wide, and needs --split train, got 'heldout' with"),
         ({"profile": "best"}, "Unknown rendering profile 'best'"),

@@ -13,6 +13,8 @@ import pytest
 
 from sim import cli
 from sim.commands.views import unpack as unpack_views
+from sim.errors import ConfigError
+from stubborn.segmentation.dataset import _members, read_members
 
 
 def png(kind: type, *more: int) -> bytes:
@@ -71,6 +73,24 @@ def test_a_member_that_is_no_part_of_a_view_is_named(
     message = capsys.readouterr().err
     assert expected in message
     assert message.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("v.rgb.jpg", "v.rgb.png"), "view 'v' has 'rgb' twice"),
+        (("v.rgb.png", "w.rgb.png", "v.depth.png"), "holds the view 'v' twice"),
+    ],
+)
+def test_a_view_or_a_part_of_it_that_is_stored_twice_is_refused(
+    names: tuple[str, ...], expected: str, tmp_path: Path
+) -> None:
+    with tarfile.open(tmp_path / "a.tar", "w") as archive:
+        for name in names:
+            archive.addfile(tarfile.TarInfo(name))
+    for read in (lambda: list(read_members(tmp_path / "a.tar")), lambda: list(_members(tmp_path / "a.tar"))):
+        with pytest.raises(ConfigError, match=expected):
+            read()
 
 
 @pytest.mark.parametrize("kind", [tarfile.SYMTYPE, tarfile.LNKTYPE, tarfile.FIFOTYPE, tarfile.DIRTYPE])

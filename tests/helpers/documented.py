@@ -195,7 +195,7 @@ _SMALL = "--house examples/my_house.xml --goal sofa"
 _SHIPPED = "stubborn/segmentation/weights/rednet.safetensors"
 _NEEDS_SETUP = Only("makes or needs a whole environment; .ci/run does that")
 _RECORDED = f"{_RUN} --record --goal bed --episodes 1 --agent random --out {{tmp}}/mine"
-_HOUSES = "stubborn houses generate --first-seed 0 --houses 1 --out {tmp}/houses"
+_HOUSES = "stubborn houses generate --houses 1 --kind flat --area-m2 90 --rooms gym --hazards glass --out {tmp}/houses"
 _SHOWN = f"{_RUN} --agent oracle --split val --episodes 2 --record --out {{tmp}}/shown/oracle"
 _SEARCHES = (
     f"{PYTHON} -m tools.training.twin_demonstrations --first-seed 19 --houses 2 --kind studio --episodes 4 "
@@ -204,6 +204,10 @@ _SEARCHES = (
 _TRAIN_CLONED = "stubborn train cloned --demonstrations {tmp}/demonstrations --minutes 0.1 --threads 2"
 _CLONED = f"{_TRAIN_CLONED} --streams 2 --out {{tmp}}/cloned"
 _PLANS = ("stubborn houses plans --pool train --kind studio --houses 4 --out {tmp}/plans",)
+_MY_TRAPS = (
+    f"{PYTHON} -c 'from tests.helpers.foreign import *; write_trap(Path(\"{{tmp}}/traps\"))'",
+    "stubborn episodes --split {tmp}/traps --recipe traps",
+)
 _EPISODES = "stubborn episodes --split {tmp}/houses --episodes 3"
 _VIEWS = (
     "stubborn views --split val --views 4 --shrink 4 --profile fast --out {tmp}/views --workers 1 --views-per-shard 4"
@@ -234,7 +238,7 @@ _UNSEEN = (
     " --first-seed 7000 --houses 1 --area-m2 60 --out {tmp}/unseen",
     "stubborn episodes --split {tmp}/unseen --recipe val --episodes 3",
 )
-_SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in range(2))
+_SHARDS = tuple(f"{_RUN} {_SMALL} --agent oracle --episodes 2 --shard {i}/2 --out {{tmp}}/big" for i in (1, 2))
 
 TRIALS: dict[str, tuple[str, ...] | Only] = {
     "make run": _NEEDS_SETUP,
@@ -314,7 +318,7 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn gallery --houses examples/my_house.xml --out runs/my_gallery": (
         "stubborn gallery --houses examples/my_house.xml --out {tmp}/gallery",
     ),
-    "stubborn houses generate --first-seed 0 --houses 4 --out runs/mine/houses": (_HOUSES,),
+    "stubborn houses generate --houses 4 --area-m2 90 --rooms gym --hazards glass --out runs/mine/houses": (_HOUSES,),
     "stubborn episodes --split runs/mine/houses --episodes 20": (_HOUSES, _EPISODES),
     f"{_RUN} --split runs/mine/houses --episodes 4": (
         _HOUSES,
@@ -396,6 +400,11 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --split traps --semantics gt --episodes 21": (
         f"{_RUN} --split traps --semantics gt --episodes 1 --agent oracle --out {{tmp}}/run",
     ),
+    "stubborn episodes --split my_traps --recipe traps": _MY_TRAPS,
+    "stubborn traps report --split my_traps --out runs/my_traps": (
+        *_MY_TRAPS,
+        "stubborn traps report --split {tmp}/traps --agents oracle --headings 1 --out {tmp}/report",
+    ),
     # docs/watching.md
     f"{_RUN} --video --out runs/filmed": (f"{_RUN} {_SMALL} --episodes 1 --video --out {{tmp}}/filmed",),
     f"{_RUN} --only val_0018 val_0003 --video --out runs/two": (
@@ -404,6 +413,9 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     f"{_RUN} --view --episodes 2": Only("needs a display; tests/sim/test_live.py plays without one"),
     f"{_RUN} --rerun-save --out runs/logged": Only("needs the extra rerun; tests/sim/test_live.py where it is there"),
     f"{_RUN} --rerun --episodes 2": Only("needs a display and the extra rerun"),
+    "stubborn web --agent examples.my_agent:AGENT --house examples/my_house.xml": Only(
+        "serves until it is interrupted; tests/sim/web/test_choices.py chooses an agent and a house so"
+    ),
     "stubborn web": Only("serves until it is interrupted; tests/sim/web/test_web.py starts it"),
     # docs/worlds.md
     f"{_RUN} --house flat.xml --labels labels.json --episodes 20 --record --out runs/flat": (_SCENE, _IN_SCENE),
@@ -465,8 +477,8 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
     "stubborn reproduce splits --splits val hazards --agents stubborn 'stubborn --explorer tour'": (
         "stubborn reproduce splits --splits val hazards --agents oracle random --episodes 1 --out {tmp}/paper",
     ),
-    f"{_RUN} --episodes 1000 --shard 0/2 --out runs/big": (_SHARDS[0],),
-    f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[1],),
+    f"{_RUN} --episodes 1000 --shard 1/2 --out runs/big": (_SHARDS[0],),
+    f"{_RUN} --episodes 1000 --shard 2/2 --out runs/big": (_SHARDS[1],),
     "stubborn teleop --goal sofa --out runs/me": Only("needs a terminal; tests/sim/test_teleop.py gives it one"),
     f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0": (
         f"{_RUN} --agent examples.my_agent:AGENT --config agent.keep_m=1.0 {_SMALL} --semantics gt"
@@ -526,7 +538,10 @@ TRIALS: dict[str, tuple[str, ...] | Only] = {
         " --explorers corners poni:goal=wrong",
     ),
     "stubborn import furniture --source my_models --out runs/models": _MODELS,
-    "stubborn houses check --split runs/mine/houses": (_HOUSES, "stubborn houses check --split {tmp}/houses"),
+    "stubborn houses check --house runs/mine/houses/house_00000.xml": (
+        _HOUSES,
+        "stubborn houses check --house {tmp}/houses/house_00000.xml --views 2",
+    ),
     "stubborn views --split val --views 500 --extras instances normals poses --out views_objects": (
         "stubborn views --split val --views 4 --views-per-shard 4 --extras instances normals poses --out {tmp}/views",
     ),

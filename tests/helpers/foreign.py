@@ -106,6 +106,19 @@ LABELS = {
 """Gadget and Widget are left without a label."""
 
 
+TRAP = {"goal": "sofa", "start": {"x_m": 1.0, "y_m": 2.5, "yaw_rad": 0.0}, "zone_m": [2.0, 1.0, 4.0, 4.0]}
+"""A sidecar of the example house."""
+
+
+def write_trap(folder: Path, name: str = "pane") -> Path:
+    """Writes the example house with a sidecar that fixes start and goal; returns the path of the house."""
+    folder.mkdir(parents=True, exist_ok=True)
+    house = folder / f"{name}.xml"
+    house.write_bytes((Path(__file__).parents[2] / "examples" / "my_house.xml").read_bytes())
+    house.with_suffix(".json").write_text(json.dumps(TRAP))
+    return house
+
+
 def write_scene(folder: Path, *, scene: str = SCENE, labels: dict[str, str] | None = None) -> tuple[Path, Path]:
     """Writes the scene and its label rules with all files that they need; returns both paths."""
     (folder / "meshes").mkdir(parents=True)

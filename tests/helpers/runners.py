@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
+import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sim.evaluation.watch import marked
 from sim.interface import Action, Observation
 
 
@@ -25,6 +28,37 @@ class Script:
         return self.left.pop(0)
 
 
+class OwnError(BaseException):
+    """An error of a user that cannot be unpickled."""
+
+    def __init__(self, first: str, second: str) -> None:
+        super().__init__(first)
+
+
+def _loop() -> None:
+    while True:
+        pass
+
+
+def _start_thread() -> None:
+    threading.Thread(target=time.sleep, args=(300,)).start()
+    atexit.register(time.sleep, 300)
+
+
+def _raise() -> None:
+    raise OwnError("first", "second")
+
+
+HANGING = {
+    "loop": _loop,
+    "kernel": lambda: sum(range(10**13)),  # it does not return to the interpreter
+    "stop": lambda: os.kill(os.getpid(), signal.SIGSTOP),
+    "thread": _start_thread,
+    "raise": _raise,
+}
+"""What code of a user may do to its process."""
+
+
 @dataclass(frozen=True)
 class Job:
     """A work item; `kill` is a file that gets a letter from each worker that the item kills (only the first)."""
@@ -34,6 +68,7 @@ class Job:
     kill: Path | None = None
     always: bool = False
     fail: bool = False
+    hang: str = ""
 
 
 class JobRunner:
@@ -48,6 +83,9 @@ class JobRunner:
             with item.kill.open("a") as marker:
                 marker.write("x")
             os.kill(os.getpid(), signal.SIGKILL)
+        if item.hang:
+            with marked(f"The job {item.episode_id}"):
+                HANGING[item.hang]()
         if item.fail:
             raise ValueError(f"{item.episode_id} cannot be done")
         self.changes += item.house != self.house

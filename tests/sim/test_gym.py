@@ -133,6 +133,25 @@ def test_a_forked_worker_of_a_process_that_rendered_raises_and_does_not_hang(hou
     assert "RenderError: OpenGL does not survive a fork" in answer.stderr
 
 
+def test_an_environment_that_a_fork_inherited_raises_and_does_not_hang(house: Path) -> None:
+    code = (
+        "import os, gymnasium, sim.gym\n"
+        f"env = gymnasium.make('{ENV_ID}', house=r'{house}', goal='sofa', sensors=('depth',))\n"
+        "env.reset(seed=0)\n"
+        "for call in (lambda: env.step(1), lambda: env.reset(seed=1)):\n"
+        "    if os.fork() == 0:\n"
+        "        try:\n            call()\n"
+        "        except Exception as error:\n            print(type(error).__name__, flush=True)\n"
+        "        env.close()\n        os._exit(0)\n"
+        "    os.wait()\n"
+        "print(env.step(2)[3])"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert answer.stdout.split() == ["RenderError", "RenderError", "False"], answer.stderr
+
+
 def test_the_time_limit_of_gymnasium_truncates_and_the_task_continues_to_count(options: dict[str, Any]) -> None:
     env = gymnasium.make(ENV_ID, max_episode_steps=3, **options)
     env.reset(seed=0)

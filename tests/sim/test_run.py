@@ -91,7 +91,7 @@ def test_a_killed_run_resumes_without_lost_or_doubled_lines(house: Path, tmp_pat
 
 
 def test_recorded_episodes_leave_their_trajectory_and_the_same_lines(house: Path, tmp_path: Path) -> None:
-    options = ("--agent", "random", "--house", house)
+    options = ("--agent", "random", "--house", house, "--seed-key", "k")
     run(*options, "--episodes", 2, "--out", tmp_path / "plain")
     assert not any((tmp_path / "plain" / name).exists() for name in ("trajectories", "pictures"))
     run(*options, "--episodes", 1, "--out", tmp_path / "recorded", "--record")
@@ -214,6 +214,7 @@ def test_a_run_resumed_by_other_code_says_so_and_names_both(
 
     def run_quitter(episodes: int) -> tuple[str, list[str]]:
         options = ["--agent", "tests.helpers.runners:make_quitter", "--house", str(house), "--out", str(tmp_path)]
+        options += ["--step-timeout", "0"]
         assert entry([*options, "--episodes", str(episodes)]) == 0
         return capsys.readouterr().out, json.loads((tmp_path / "config.json").read_text())["codes"]
 
@@ -232,19 +233,105 @@ def test_a_run_resumed_by_other_code_says_so_and_names_both(
     assert codes == ["0lder", code]
 
 
-def test_a_run_resumed_after_an_edit_of_the_agent_says_so(
+def test_after_an_edit_of_the_agent_no_old_result_is_shown_unless_the_user_keeps_it(
     house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.syspath_prepend(tmp_path)
     mine = tmp_path / "edited_agent.py"
     mine.write_text("from tests.helpers.runners import make_quitter as make\n")
     options = ["--agent", "edited_agent:make", "--house", str(house), "--out", str(tmp_path / "run")]
+    options += ["--step-timeout", "0"]
     assert entry([*options, "--episodes", "1"]) == 0
     mine.write_text(mine.read_text() + "GAIN = 2\n")
     capsys.readouterr()
-    assert entry([*options, "--episodes", "2"]) == 0
+    assert entry([*options, "--episodes", "1"]) == 2  # also where no episode is left
+    printed = capsys.readouterr()
+    assert "Episodes" not in printed.out
+    assert re.search(r"\(edited_agent:make\) has changed .*give another --out; .*--keep-results", printed.err)
+    assert entry([*options, "--episodes", "2", "--keep-results"]) == 0
     (notice,) = re.findall(r"run by other code \((\S+)\) than these \((\S+)\)", capsys.readouterr().out)
     assert notice[0] != notice[1]
+
+
+def test_a_key_repeats_a_run_and_a_resumed_run_and_its_shards_keep_theirs(house: Path, tmp_path: Path) -> None:
+    options = ["--agent", "random", "--house", str(house), "--config", "task.max_steps=12", "--episodes", "2"]
+
+    def run_with(out: str, *more: str) -> tuple[str, list[dict]]:
+        assert entry([*options, "--out", str(tmp_path / out), *more]) == 0
+        folder = next((tmp_path / out).rglob("config.json")).parent
+        return json.loads((folder / "config.json").read_text())["seed_key"], lines_of(folder)
+
+    key, lines = run_with("drawn")
+    other_key, other_lines = run_with("other", "--episodes", "1")
+    assert key != other_key
+    assert run_with("given", "--seed-key", key) == (key, lines)
+    assert run_with("other", "--episodes", "2")[0] == other_key
+    assert run_with("other", "--episodes", "2")[1][0] == other_lines[0]
+    assert entry([*options, "--out", str(tmp_path / "other"), "--seed-key", key]) == 2
+    shards = [run_with("whole", "--shard", f"{i}/2")[0] for i in (1, 2)]
+    assert shards[0] == shards[1] == (tmp_path / "whole" / "seed_key").read_text()
+    assert (tmp_path / "whole" / "shard_2_of_2" / "results.jsonl").exists()
+
+
+def test_shards_that_are_numbered_from_0_are_not_mixed_with_others(
+    house: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "shard_0_of_2").mkdir()
+    options = ["--agent", "random", "--house", str(house), "--episodes", "2", "--out", str(tmp_path)]
+    assert entry([*options, "--shard", "1/2"]) == 2
+    assert "shards of version 0.1" in capsys.readouterr().err
+
+
+def test_a_relative_folder_stays_where_it_was_when_the_agent_changes_the_current_one(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "away_agent.py").write_text(
+        "import os\nfrom tests.helpers.runners import Quitter\nos.chdir('/')\n\n"
+        "class Away(Quitter):\n    def reset(self, goal, seed):\n        os.chdir('/')\n\n"
+        "def make(**options):\n    os.chdir('/')\n    return Away()\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    options = ["--agent", "away_agent:make", "--house", os.path.relpath(house), "--out", "run", "--record"]
+    assert entry([*options, "--episodes", "1", "--step-timeout", "0"]) == 0
+    assert {file.name for file in (tmp_path / "run").iterdir()} >= {"summary.json", "trajectories", "pictures"}
+
+
+def test_a_house_that_is_replaced_while_a_run_is_planned_is_noticed(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "room.xml"
+    file.write_text(house.read_text())
+    (tmp_path / "replacing_agent.py").write_text(
+        "from pathlib import Path\nfrom tests.helpers.runners import make_quitter\n\n"
+        f"def make(**options):\n    file = Path({str(file)!r})\n"
+        "    file.write_text(file.read_text().replace('</mujoco>', '<!-- --></mujoco>'))\n"
+        "    return make_quitter()\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    options = ["--agent", "replacing_agent:make", "--house", str(file), "--out", str(tmp_path / "run")]
+    assert entry([*options, "--episodes", "1", "--step-timeout", "0"]) == 1
+    assert "its files have changed since this run was planned" in capsys.readouterr().out
+
+
+def test_an_agent_that_kills_its_process_costs_no_line_and_is_not_run_again_without_a_request(
+    house: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    marker = tmp_path / "died"
+    (tmp_path / "dying_agent.py").write_text(
+        "import os\nfrom tests.helpers.runners import Quitter\n\n"
+        f"class Dying(Quitter):\n    def act(self, observation):\n        open({str(marker)!r}, 'a').write('x')\n"
+        "        os._exit(0)\n\ndef make(**options):\n    return Dying()\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
+    options = ["--agent", "dying_agent:make", "--house", str(house), "--out", str(tmp_path / "run"), "--episodes", "1"]
+    assert entry(options) == 1
+    (line,) = lines_of(tmp_path / "run")
+    assert line["end_reason"] == "error"
+    assert "dying_agent:make', step 1: its process ended with status 0" in line["error"]
+    assert entry(options) == 1
+    assert marker.read_text() == "xx"  # two tries, once
 
 
 def test_a_folder_made_with_other_options_is_refused(house: Path, tmp_path: Path) -> None:
@@ -304,9 +391,9 @@ def test_a_goal_that_the_split_does_not_have_is_answered_with_those_it_has(capsy
 def test_a_shard_without_episodes_says_so_and_leaves_nothing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    options = ["--agent", "random", "--split", "traps", "--episodes", "2", "--shard", "2/3", "--out", str(tmp_path)]
+    options = ["--agent", "random", "--split", "traps", "--episodes", "2", "--shard", "3/3", "--out", str(tmp_path)]
     assert entry(options) == 0
-    assert "Shard 2/3 holds none of the 2 episodes." in capsys.readouterr().out
+    assert "Shard 3/3 holds none of the 2 episodes." in capsys.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from sim.commands.traps.report import make_agent
 from sim.commands.traps.trial import Trial, run_trial
 from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.recipes import START_TURNS_RAD
 from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
-from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.interface import FORWARD_M, Action
 from stubborn.agent import StubbornAgent
 from stubborn.agents import ABLATION

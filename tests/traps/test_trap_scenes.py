@@ -10,11 +10,11 @@ import pytest
 
 from sim.commands.traps.make import write_scene
 from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.recipes import START_TURNS_RAD
 from sim.episodes.splits import load_split, one_house
 from sim.errors import HouseError
 from sim.geometry.pose import Pose
 from sim.housegen.traps.catalogue import TRAPS
-from sim.housegen.traps.trap import START_TURNS_RAD
 from sim.houses.load import load_house
 from sim.houses.sidecar import EMPTY_SIDECAR, Sidecar, read_sidecar, write_sidecar
 from sim.interface import MPCAT40_ID

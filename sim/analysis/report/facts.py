@@ -14,7 +14,7 @@ from sim.analysis.report.media import picture_of, video_of
 
 NO_DEFAULT = (
     "agent", "explorer", "semantics", "weights", "verifier", "split", "house", "labels", "root", "robot", "goal",
-    "start_deg", "episodes", "shard",
+    "start_deg", "episodes", "shard", "seed_key",
 )  # fmt: skip
 """Options of `stubborn run` that the command of a run names if they have a value."""
 DEFAULTS: Mapping[str, Any] = {

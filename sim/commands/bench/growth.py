@@ -198,5 +198,5 @@ def _memory(what: str, value: float, baseline: float, against: str, goal: Goal |
     )  # fmt: skip
 
 
-def _raise(episode: Episode) -> Any:
-    raise RuntimeError(f"The worker died twice in episode '{episode.episode_id}'.")
+def _raise(episode: Episode, reason: str) -> Any:
+    raise RuntimeError(f"Episode '{episode.episode_id}': {reason}")

@@ -5,11 +5,13 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import gymnasium
 import numpy as np
 
-from sim.commands.bench.figures import Figure
+from sim.commands.bench.figures import Figure, Goal
+from sim.commands.bench.growth import memory_mb
 from sim.commands.bench.stages import Setting
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import load_split
@@ -21,6 +23,8 @@ SENSOR_SETS: tuple[tuple[str, ...], ...] = (("rgb", "depth"), ("depth",), ())
 VECTORS = ((1, "sync"), (2, "sync"), (1, "async"), (2, "async"), (4, "async"))
 """Number of environments, and the kind of vector."""
 VECTOR_SIZE_PX = (128, 96)
+CACHED = 2
+"""Houses that stay loaded in the measurement with resets."""
 ROUNDS = 5
 """The cases take turns in so many rounds; the fastest round of each counts."""
 _MOVES = (Action.MOVE_FORWARD, Action.MOVE_FORWARD, Action.TURN_LEFT, Action.TURN_RIGHT)
@@ -54,7 +58,7 @@ class Walk:
 
 def steps_of_training(setting: Setting) -> list[Figure]:
     """(j) Measures random steps, without agent: by size and sensors in one process, then of vector environments."""
-    return [*_single(setting), *_vectors(setting)]
+    return [*_single(setting), *_with_resets(setting), *_vectors(setting)]
 
 
 def _single(setting: Setting) -> Iterator[Figure]:
@@ -76,6 +80,46 @@ def _single(setting: Setting) -> Iterator[Figure]:
     first = _words(*cases[0])
     for case, taken_s in zip(cases, fastest_s, strict=True):
         yield _figure(f"steps, {_words(*case)}", steps / taken_s, first, steps / fastest_s[0], steps)
+
+
+def _with_resets(setting: Setting) -> Iterator[Figure]:
+    """Yields the rate of random actions, a quarter of which are STOP, in houses that stay loaded, and their memory.
+
+    The baseline are the same steps without STOP in one of the houses.
+    """
+    houses = load_split("val").houses[: min(CACHED, setting.amount.image_sizes)]
+    before = memory_mb()["VmRSS"]
+    env = ObjectNavEnv(
+        split="val", houses=houses, cached_houses=len(houses), sensors=("depth",), camera=_camera(VECTOR_SIZE_PX)
+    )
+    goals = {(episode.house, episode.goal): episode for episode in env.split.episodes}
+    for episode in list(goals.values())[: setting.amount.training_steps]:
+        env.reset(options={"episode": episode})  # loads the house and computes the distances to the goal
+    grown_mb = (memory_mb()["VmRSS"] - before) / len(houses)
+    walk, steps = Walk(VECTOR_SIZE_PX, ("depth",)), max(1, setting.amount.training_steps // ROUNDS)
+    rng, moving_s, with_resets_s = np.random.default_rng(0), float("inf"), float("inf")
+    env.reset(seed=0)
+    walk.seconds(2)
+    for _ in range(ROUNDS):
+        moving_s = min(moving_s, walk.seconds(steps))
+        began_s = time.process_time()
+        for action in rng.integers(len(Action), size=steps).tolist():
+            _, _, terminated, truncated, _ = env.step(action)
+            if terminated or truncated:
+                env.reset()
+        with_resets_s = min(with_resets_s, time.process_time() - began_s)
+    walk.close()
+    env.close()
+    words = _size(VECTOR_SIZE_PX)
+    figure = _figure(
+        f"steps, random with resets, depth, {words}, {len(houses)} houses loaded",
+        steps / with_resets_s, "the same, no STOP", steps / moving_s, steps,
+    )  # fmt: skip
+    yield replace(figure, goal=Goal(of="value", sign=">=", bound=150.0))
+    yield Figure(
+        part="j", what="memory of a loaded house with all its goals", value=grown_mb, unit="MB",
+        against="of the process before", baseline=before, ratio=grown_mb / before, count=len(houses),
+    )  # fmt: skip
 
 
 def _vectors(setting: Setting) -> Iterator[Figure]:

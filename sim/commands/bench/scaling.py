@@ -92,5 +92,5 @@ def _steps_a_second(pieces: list[Piece], workers: int, steps: int) -> tuple[floa
     return steps * (last - first) / (ended[last][0] - ended[first][0]), of_processors
 
 
-def _raise(piece: Piece) -> Any:
-    raise RuntimeError(f"A worker died twice in house '{piece.house}'.")
+def _raise(piece: Piece, reason: str) -> Any:
+    raise RuntimeError(f"House '{piece.house}': {reason}")

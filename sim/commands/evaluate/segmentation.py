@@ -68,8 +68,8 @@ class Args:
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
     mirror: bool = False
     """Average the logits of each view and of its mirror image, as `NetworkSegmenter(mirrored=True)` does."""
-    slivers: bool = True
-    """Count regions that the image's edge cuts to less than 24 of 640 pixels; False leaves them out."""
+    slivers: cli.OnUnlessNo = True
+    """Leave out regions that the image's edge cuts to less than 24 of 640 pixels; by default they count."""
     threads: cli.Count = 1
     """Number of threads of PyTorch. On cores that other processes use, two are far slower than one."""
 

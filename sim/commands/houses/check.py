@@ -1,12 +1,15 @@
-"""Checks fresh houses of a pool, or the houses of a split, and prints faults, tries and time for each house.
+"""Checks fresh houses of a pool, the houses of a split, or one house, and prints what it found for each.
 
     stubborn houses check --pool heldout --seeds 200 --workers 2
     stubborn houses check --pool heldout --seeds 20 --kind estate
     stubborn houses check --split val
+    stubborn houses check --house kitchen.xml --labels labels.json
 
 The check measures the file as users load it: labels, overlaps, support, movable objects at rest, reachability, the
 furniture that each kind of room must have (`sim.world.room_requirements`), and pixels of void in views of the robot's
-camera. The exit status is 1 if any house has a fault.
+camera. A house of your own needs no room sites and no furniture; its faults are the places and goals that the robot
+cannot reach, and the rest is printed as notes, unless `--furnished` asks for all rules. The exit status is 1 if any
+house has a fault.
 """
 
 from __future__ import annotations
@@ -16,12 +19,13 @@ import statistics
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from sim import cli
 from sim.env.scene import Scene
-from sim.episodes.splits import load_split
+from sim.episodes.splits import Split, load_split
 from sim.errors import ConfigError, HouseError
 from sim.evaluation.parallel import ordered_map
 from sim.geometry.pose import Pose
@@ -29,12 +33,14 @@ from sim.gl import mujoco
 from sim.housegen.floor_plan.rooms import PlanKind
 from sim.housegen.furniture.item import Pool
 from sim.housegen.generator import HouseConfig, generate_house
+from sim.housegen.splits.recipes import SPLITS
 from sim.houses.house import House
+from sim.houses.load import load_house
 from sim.houses.writing import house_text
 from sim.interface import CameraModel
 from sim.paths import assets_dir
 from sim.robot.config import RobotConfig
-from sim.world.check import check_house
+from sim.world.check import check_house, check_own_house
 
 CAMERA = CameraModel(width_px=160, height_px=120)
 
@@ -57,6 +63,14 @@ class Args:
     """Whether light furniture can be pushed."""
     split: str | None = None
     """Name or folder of a split; its houses are checked instead of fresh ones."""
+    house: Path | None = None
+    """One MJCF file, which is checked instead of fresh houses."""
+    labels: Path | None = None
+    """With --house: a JSON file of label rules for a house that has other names."""
+    root: Path | None = None
+    """With --house: a folder whose files the house may use in addition to its own folder."""
+    furnished: bool = False
+    """Apply all rules of generated houses to a split or house of your own; the shipped splits are always so checked."""
     views: cli.Amount = 12
     """Number of views in each house that are searched for void."""
     workers: cli.Count = 1
@@ -69,6 +83,8 @@ class Checked:
 
     name: str
     faults: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+    """What is unusual in a house of the user's, but does not keep it from being used."""
     tries: int = 1
     """Number of times that the generator drew the house."""
     rejects: tuple[str, ...] = ()
@@ -82,23 +98,37 @@ def main(args: Args) -> int:
     if args.workers < 1 or args.seeds < 1 or args.views < 0:
         raise ConfigError("--workers and --seeds must be at least 1, --views at least 0.")
     results = []
-    for checked in _check_split(args, args.split) if args.split is not None else _check_seeds(args):
+    if args.split is not None and args.house is not None:
+        raise ConfigError("--split and --house exclude each other.")
+    if args.house is None and (args.labels is not None or args.root is not None):
+        raise ConfigError("--labels and --root need --house.")
+    fresh = args.split is None and args.house is None
+    for checked in _checked(args):
         results.append(checked)
-        print(
-            f"{checked.name}: {len(checked.faults)} faults, {checked.tries} tries, {checked.seconds:.2f} s", flush=True
-        )
+        tries = f", {checked.tries} tries" if fresh else ""
+        print(f"{checked.name}: {len(checked.faults)} faults{tries}, {checked.seconds:.2f} s", flush=True)
+        for note in checked.notes:
+            print(f"    note: {note}")
         for reason in checked.rejects:
             print(f"    rejected: {reason}")
         for fault in checked.faults:
             print(f"    fault: {fault}")
     faulty = sum(bool(checked.faults) for checked in results)
     all_tries = [checked.tries for checked in results]
+    tries = f"tries: mean {statistics.mean(all_tries):.2f}, most {max(all_tries)}; " if fresh else ""
     print(
-        f"{len(results)} houses, {faulty} with faults; "
-        f"tries: mean {statistics.mean(all_tries):.2f}, most {max(all_tries)}; "
+        f"{len(results)} houses, {faulty} with faults; {tries}"
         f"median {statistics.median(checked.seconds for checked in results):.2f} s each"
     )
     return int(faulty > 0)
+
+
+def _checked(args: Args) -> Iterator[Checked]:
+    """Yields the results of the houses that the options name."""
+    if args.house is not None:
+        house = load_house(args.house, labels_path=args.labels, root=args.root)
+        return iter([_check_loaded(house, args.views, generated=args.furnished)])
+    return _check_split(args, args.split) if args.split is not None else _check_seeds(args)
 
 
 def _check_seeds(args: Args) -> Iterator[Checked]:
@@ -111,7 +141,14 @@ def _check_seeds(args: Args) -> Iterator[Checked]:
 def _check_split(args: Args, split: str) -> Iterator[Checked]:
     """Checks the houses of a split."""
     houses: Sequence[str] = load_split(split).houses
-    return ordered_map(functools.partial(_check_named, split, args.views), houses, workers=args.workers)
+    generated = args.furnished or _is_generated(load_split(split))
+    return ordered_map(functools.partial(_check_named, split, args.views, generated), houses, workers=args.workers)
+
+
+def _is_generated(split: Split) -> bool:
+    """Returns whether all houses of a split come from the generator: a shipped split, but for the traps."""
+    shipped = any(path.parent.parent == assets_dir().resolve() for path in split.house_paths.values())
+    return split.house_list is not None or (shipped and split.name in SPLITS)
 
 
 def _check_seed(config: HouseConfig, views: int, seed: int) -> Checked:
@@ -123,25 +160,44 @@ def _check_seed(config: HouseConfig, views: int, seed: int) -> Checked:
         return Checked(name, (str(error),), seconds=time.process_time() - began_s)
     seconds = time.process_time() - began_s
     spec = mujoco.MjSpec.from_string(house_text(house.spec, str(assets_dir() / "textures")))
-    return Checked(name, _faults(House(name, spec), views), house.tries, house.rejects, seconds)
+    faults = _faults(House(name, spec), views)
+    return Checked(name, faults, tries=house.tries, rejects=house.rejects, seconds=seconds)
 
 
-def _check_named(split: str, views: int, name: str) -> Checked:
+def _check_named(split: str, views: int, generated: bool, name: str) -> Checked:
     """Checks one house of a split."""
-    house, began_s = load_split(split).load_house(name), time.process_time()
-    faults = _faults(house, views)
-    return Checked(name, faults, seconds=time.process_time() - began_s)
+    return _check_loaded(load_split(split).load_house(name), views, generated=generated)
+
+
+def _check_loaded(house: House, views: int, *, generated: bool) -> Checked:
+    """Checks a house, by all rules of generated houses or only by those for a house of the user's."""
+    began_s = time.process_time()
+    if generated:
+        faults, notes = _faults(house, views), ()
+    else:
+        found, remarks = check_own_house(house)
+        void = _void(house, views) if not found else []
+        faults, notes = tuple(found), (*house.notes, *remarks, *void)
+    return Checked(house.name, faults, notes, seconds=time.process_time() - began_s)
 
 
 def _faults(house: House, views: int) -> tuple[str, ...]:
     """Returns the faults of a house, with one for void in the views from random free positions."""
     faults = check_house(house.spec, furnished=True)
-    if views and not faults:
-        scene = Scene(house, robot=RobotConfig(), camera=CAMERA, profile="fast")
-        void = sum(_void_pixels(scene, views))
-        scene.close()
-        faults += [f"{void} pixels of {views} views show void"] if void else []
-    return tuple(faults)
+    return tuple(faults or _void(house, views))
+
+
+def _void(house: House, views: int) -> list[str]:
+    """Returns a sentence if views from random free positions show void."""
+    if not views:
+        return []
+    scene = Scene(house, robot=RobotConfig(), camera=CAMERA, profile="fast")
+    void = sum(_void_pixels(scene, views))
+    scene.close()
+    share = void / (views * CAMERA.width_px * CAMERA.height_px)
+    return (
+        [f"{void} pixels of {views} views ({share:.1%}) show void: no surface, or one without a label"] if void else []
+    )
 
 
 def _void_pixels(scene: Scene, views: int) -> Iterator[int]:

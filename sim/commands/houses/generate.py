@@ -5,12 +5,15 @@ The houses of val, test, large and hazards are written as MJCF files, the train 
     stubborn houses generate --split train --out assets/mjcf_houses/train --workers 2
 Houses of other seeds:
     stubborn houses generate --first-seed 0 --houses 5 --pool train --out /tmp/houses
+    stubborn houses generate --area-m2 120 --rooms gym office --hazards glass slab --out /tmp/houses
+    stubborn houses generate --kind estate --storeys 2 --out /tmp/houses
 Houses with models that `stubborn import furniture` has imported, and the ten houses of the transfer test:
     stubborn houses generate --furniture runs/models --houses 5 --out /tmp/houses
     stubborn houses generate --furniture runs/models --transfer-test --out runs/transfer
 
-The houses of a split use the folder `textures` next to their own; it is created if it is missing. The generated train
-houses are kept in the cache of `sim.housegen.splits.house_list`, where `stubborn episodes` reads them.
+The houses of a split use the folder `textures` next to their own, other houses the one in their own; it is created if
+it is missing. The generated train houses are kept in the cache of `sim.housegen.splits.house_list`, where
+`stubborn episodes` reads them.
 """
 
 from __future__ import annotations
@@ -18,13 +21,13 @@ from __future__ import annotations
 import functools
 import hashlib
 import itertools
-import os
 import statistics
 import sys
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from sim import cli
 from sim.errors import HouseError
@@ -38,10 +41,10 @@ from sim.housegen.imported.library import ModelSplit
 from sim.housegen.imported.transfer import TRANSFER_TEST
 from sim.housegen.splits.house_list import cache_dir, copy_textures, write_house_list
 from sim.housegen.splits.recipes import MAX_TRAIN_SEEDS, SPLIT_VERSION, SPLITS, TRAIN_HOUSES, Recipe, train_recipe
+from sim.houses.references import SHARED_TEXTURES
 from sim.houses.writing import house_text
 from sim.interface import ConfigError
 from sim.invocation import command
-from sim.paths import assets_dir
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +66,13 @@ class Args:
     kind: PlanKind | None = None
     """Without a split: kind of floor plan; drawn when not given."""
     area_m2: cli.Positive | None = None
-    """Without a split: floor area; drawn when not given."""
+    """Without a split: floor area of the ground storey, met to within 5 %; drawn when not given."""
+    rooms: tuple[str, ...] = ()
+    """Without a split: private rooms that each house has, such as gym, office, laundry, closet; a kind may repeat."""
+    storeys: Literal[1, 2] = 1
+    """Without a split: number of storeys."""
+    hazards: tuple[str, ...] = ()
+    """Without a split: families of hazards (glass, slab, overhang, legs, scan, loose)."""
     clutter: cli.Share | None = None
     """Without a split: 0 without small objects to 1 with many; drawn when not given."""
     movable: bool = False
@@ -150,12 +159,20 @@ def _write_train(args: Args) -> Iterator[Made]:
 
 
 def _write_seeds(args: Args) -> Iterator[Made]:
-    """Writes houses of any seeds, which refer to the shipped textures by a relative path."""
+    """Writes houses of any seeds, with the textures in a folder next to them."""
     config = HouseConfig(
-        pool=args.pool, kind=args.kind, area_m2=args.area_m2, clutter=args.clutter, movable=args.movable
+        pool=args.pool,
+        kind=args.kind,
+        area_m2=args.area_m2,
+        rooms=args.rooms,
+        storeys=args.storeys,
+        hazards=args.hazards,
+        clutter=args.clutter,
+        movable=args.movable,
     )
+    copy_textures(args.out / SHARED_TEXTURES)
     furniture = None if args.furniture is None else _imported(args)
-    make = functools.partial(_make_seed, config, _textures(args), furniture)
+    make = functools.partial(_make_seed, config, furniture)
     seeds = range(args.first_seed, args.first_seed + (args.houses or 1))
     yield from _written(args, ordered_map(make, seeds, workers=args.workers))
 
@@ -166,15 +183,11 @@ def _imported(args: Args) -> ImportedFurniture:
 
 
 def _write_transfer_test(args: Args) -> Iterator[Made]:
-    """Writes the houses of the transfer test, which refer to the shipped textures by a relative path."""
+    """Writes the houses of the transfer test, with the textures in a folder next to them."""
     assert args.furniture is not None
-    make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"), _textures(args))
+    copy_textures(args.out / SHARED_TEXTURES)
+    make = functools.partial(_make_imported, ImportedFurniture(args.furniture, "transfer"))
     yield from _written(args, ordered_map(make, TRANSFER_TEST[: args.houses], workers=args.workers))
-
-
-def _textures(args: Args) -> str:
-    """Returns the folder of the shipped textures relative to the houses."""
-    return os.path.relpath(assets_dir() / "textures", args.out.resolve())
 
 
 def _written(args: Args, houses: Iterable[Made]) -> Iterator[Made]:
@@ -191,14 +204,14 @@ def _make(recipe: Recipe) -> Made:
     return _generate(recipe.name, recipe.seed, recipe.config(), None)
 
 
-def _make_seed(config: HouseConfig, textures: str, furniture: ImportedFurniture | None, seed: int) -> Made:
+def _make_seed(config: HouseConfig, furniture: ImportedFurniture | None, seed: int) -> Made:
     """Generates the house of a seed."""
-    return _generate(f"house_{seed:05d}", seed, config, textures, furniture)
+    return _generate(f"house_{seed:05d}", seed, config, SHARED_TEXTURES, furniture)
 
 
-def _make_imported(furniture: ImportedFurniture, textures: str, recipe: Recipe) -> Made:
+def _make_imported(furniture: ImportedFurniture, recipe: Recipe) -> Made:
     """Generates the house of a recipe with imported furniture."""
-    return _generate(recipe.name, recipe.seed, recipe.config(), textures, furniture)
+    return _generate(recipe.name, recipe.seed, recipe.config(), SHARED_TEXTURES, furniture)
 
 
 def _generate(
@@ -212,7 +225,9 @@ def _generate(
         return Made(name, error=str(error), seconds=time.process_time() - began_s)
     seconds = time.process_time() - began_s
     plan = house.plan
-    summary = f"{plan.kind}, {plan.area_m2:.0f} m2, {len(plan.rooms)} rooms, {house.geoms} geoms, {house.tries} tries"
+    below = " below" if config.storeys == 2 else ""
+    size = f"{plan.area_m2:.0f} m2{below}, {len(plan.rooms)} rooms{below}"
+    summary = f"{plan.kind}, {size}, {house.geoms} geoms, {house.tries} tries"
     return Made(name, house_text(house.spec, textures), "", summary, house.rejects, seconds)
 
 

@@ -174,7 +174,7 @@ def _play(args: LogOptions, split: Split, run: RunDirectory, runner: RunnerSpec,
     until_s = time.monotonic() + 60.0 * args.minutes if args.minutes is not None else float("inf")
     executor = make_executor("local", workers=args.workers)
     for batch in (todo[first : first + BATCH] for first in range(0, len(todo), BATCH)):
-        for line in executor.run(runner, batch, on_death=lambda episode: line_of(episode, 0, **nothing)):
+        for line in executor.run(runner, batch, on_death=lambda episode, _: line_of(episode, 0, **nothing)):
             run.append(line)
             print(f"[{len(run.lines)}/{len(todo) + len(done)}] {line['episode_id']}", flush=True)
             if time.monotonic() > until_s:

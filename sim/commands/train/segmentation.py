@@ -116,8 +116,9 @@ class Args:
     """Weights of the categories in the loss: log (1 / ln(1.1 + share)) or root (share^-0.5)."""
     area_weights: bool = False
     """Pixels of small objects weigh up to four times as much. Views need --extras instances."""
-    subpixel: bool = True
-    """Train the finest output of a RedNet on one pixel of every 2 x 2 block, another one in each step: faster."""
+    subpixel: cli.OnUnlessNo = True
+    """Train the finest output of a RedNet on all pixels; by default on one of every 2 x 2 block, another one in each
+    step, which is faster."""
     block_px: cli.Count = 1
     """Factor by which views are shrunk for the network; 1 for views that are stored small (--shrink 2)."""
     window_px: cli.Count | None = None

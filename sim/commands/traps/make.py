@@ -15,13 +15,14 @@ from pathlib import Path
 from sim import cli
 from sim.episodes import habitat
 from sim.episodes.reachable_goals import find_reachable_goals
+from sim.episodes.recipes import START_TURNS_RAD
 from sim.episodes.splits import Episode, write_split
 from sim.errors import HouseError
 from sim.files import write_atomically
 from sim.housegen.mjcf.builder import TEXTURE_DIR
 from sim.housegen.splits.recipes import SPLIT_VERSION
 from sim.housegen.traps.catalogue import TRAPS
-from sim.housegen.traps.trap import START_TURNS_RAD, Trap
+from sim.housegen.traps.trap import Trap
 from sim.houses.load import load_house
 from sim.houses.sidecar import write_sidecar
 from sim.interface import wrap_angle

@@ -10,21 +10,26 @@ from numpy.typing import NDArray
 
 from sim.commands.traps.trial import Trial
 from sim.env.objectnav import ObjectNavEnv
+from sim.geometry.grid import GridFrame
 from sim.gl import mujoco
 from sim.housegen.traps.site import INVISIBLE_GROUP
+from sim.houses.house import House
+from sim.houses.labels import read_labels, rendered_geoms
+from sim.interface import MPCAT40_ID
 
 Picture = NDArray[np.uint8]
 HEIGHT_PX = 480
 FOVY_DEG = 6.0
 MARGIN_M = 0.3
 PATH, STOPPED, START, END = (40, 90, 220), (225, 30, 30), (20, 150, 60), (20, 20, 20)
+PAPER = (245, 245, 245)
 INVISIBLE = (0.2, 0.75, 0.95, 1.0)
 """Colour of geoms that cameras do not render."""
 
 
 def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Picture:
     """Returns the top view and, if there is a map, the map next to it, uint8 (h, w, 3)."""
-    top = TopView(env.split.load_house(trial.trap).spec)
+    top = TopView(env.scene.world.house, env.scene.task.truth.space(env.episode.start.floor_z_m).frame)
     top.path(trial.positions_m)
     for _, contact in trial.stops:
         top.dot(contact.position_m[:2], STOPPED, 3)
@@ -32,7 +37,8 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
     top.dot(trial.positions_m[-1], END, 6)
     outcome = "escaped" if trial.escaped else "stuck"
     title = f"{trial.episode_id}, {trial.agent}: {outcome}, {len(trial.motions)} steps"
-    cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, END, 1, cv2.LINE_AA)
+    for colour, thickness in ((END, 3), (PAPER, 1)):  # mostly on the black surroundings of a scene
+        cv2.putText(top.image, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, thickness, cv2.LINE_AA)
     if belief is None:
         return top.image
     width = round(belief.shape[1] * HEIGHT_PX / belief.shape[0])
@@ -43,13 +49,14 @@ def draw_trial(env: ObjectNavEnv, trial: Trial, belief: Picture | None) -> Pictu
 class TopView:
     """A picture of a scene from above without its ceiling, on which paths and points are drawn in metres."""
 
-    def __init__(self, spec: mujoco.MjSpec) -> None:
-        room = spec.sites[0]
-        self._middle_m = np.array(room.pos[:2])
-        half_x, half_y = room.size[0] + MARGIN_M, room.size[1] + MARGIN_M
+    def __init__(self, house: House, frame: GridFrame) -> None:
+        low_m = np.array(frame.origin_xy_m)
+        size_m = np.array(frame.shape[::-1]) * frame.cell_m
+        self._middle_m = low_m + 0.5 * size_m
+        half_x, half_y = 0.5 * size_m + MARGIN_M
         self._px_m = HEIGHT_PX / (2.0 * half_y)
         self._width_px = 2 * round(half_x * self._px_m)
-        self.image: Picture = self._render(_without_ceiling(spec), half_y)
+        self.image: Picture = self._render(_without_ceiling(house), half_y)
 
     def path(self, places_m: list[tuple[float, float]]) -> None:
         """Draws the path of the robot's centre."""
@@ -89,14 +96,14 @@ class TopView:
             renderer.close()
 
 
-def _without_ceiling(spec: mujoco.MjSpec) -> mujoco.MjModel:
+def _without_ceiling(house: House) -> mujoco.MjModel:
     """Returns the scene without ceiling, with invisible geoms in `INVISIBLE`."""
-    spec = spec.copy()
-    for body in list(spec.worldbody.bodies):
-        if body.name.startswith("ceiling_"):
-            spec.delete(body)
-            continue
-        for geom in body.geoms:
-            if geom.group == INVISIBLE_GROUP:
-                geom.material, geom.rgba = "", INVISIBLE
+    spec = house.spec.copy()
+    model = spec.compile()
+    labels, shown = read_labels(model, rules=house.rules, ignore_prefix=""), rendered_geoms(model)
+    for geom in spec.geoms:
+        if labels.geom_category[geom.id] == MPCAT40_ID["ceiling"]:
+            geom.material, geom.rgba = "", (0.0, 0.0, 0.0, 0.0)
+        elif not shown[geom.id]:
+            geom.material, geom.rgba = "", INVISIBLE
     return spec.compile()

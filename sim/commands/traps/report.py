@@ -53,7 +53,7 @@ class Args:
     out: cli.OutFolder
     """Folder for results.jsonl, traps.csv, traps.md and pictures/."""
     split: str = "traps"
-    """The traps: a shipped split, or a folder with the layout of one."""
+    """The traps: a shipped split, or a folder of yours with episodes (`stubborn episodes --recipe traps`)."""
     agents: tuple[str, ...] = DEFAULT_AGENTS
     """Names of agents: oracle, or names of `stubborn.agents`."""
     traps: tuple[str, ...] = ()
@@ -62,8 +62,9 @@ class Args:
     """Number of start headings of each trap."""
     max_steps: cli.Count = 500
     """Largest number of actions of an episode."""
-    pictures: bool = True
-    """Draw the first heading of each trap, and every episode in which an agent did not escape."""
+    pictures: cli.OnUnlessNo = True
+    """Draw no paths; by default those of the first heading of each trap, and of every episode in which an agent did
+    not escape, are drawn."""
 
 
 def main(args: Args) -> int:
@@ -111,11 +112,13 @@ def run_trials(args: Args, name: str, done: Set[str]) -> Iterator[Trial]:
     env = ObjectNavEnv(split=args.split, sensors=sensors, max_steps=args.max_steps)
     try:
         agent = make_agent(name, env)
-        for episode in wanted(env, args):
+        episodes = wanted(env, args)
+        firsts = {each.house: each.episode_id for each in reversed(episodes)}
+        for episode in episodes:
             if episode.episode_id in done:
                 continue
             trial = run_trial(env, agent, name, episode)
-            if args.pictures and (episode.episode_id.endswith("_0") or not trial.escaped):
+            if args.pictures and (firsts[episode.house] == episode.episode_id or not trial.escaped):
                 write_picture(args.out / "pictures", env, agent, trial)
             yield trial
     finally:

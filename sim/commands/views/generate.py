@@ -13,7 +13,7 @@ A shard holds views of one house: first of the houses of the split, in an order 
 of new generated ones. With --pool wide all houses are new, with more styles of furniture than the houses of the splits.
 With --furniture they are new as well, and also have the imported models of the split `train` (docs/furniture.md).
 The same command continues a killed run; the same options give the same bytes. Several machines can share the work
-with --shard 0/4, 1/4, ...; the last to finish writes an index of all shards.
+with --shard 1/4 to 4/4; the last to finish writes an index of all shards.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ class Args:
     """Folder of the shards; complete shards in it are kept."""
     workers: cli.Count = 1
     """Number of processes."""
-    shard: str = "0/1"
-    """i/n: generate every n-th shard from the i-th on."""
+    shard: str = "1/1"
+    """i/n, from 1/n to n/n: generate every n-th shard from the i-th on."""
     executor: str = "local"
     """Where: local processes, or ray (extra `ray`) for a cluster whose machines all see --out."""
     address: str | None = None

@@ -73,6 +73,7 @@ class Recipe:
             movable=self.movable,
             storeys=self.storeys,
             hazards=self.hazards,
+            exact=False,
         )
 
     def to_json(self) -> dict[str, Any]:

@@ -9,9 +9,6 @@ from sim.geometry.pose import Pose
 from sim.housegen.traps.site import TrapSite
 from sim.houses.sidecar import Sidecar
 
-START_TURNS_RAD = (0.0, 1.8, -2.3)
-"""Start headings of the episodes of a trap relative to the sidecar's: towards the goal, to the left, back right."""
-
 
 @dataclass(frozen=True)
 class Trap:

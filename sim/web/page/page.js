@@ -12,7 +12,7 @@ let left = false;  // another page is shown; the browser may keep this one for i
 let failures = 0;
 let choices = null;
 let closed = false;  // the outcome of this episode: a state that comes again does not open it again
-let state = {phase: "idle", driver: "agent", paused: false, per_s: 2};
+let state = {phase: "idle", driver: "agent", paused: false, per_s: 2, hints: false};
 
 // --- connection ---------------------------------------------------------------------------------------------------
 
@@ -82,13 +82,21 @@ function told(news) {
   document.body.dataset.phase = news.phase;
   document.body.dataset.driver = news.driver;
   const playing = news.phase === "playing";
-  if (news.phase === "loading") document.body.dataset.step = "-1";
+  if (following && news.phase === "loading") follow(news.wish);
+  if (news.phase === "loading") {
+    document.body.dataset.step = "-1";
+    for (const figure of figures.values()) figure.classList.replace("absent", "empty") || figure.classList.add("empty");
+  }
   $("message").textContent = news.message;
   $("driver").textContent = news.driver === "person" ? "you drive" : news.wish ? news.wish.agent : "agent";
   $("pause").textContent = news.paused ? "Run" : "Pause";
   $("pause").disabled = $("step").disabled = !playing || news.driver === "person";
   $("take").textContent = news.driver === "person" ? "Hand back" : "Take over";
   $("take").disabled = $("end").disabled = !playing;
+  $("hints").setAttribute("aria-pressed", String(news.hints));
+  if (!playing) hint(null);
+  $("note").textContent = news.note || "";
+  $("note").hidden = !news.note;
   $("speed").value = String(news.per_s);
   for (const button of document.querySelectorAll(".pad button")) button.disabled = !playing;
   linked(news.clients > 1 ? `connected, ${news.clients} pages` : "connected", false);
@@ -99,6 +107,7 @@ function told(news) {
     $("outcome").className = `card outcome ${outcome.found ? "found" : "missed"}`;
     $("outcome-headline").textContent = outcome.headline;
     $("outcome-sentence").textContent = outcome.sentence;
+    $("outcome-recorded").textContent = outcome.recorded;
     if (closed) $("doing").textContent = outcome.sentence;
   }
   if (news.legends) {
@@ -144,11 +153,13 @@ async function draw(figure, blob) {
     canvas.height = bitmap.height;
   }
   canvas.getContext("2d").drawImage(bitmap, 0, 0);
+  figure.classList.remove("empty");
   bitmap.close();
 }
 
 function facts(frame) {
-  const words = [`step ${frame.step}${state.max_steps ? ` of ${state.max_steps}` : ""}`];
+  const words = [state.episode_id, `step ${frame.step}${state.max_steps ? ` of ${state.max_steps}` : ""}`];
+  if (!state.episode_id) words.shift();
   if (frame.last) words.push(frame.last);
   words.push(`driven ${frame.driven_m.toFixed(1)} m`);
   words.push(frame.left_m === null ? "no path to the goal" : `${frame.left_m.toFixed(1)} m to go`);
@@ -157,9 +168,17 @@ function facts(frame) {
   hits.textContent = `${frame.collisions} collision${frame.collisions === 1 ? "" : "s"}`;
   fill($("facts"), [document.createTextNode(`${words.join(", ")}, `), hits]);
   document.body.classList.toggle("hit", frame.collided);
+  hint(frame.hint);
   const advice = state.driver === "person" && frame.advice ? `The agent would: ${frame.advice}. ` : "";
-  $("doing").textContent = advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
+  const shortest = frame.hint ? `Shortest path: ${frame.hint.words}. ` : "";
+  $("doing").textContent = shortest + advice + (frame.doing ? `Agent: ${frame.doing}.` : "");
   fill($("sight"), frame.in_sight.map((item) => legendItem(item.name, item.colour, item.goal)));
+}
+
+function hint(shown) {
+  for (const button of document.querySelectorAll(".pad button")) {
+    button.classList.toggle("hinted", shown !== null && Number(button.dataset.action) === shown.action);
+  }
 }
 
 function legendItem(name, colour, goal = false) {
@@ -185,37 +204,83 @@ function fill(parent, children) {
 
 function options(select, values, wanted) {
   const before = wanted ?? select.value;
-  fill(select, values.map((value) => new Option(value.replaceAll("_", " "), value)));
+  fill(select, values.map((value) => new Option(shortened(value).replaceAll("_", " "), value)));
   if (values.includes(before)) select.value = before;
 }
 
+// A path is shown by its end.
+const shortened = (value) => (value.includes("/") ? value.replace(/\/+$/, "").split("/").at(-1) : value) || "its own";
+
+const goalsNow = () => choices.splits[$("split").value][$("house").value];
+
 function chosenSplit() {
   options($("house"), Object.keys(choices.splits[$("split").value]));
+  const houses = Object.values(choices.splits[$("split").value]);
+  const ids = houses.flatMap((goals) => Object.values(goals).flat());
+  fill($("episode-ids"), ids.map((id) => new Option(id, id)));
+  $("episode").value = "";
   chosenHouse();
 }
 
 function chosenHouse() {
-  options($("goal"), choices.splits[$("split").value][$("house").value]);
+  options($("goal"), Object.keys(goalsNow()));
+  chosenGoal();
+}
+
+// An episode of another house or goal is no longer the wanted one.
+function chosenGoal() {
+  const ids = goalsNow()[$("goal").value];
+  if (ids.length && !ids.includes($("episode").value)) $("episode").value = "";
+}
+
+// The episode's id says house and goal.
+function chosenEpisode() {
+  const id = $("episode").value;
+  for (const [house, goals] of Object.entries(choices.splits[$("split").value])) {
+    for (const [goal, ids] of Object.entries(goals)) {
+      if (!ids.includes(id)) continue;
+      $("house").value = house;
+      options($("goal"), Object.keys(goals), goal);
+    }
+  }
 }
 
 function chosenAgent() {
-  const agent = $("agent").value;
-  $("semantics").disabled = !choices.uses_segmentation[agent];
-  $("agent-note").textContent = `${agent}: ${choices.agents[agent]}. ${$("semantics").value}: ${choices.semantics[$("semantics").value]}.`;
+  const agent = choices.agents[$("agent").value];
+  $("semantics").disabled = !agent.segmentation;
+  $("explorer").disabled = !agent.explorer;
+  const described = [[$("agent").value, agent.description], [$("semantics").value, choices.semantics[$("semantics").value]]];
+  $("agent-note").textContent = described.map(([name, words]) => (words ? `${name}: ${words.replace(/\.$/, "")}.` : `${name}.`)).join(" ");
+}
+
+// Shows the episode of a finished run in the form.
+function follow(wish) {
+  following = false;
+  if (!(wish.split in choices.splits)) return;
+  $("split").value = wish.split;
+  chosenSplit();
+  $("house").value = wish.house;
+  options($("goal"), Object.keys(goalsNow()), wish.goal);
+  for (const name of ["agent", "semantics", "explorer"]) $(name).value = wish[name];
+  $("episode").value = wish.episode_id ?? "";
+  chosenAgent();
 }
 
 function start(driver) {
   const wish = {do: "start", driver};
   for (const name of ["split", "house", "goal", "agent", "semantics"]) wish[name] = $(name).value;
+  wish.episode = $("episode").value.trim();
+  wish.explorer = $("explorer").disabled ? "" : $("explorer").value;
   send(wish);
   if (phone.matches) window.scrollTo(0, 0);
 }
 
 async function choose() {
   choices = await (await fetch("api/choices")).json();
-  options($("split"), Object.keys(choices.splits));
-  options($("agent"), Object.keys(choices.agents), "stubborn");
-  options($("semantics"), Object.keys(choices.semantics), "rednet");
+  options($("split"), Object.keys(choices.splits), choices.first.split);
+  options($("agent"), Object.keys(choices.agents), choices.first.agent);
+  options($("explorer"), ["", ...choices.explorers], choices.first.explorer);
+  options($("semantics"), Object.keys(choices.semantics), choices.first.semantics);
   $("run-command").textContent = choices.run_command;
   chosenSplit();
   chosenAgent();
@@ -223,60 +288,140 @@ async function choose() {
 
 // --- finished runs ------------------------------------------------------------------------------------------------
 
+let runs = [];
+let following = false;  // the next episode that begins is the one that was asked for here
+let opened = null;  // the run whose episodes are shown: its name, address and result lines
+const marked = new Set();  // names of the runs to compare, in the order of the clicks
+
 async function listRuns() {
-  const runs = await (await fetch("api/runs")).json();
+  runs = await (await fetch("api/runs")).json();
+  for (const name of marked) if (!runs.some((run) => run.name === name)) marked.delete(name);
+  showRuns();
+}
+
+function showRuns() {
+  const words = $("run-filter").value.toLowerCase().split(/\s+/).filter(Boolean);
+  const fits = (run) => words.every((word) => runWords(run).some((text) => text.toLowerCase().includes(word)));
   $("no-runs").hidden = runs.length > 0;
-  fill($("run-list"), runs.map((run) => {
-    const item = document.createElement("li"), button = document.createElement("button"), about = document.createElement("small");
-    button.type = "button";
-    button.append(run.name, about);
-    const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
-    about.textContent = `${run.agent ?? "?"}, ${run.split ?? "?"}: ${run.found} of ${run.episodes} found${errors}, SPL ${run.spl.toFixed(2)}`;
-    button.addEventListener("click", () => openRun(run));
-    item.append(button);
-    return item;
-  }));
+  fill($("run-list"), runs.filter(fits).map(runRow));
+  $("compare").disabled = marked.size !== 2;
+}
+
+const runWords = (run) => [run.name, run.agent, run.explorer, run.semantics, run.split].filter(Boolean);
+const day = (seconds) => new Date(seconds * 1000).toLocaleString([], {dateStyle: "medium", timeStyle: "short"});
+
+function runRow(run) {
+  const mark = document.createElement("input"), open = document.createElement("button");
+  mark.type = "checkbox";
+  mark.checked = marked.has(run.name);
+  mark.disabled = Boolean(run.broken);
+  mark.setAttribute("aria-label", `compare ${run.name}`);
+  mark.addEventListener("change", () => {
+    if (mark.checked) marked.add(run.name);
+    else marked.delete(run.name);
+    if (marked.size > 2) marked.delete([...marked][0]);
+    showRuns();
+  });
+  open.type = "button";
+  open.textContent = run.name;
+  open.disabled = Boolean(run.broken);
+  open.addEventListener("click", () => openRun(run));
+  const head = [[mark, ""], [open, ""], [day(run.changed_s), ""]];
+  if (run.broken) {
+    const line = row([...head, [run.broken, "bad wide"]]);
+    line.lastChild.colSpan = 5;
+    return line;
+  }
+  const errors = run.errors ? `, ${run.errors} error${run.errors === 1 ? "" : "s"}` : "";
+  const agent = [run.agent ?? "?", run.explorer].filter(Boolean).join(", ");
+  return row([...head, [agent, ""], [run.semantics ?? "?", ""], [run.split ?? "?", ""], [`${run.found} of ${run.episodes}${errors}`, ""], [run.spl.toFixed(2), "number"]]);
+}
+
+// A table row of cells, each a text or an element with a class.
+function row(cells) {
+  const line = document.createElement("tr");
+  for (const [content, kind] of cells) {
+    const cell = document.createElement("td");
+    cell.append(content);
+    cell.className = kind;
+    line.append(cell);
+  }
+  return line;
+}
+
+async function compare() {
+  const [second, first] = runs.map((run) => run.name).filter((name) => marked.has(name));  // the older one first
+  const answer = await fetch(`api/comparison?${new URLSearchParams({first, second})}`);
+  $("comparison").hidden = false;
+  $("comparison-message").hidden = answer.ok;
+  $("comparison-message").textContent = answer.ok ? "" : await answer.text();
+  fill($("comparison-tables"), answer.ok ? comparisonShown(...(await answer.json())) : []);
+  $("comparison").scrollIntoView({block: "nearest"});
+}
+
+function comparisonShown(means, differences) {
+  const details = document.createElement("details"), summary = document.createElement("summary");
+  summary.textContent = `${differences.title} (${differences.rows.length})`;
+  details.append(summary, ...comparisonTable(differences));
+  return [...comparisonTable(means), details];
+}
+
+function comparisonTable(shown) {
+  const table = document.createElement("table"), head = document.createElement("tr"), body = document.createElement("tbody");
+  for (const name of shown.header) head.append(Object.assign(document.createElement("th"), {textContent: name}));
+  body.append(...shown.rows.map((cells) => row(cells.map((cell) => (typeof cell === "string" ? [cell, ""] : [cell.text, ""])))));
+  table.append(Object.assign(document.createElement("caption"), {textContent: shown.title}), head, body);
+  return [table, ...shown.notes.map((note) => Object.assign(document.createElement("p"), {textContent: note, className: "note"}))];
 }
 
 async function openRun(run) {
   const address = `runs/${encodeURIComponent(run.name)}`;
-  const lines = await (await fetch(`api/${address}`)).json();
+  const answer = await fetch(`api/${address}`);
+  if (!answer.ok) return;
+  opened = {name: run.name, address, lines: await answer.json()};
   $("run").hidden = false;
   $("run-name").textContent = run.name;
   $("run-report").href = `${address}/report.html`;
-  $("run-report").parentElement.hidden = !run.report;
+  $("run-report").hidden = !run.report;
   $("video").hidden = true;
   $("video").removeAttribute("src");
   $("video-title").textContent = "";
-  fill($("episodes"), lines.map((line) => episodeRow(line, address)));
+  showEpisodes();
   $("run").scrollIntoView({block: "nearest"});
 }
 
-function episodeRow(line, address) {
-  const row = document.createElement("tr");
+function showEpisodes() {
+  const wanted = $("outcome-filter").value;
+  const lines = opened.lines.filter((line) => wanted === "all" || Boolean(line.success) === (wanted === "found"));
+  fill($("episodes"), lines.map(episodeRow));
+}
+
+function episodeRow(line) {
   const outcome = line.success ? "found" : line.end_reason === "error" ? "error" : (line.failure ?? line.end_reason ?? "").replaceAll("_", " ");
-  for (const [words, kind] of [[line.episode_id, ""], [(line.goal ?? "").replaceAll("_", " "), ""], [outcome, line.success ? "good" : "bad"], [line.num_steps ?? "", "number"], [Number(line.spl ?? 0).toFixed(2), "number"]]) {
-    const cell = document.createElement("td");
-    cell.textContent = words;
-    cell.className = kind;
-    row.append(cell);
-  }
-  const last = document.createElement("td");
-  if (line.video) {
-    const play = document.createElement("button");
-    play.type = "button";
-    play.textContent = "Video";
-    play.addEventListener("click", () => {
-      $("video").hidden = false;
-      $("video").src = `${address}/video?episode=${encodeURIComponent(line.episode_id)}`;
-      $("video-title").textContent = `${line.episode_id}: ${outcome}`;
-      $("video").play().catch(() => {});
-      $("video").scrollIntoView({block: "nearest"});
-    });
-    last.append(play);
-  }
-  row.append(last);
-  return row;
+  const buttons = document.createElement("div");
+  buttons.className = "buttons";
+  const add = (words, action) => {
+    const button = Object.assign(document.createElement("button"), {type: "button", textContent: words});
+    button.addEventListener("click", action);
+    buttons.append(button);
+  };
+  const again = (driver) => {
+    tab("live");
+    following = true;
+    send({do: "again", driver, run: opened.name, episode: line.episode_id});
+  };
+  add("Watch", () => again("agent"));
+  add("Drive", () => again("person"));
+  if (line.video) add("Video", () => showVideo(line, outcome));
+  return row([[line.episode_id, ""], [line.house ?? "", ""], [(line.goal ?? "").replaceAll("_", " "), ""], [outcome, line.success ? "good" : "bad"], [line.num_steps ?? "", "number"], [Number(line.spl ?? 0).toFixed(2), "number"], [buttons, ""]]);
+}
+
+function showVideo(line, outcome) {
+  $("video").hidden = false;
+  $("video").src = `${opened.address}/video?episode=${encodeURIComponent(line.episode_id)}`;
+  $("video-title").textContent = `${line.episode_id}: ${outcome}`;
+  $("video").play().catch(() => {});
+  $("video").scrollIntoView({block: "nearest"});
 }
 
 function tab(name) {
@@ -299,12 +444,14 @@ function key(event) {
   } else if (name === " ") toggle();
   else if (name === "n") send({do: "step"});
   else if (name === "t") take();
+  else if (name === "h") hints();
   else return;
   event.preventDefault();
 }
 
 const toggle = () => send({do: state.paused ? "run" : "pause"});
 const take = () => send({do: state.driver === "person" ? "agent" : "person"});
+const hints = () => send({do: "hints", on: !state.hints});
 
 function hold(button) {
   // A held button drives on, as a held key does.
@@ -330,12 +477,18 @@ $("choose").addEventListener("submit", (event) => { event.preventDefault(); star
 $("start-driving").addEventListener("click", () => start("person"));
 $("split").addEventListener("change", chosenSplit);
 $("house").addEventListener("change", chosenHouse);
+$("goal").addEventListener("change", chosenGoal);
+$("episode").addEventListener("change", chosenEpisode);
 $("agent").addEventListener("change", chosenAgent);
 $("semantics").addEventListener("change", chosenAgent);
 $("pause").addEventListener("click", toggle);
 $("step").addEventListener("click", () => send({do: "step"}));
 $("speed").addEventListener("change", () => send({do: "speed", per_s: Number($("speed").value)}));
 $("take").addEventListener("click", take);
+$("hints").addEventListener("click", hints);
+$("run-filter").addEventListener("input", showRuns);
+$("compare").addEventListener("click", compare);
+$("outcome-filter").addEventListener("change", showEpisodes);
 $("end").addEventListener("click", () => send({do: "stop"}));
 $("tab-live").addEventListener("click", () => tab("live"));
 $("tab-runs").addEventListener("click", () => tab("runs"));
@@ -343,11 +496,12 @@ document.querySelectorAll(".pad button").forEach(hold);
 for (const figure of figures.values()) {
   figure.addEventListener("click", () => {
     if (phone.matches) {
-      figures.get("camera").parentElement.prepend(figure);
-    } else if (!figure.classList.contains("big")) {
-      [...figures.values()].find((other) => other.classList.contains("big") && other.dataset.name !== "camera").classList.remove("big");
-      figure.classList.add("big");
+      $("stage").prepend(figure);
+      return;
     }
+    const enlarge = !figure.classList.contains("large");
+    for (const other of figures.values()) other.classList.toggle("large", enlarge && other === figure);
+    $("stage").classList.toggle("enlarged", enlarge);
   });
 }
 choose().then(connect);

@@ -369,12 +369,15 @@ def test_a_wrong_stop_is_reported_with_the_place_for_which_the_agent_stopped(pai
     aimed = replace(wrong, stop_target_xy_m=(1.0, 2.0), stop_target_to_goal_m=1.84)
     begin = f"Called STOP at step {whole.num_steps}"
     assert explain(line, wrong).startswith(f"{begin}: the nearest sofa is 0.9 m away. The sofa was in view")
-    assert explain(line, aimed).startswith(
-        f"{begin} for something 1.8 m from the nearest sofa; the robot is 0.9 m from the nearest sofa. The sofa was"
-    )
+    assert explain(line, aimed).startswith(f"{begin} for something 1.8 m from the nearest sofa. The sofa was in view")
+    for known in (
+        explain(line | {"stop_target_category": "chest_of_drawers"}, aimed),
+        explain(line, replace(aimed, stop_target_category="chest_of_drawers")),
+    ):
+        assert known.startswith(f"{begin} at a chest of drawers, 1.8 m from the nearest sofa. The sofa was in view")
     short = replace(aimed, stop_target_to_goal_m=0.1, nearest_instance_m=1.7)
     words = explain(line | {"failure": "stopped_short"}, short)
-    assert words.startswith(f"{begin} short of the goal: the robot is 1.7 m from the nearest sofa.")
+    assert words.startswith(f"{begin} short of the goal: the nearest sofa is 1.7 m away.")
 
 
 def test_a_missed_goal_was_in_view_before(pair: tuple[Path, Path]) -> None:

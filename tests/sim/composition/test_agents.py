@@ -26,6 +26,7 @@ def run_episode(house: Path, out: Path, agent: str, semantics: str, *config: str
     """Runs one episode; returns its result line and the keys of the observations."""
     agents.SEEN.clear()
     options = ["--agent", agent, "--semantics", semantics, "--house", str(house), "--episodes", "1", "--out", str(out)]
+    options += ["--step-timeout", "0"]  # in this process, which has the list of observations
     assert entry([*options, "--config", *SMALL, *config]) == 0
     (keys,) = {frozenset(keys) for keys in agents.SEEN}
     return json.loads((out / "results.jsonl").read_text()), set(keys)
@@ -140,7 +141,7 @@ def test_an_agent_that_cannot_be_built_is_one_line_and_leaves_no_run_behind(
     (tmp_path / "users_agent.py").write_text(module)
     sys.modules.pop("users_agent", None)
     options = ["--semantics", "gt", "--house", str(house), "--episodes", "1", "--out", str(tmp_path / "run")]
-    assert entry([*options, "--agent", "users_agent:make"]) == 2
+    assert entry([*options, "--agent", "users_agent:make", "--step-timeout", "0"]) == 2
     message = capsys.readouterr().err
     assert message.startswith("error: ")
     assert expected in message

@@ -14,7 +14,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 from sim.env.objectnav import ObjectNavEnv
-from sim.episodes.splits import Episode
+from sim.episodes.splits import Episode, Split
 from sim.errors import EpisodeError, HouseError
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel, ConfigError, RobotModel, SuccessRule
@@ -235,8 +235,12 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: ObjectNavEnv(labels="rules.json"), "labels, root and start need house"),
-        (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "labels, root and start need house"),
+        (lambda: ObjectNavEnv(labels="rules.json"), "labels and root need house"),
+        (lambda: ObjectNavEnv(start=Pose(0.0, 0.0, 0.0)), "start needs house"),
+        (lambda: ObjectNavEnv(houses=("val_00", "val_99")), "has no house 'val_99'"),
+        (lambda: ObjectNavEnv(houses=("val_00", Path("a.xml"))), "'val_00' is a name"),
+        (lambda: ObjectNavEnv(houses="val_00"), "a list of names"),
+        (lambda: ObjectNavEnv(cached_houses=0), "cached_houses must be a whole number"),
         (lambda: CameraModel(height_m=-1.0), "height_m must be positive, got -1.0"),
         (lambda: CameraModel(hfov_rad=math.nan), "hfov_rad must be a finite number"),
         (lambda: CameraModel(height_m=math.inf), "height_m must be a finite number"),
@@ -254,3 +258,15 @@ def test_unknown_options_of_reset_are_refused(env: ObjectNavEnv, options: dict, 
 def test_arguments_without_meaning_are_refused_by_name(make: Callable[[], object], message: str) -> None:
     with pytest.raises((ConfigError, EpisodeError), match=message):
         make()
+
+
+def test_houses_stay_loaded_and_only_they_have_episodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    loaded = []
+    load = Split.load_house
+    monkeypatch.setattr(Split, "load_house", lambda self, name: (loaded.append(name), load(self, name))[1])
+    env = ObjectNavEnv(split="traps", houses=("chair_legs", "glass_pane"), cached_houses=2, sensors=())
+    for seed in range(6):
+        _, info = env.reset(seed=seed)
+        assert info["house"] in ("chair_legs", "glass_pane")
+    env.close()
+    assert sorted(loaded) == ["chair_legs", "glass_pane"]

@@ -101,6 +101,25 @@ def test_the_hash_changes_with_a_house_and_with_an_episode_only(folder):
     assert len({before, fewer, load_split(folder).sha256}) == 3
 
 
+def test_files_that_a_house_uses_belong_to_its_checksum_and_a_change_is_noticed(folder):
+    (folder / "part.xml").write_text('<mujoco><asset><mesh name="m" file="m.obj"/></asset></mujoco>')
+    (folder / "meshes").mkdir()
+    (folder / "meshes" / "m.obj").write_text("v 0 0 0\n")
+    text = (folder / "a.xml").read_text()
+    (folder / "a.xml").write_text(
+        text.replace("<worldbody>", '<compiler meshdir="meshes"/><include file="part.xml"/><worldbody>', 1)
+    )
+    for file in (folder / "meshes" / "m.obj", folder / "part.xml"):
+        split, one = load_split(folder), one_house(folder / "a.xml")
+        split.require_unchanged("a")
+        file.write_text(file.read_text() + "\n")
+        assert load_split(folder).sha256 != split.sha256
+        assert one_house(folder / "a.xml").sha256 != one.sha256
+        split.require_unchanged("b")
+        with pytest.raises(HouseError, match="House 'a': its files have changed"):
+            split.require_unchanged("a")
+
+
 def test_a_split_is_written_as_the_same_bytes_each_time(folder):
     files = sorted(folder.rglob("*.gz"))
     before = [file.read_bytes() for file in files]

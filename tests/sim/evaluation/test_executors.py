@@ -15,7 +15,7 @@ import pytest
 
 from sim.errors import WorkersError
 from sim.evaluation import executors
-from sim.evaluation.executors import Processes, make_executor
+from sim.evaluation.executors import Isolation, Processes, Supervisor, make_executor
 from sim.evaluation.parallel import Shard, ordered_map
 from sim.evaluation.results import RunDirectory
 from sim.evaluation.workers import MAX_FAILED_STARTS, RunnerSpec, WorkerLost, run_in_pool
@@ -31,8 +31,8 @@ def jobs(count: int) -> list[Job]:
     return [Job(f"job_{i}", f"house_{i % 3}") for i in range(count)]
 
 
-def never(item: object) -> Any:
-    raise AssertionError(f"{item} was given up")
+def never(item: object, reason: str) -> Any:
+    raise AssertionError(f"{item} was given up: {reason}")
 
 
 def test_results_have_the_order_of_the_items_whichever_ends_first() -> None:
@@ -102,15 +102,15 @@ def test_work_does_not_wait_for_workers_that_never_start() -> None:
 
 def test_shards_hold_every_item_once() -> None:
     items = list(range(11))
-    shards = [Shard.parse(f"{i}/4") for i in range(4)]
+    shards = [Shard.parse(f"{i}/4") for i in (1, 2, 3, 4)]
     assert sorted(item for shard in shards for item in shard.select(items)) == items
     for shard in shards:
         assert list(shard.select(items)) == [item for item in items if shard.contains(item)]
 
 
-@pytest.mark.parametrize("text", ["2/2", "1", "a/b", "-1/2", "0/0", "1/2/3"])
+@pytest.mark.parametrize("text", ["0/2", "3/2", "1", "a/b", "-1/2", "0/0", "1/2/3", "\u0661/2"])
 def test_a_shard_that_does_not_exist_is_refused(text: str) -> None:
-    with pytest.raises(ConfigError, match='--shard must be "i/n"'):
+    with pytest.raises(ConfigError, match='--shard must be "i/n" with 1 <= i <= n'):
         Shard.parse(text)
 
 
@@ -189,7 +189,7 @@ def test_a_worker_of_a_cluster_dies_as_a_process_does(cluster: Any, tmp_path: Pa
     deadly = Job("deadly", "house_0", kill=tmp_path / "died")
     fatal = Job("fatal", "house_0", kill=tmp_path / "fatal", always=True)
     executor = make_executor("ray", workers=2, address=cluster.address)
-    given_up = lambda item: {"episode_id": item.episode_id, "dead": True}  # noqa: E731
+    given_up = lambda item, _: {"episode_id": item.episode_id, "dead": True}  # noqa: E731
     lines = list(executor.run(SPEC, [*jobs(4), deadly, fatal], on_death=given_up))
     assert (tmp_path / "died").exists()
     assert len(lines) == 6
@@ -244,3 +244,47 @@ def test_workers_share_the_processors_unless_the_user_says_how_many_threads(
     monkeypatch.setattr(executors, "_processors", lambda: 8)
     assert list(ordered_map(os.getenv, [name, name], workers=2)) == [expected, expected]
     assert os.environ.get(name) == given, "this process keeps its own setting"
+
+
+@pytest.mark.parametrize("how", ["loop", "kernel", "stop"])
+def test_a_call_that_never_returns_ends_its_item_and_no_other(how: str) -> None:
+    items = [Job("hangs", "house_0", hang=how), Job("works", "house_0")]
+    given_up = lambda item, reason: {"episode_id": item.episode_id, "reason": reason}  # noqa: E731
+    began_s = time.monotonic()
+    lines = list(Processes(1, Isolation(needed=True, limit_s=0.3)).run(SPEC, items, on_death=given_up))
+    assert time.monotonic() - began_s < 60.0
+    assert lines[0] == {
+        "episode_id": "hangs",
+        "reason": "The job hangs: no answer within 0.3 s (--step-timeout), so its process was ended.",
+    }
+    assert lines[1]["episode_id"] == "works"
+
+
+def test_one_item_that_kills_its_process_does_not_kill_this_one(tmp_path: Path) -> None:
+    deadly = Job("deadly", "house_0", kill=tmp_path / "died", always=True)
+    for executor in (Processes(2), Processes(1, Isolation(needed=True))):
+        (line,) = executor.run(SPEC, [deadly], on_death=lambda item, reason: {"reason": reason})
+        assert line["reason"] == (
+            "The process of the worker ended with status -9; 2 workers were lost in this episode."
+        )
+
+
+def test_the_supervisor_of_a_clusters_process_reports_its_end_and_goes_on(tmp_path: Path) -> None:
+    supervisor = Supervisor(SPEC, limit_s=60.0)
+    loss = supervisor.run(Job("deadly", "house_0", kill=tmp_path / "died", always=True))
+    assert isinstance(loss, WorkerLost)
+    assert supervisor.run(Job("works", "house_0"))["pid"] != os.getpid()
+    supervisor.close()
+
+
+def test_a_worker_with_threads_and_exit_handlers_that_do_not_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "LAST_WORDS_S", 0.2)
+    began_s = time.monotonic()
+    (line,) = Processes(1, Isolation(needed=True)).run(SPEC, [Job("a", "b", hang="thread")], on_death=never)
+    assert line["episode_id"] == "a"
+    assert time.monotonic() - began_s < 60.0
+
+
+def test_an_error_that_cannot_be_pickled_reaches_the_caller_as_text() -> None:
+    with pytest.raises(WorkersError, match="OwnError: first"):
+        list(Processes(1, Isolation(needed=True)).run(SPEC, [Job("a", "b", hang="raise")], on_death=never))

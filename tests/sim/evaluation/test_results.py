@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
+import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -287,14 +290,84 @@ def test_a_start_that_wrote_nothing_leaves_no_folder_and_one_that_did_stays(tmp_
     assert (tmp_path / "run" / "config.json").exists()
 
 
-def test_only_the_errors_that_are_run_again_are_dropped(tmp_path: Path) -> None:
+def test_an_error_stays_until_the_line_of_its_next_run_replaces_it(tmp_path: Path) -> None:
     run = RunDirectory(tmp_path, CONFIG)
     for number, reason in enumerate(("stop", "error", "error")):
         run.append(line(number, end_reason=reason))
-    assert run.drop_errors({"e1", "e0"}) == 1
-    assert [each["episode_id"] for each in run.lines] == ["e0", "e2"]
-    assert run.drop_errors() == 1
+    assert run.errors(["e1", "e0"]) == {"e1"}
+    assert len(read_result_lines(tmp_path / "results.jsonl").values) == 3
+    run.append(line(1, spl=0.25))
+    run.append(line(3))
+    run.write_summary({})
     run.close()
+    found = read_result_lines(tmp_path / "results.jsonl").values
+    assert [(each["episode_id"], each["end_reason"]) for each in found] == [
+        ("e0", "stop"), ("e1", "stop"), ("e2", "error"), ("e3", "stop"),
+    ]  # fmt: skip
+
+
+def _remove(folder: Path) -> None:
+    shutil.rmtree(folder)
+
+
+def _truncate(folder: Path) -> None:
+    (folder / "results.jsonl").write_text("")
+
+
+def _replace(folder: Path) -> None:
+    content = (folder / "results.jsonl").read_text()
+    (folder / "results.jsonl").unlink()
+    (folder / "results.jsonl").write_text(content)
+
+
+def _overwrite(folder: Path) -> None:
+    content = (folder / "results.jsonl").read_text()
+    (folder / "results.jsonl").write_text(content.replace("0.5", "0.9"))
+
+
+@pytest.mark.parametrize("change", [_remove, _truncate, _replace, _overwrite])
+def test_results_that_another_program_removes_or_changes_end_the_run_with_what_is_lost(
+    change: Callable[[Path], None], tmp_path: Path
+) -> None:
+    run = RunDirectory(tmp_path / "run", CONFIG)
+    run.append(line(1))
+    change(tmp_path / "run")
+    lost = r"another program.*The results of \d episodes.*'e1'"
+    if change is not _replace:  # until a line is written, the same content is there
+        with pytest.raises(ConfigError, match=lost):
+            run.write_summary({})
+    if change is not _overwrite:  # the size is the same until the run ends
+        with pytest.raises(ConfigError, match=lost):
+            run.append(line(2))
+    run.discard_if_empty()
+    run.close()
+
+
+def test_the_config_is_on_the_disk_before_the_first_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    synced: list[str] = []
+    monkeypatch.setattr(os, "fsync", lambda handle: synced.append(os.readlink(f"/proc/self/fd/{handle}")))
+    run = RunDirectory(tmp_path / "run", CONFIG)
+    assert [Path(file).name[:12] for file in synced] == [".config.json", "run"]
+    run.append(line(1))
+    run.close()
+    assert Path(synced[-1]).name == "results.jsonl"
+
+
+def test_a_change_of_the_users_code_is_refused_with_two_ways_out(tmp_path: Path) -> None:
+    run = RunDirectory(tmp_path, CONFIG | {"versions": {"code": "a+1"}})
+    run.append(line(1))
+    run.require_own_code("a+1", {"e1"})
+    run.require_own_code("b+1", {"e1"})  # this project's code has changed, not the user's
+    run.require_own_code("a+2", set())  # nothing of the earlier code is kept
+    with pytest.raises(ConfigError, match=r"has changed since it ran 1 episode .*another --out.*--keep-results"):
+        run.require_own_code("a+2", {"e1"})
+    run.close()
+
+
+def test_a_seed_of_any_size_and_an_error_with_half_a_surrogate_pair_are_read_back(tmp_path: Path) -> None:
+    write_lines(tmp_path, line(1, seed=2**63 - 1, error="a\udcffb", end_reason="error"))
+    (found,) = read_result_lines(tmp_path / "results.jsonl").values
+    assert (found["seed"], found["error"]) == (2**63 - 1, "a?b")
 
 
 def test_a_folder_without_lines_is_removed_with_its_summary(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import math
 import sys
@@ -16,7 +17,7 @@ import pytest
 from sim.env.objectnav import ObjectNavEnv
 from sim.episodes.splits import Episode, write_split
 from sim.evaluation.results import summarise
-from sim.evaluation.rollout import episode_seed, play_episode
+from sim.evaluation.rollout import agent_seed, episode_seed, play_episode
 from sim.geometry.pose import Pose
 from sim.interface import Action, CameraModel
 from sim.run import entry
@@ -119,6 +120,12 @@ def test_a_line_without_a_stop_or_a_place_says_so(env: ObjectNavEnv, agent: Any,
     assert line["end_reason"] == end
     assert line["stop_target_xy_m"] is None
     assert line["stop_target_to_goal_m"] is None
+    assert line["stop_target_category"] is None
+
+
+def test_a_line_names_the_object_for_which_the_agent_stops(env: ObjectNavEnv) -> None:
+    lines = [play_episode(env, Aimed([Action.STOP], place), EPISODE, seed=0) for place in ((3.4, 0.0), (-1.9, 0.0))]
+    assert [line["stop_target_category"] for line in lines] == ["sofa", "wall"]
 
 
 def test_the_place_of_an_agent_with_a_noisy_pose_is_where_it_saw_it_from_the_robot(tmp_path: Path) -> None:
@@ -174,7 +181,14 @@ def test_a_broken_episode_does_not_change_the_next_one(env: ObjectNavEnv) -> Non
     assert {k: v for k, v in before.items() if k not in times} == {k: v for k, v in after.items() if k not in times}
 
 
-def test_an_agents_seed_depends_on_run_and_episode_only() -> None:
+def test_the_seed_of_an_agent_tells_nothing_without_the_key_of_the_run() -> None:
+    seeds = {agent_seed(run, name, key) for run in (0, 1) for name in ("a", "b") for key in ("k", "l" * 200)}
+    assert len(seeds) == 8
+    assert all(0 <= each < 2**32 for each in seeds)
+    assert agent_seed(1, "a", "k") == agent_seed(1, "a", "k")
+
+
+def test_the_seed_of_the_environment_depends_on_run_and_episode_only() -> None:
     seeds = {episode_seed(run, name) for run in (0, 1) for name in ("a", "b")}
     assert len(seeds) == 4
     assert episode_seed(1, "a") == episode_seed(1, "a")
@@ -206,6 +220,17 @@ class Answers:
         return Action.TURN_LEFT if self.step == 1 else self.answer()
 
 
+class Mute(BaseException):
+    """An error whose text cannot be made."""
+
+    def __str__(self) -> str:
+        raise ValueError
+
+
+def fail(error: BaseException) -> None:
+    raise error
+
+
 class Signature:
     """An agent whose methods take other arguments."""
 
@@ -223,6 +248,11 @@ class Signature:
         (Answers(lambda: 1.5), "step 2: act() returned 1.5"),
         (Answers(lambda: np.zeros(3)), "step 2: act() returned array("),
         (Answers(lambda: sys.exit(3)), "step 2: SystemExit: 3"),
+        (Answers(lambda: fail(GeneratorExit())), "step 2: GeneratorExit: no message"),
+        (Answers(lambda: fail(asyncio.CancelledError("late"))), "step 2: CancelledError: late"),
+        (Answers(lambda: fail(RuntimeError("x" * 10_000_000))), "xxx ... (10000000 letters)"),
+        (Answers(lambda: fail(RuntimeError("a\udcffb\x1b"))), r"RuntimeError: a\udcffb\x1b"),
+        (Answers(lambda: fail(Mute())), "step 2: Mute: its message cannot be read (ValueError)"),
         (Answers(lambda: {}["sofa"]), "step 2: KeyError: 'sofa'"),
         (Signature(), "step 1: TypeError: Signature.act() takes 1 positional argument"),
     ],
@@ -234,6 +264,7 @@ def test_an_agent_that_breaks_ends_its_episode_as_an_error_that_names_agent_and_
     assert line["end_reason"] == "error"
     assert line["error"].startswith("Agent 'my.agents:mine', ")
     assert message in line["error"]
+    assert len(line["error"]) < 3000
     assert line["num_steps"] == (0 if isinstance(agent, Signature) else 1)
     assert play_episode(env, Script([Action.STOP]), EPISODE, seed=0)["end_reason"] == "stop"
 
@@ -255,7 +286,7 @@ def test_a_bad_house_start_or_agent_ends_one_episode_and_errors_can_be_run_again
     monkeypatch.setenv("STUBBORN_TEST_FAULT", str(fault))
     fault.touch()
     command = ["--agent", "tests.helpers.runners:make_faulty", "--split", str(folder), "--episodes", "4"]
-    command += ["--workers", workers, "--semantics", "gt", "--out", str(tmp_path / "run")]
+    command += ["--step-timeout", "0", "--workers", workers, "--semantics", "gt", "--out", str(tmp_path / "run")]
 
     def reasons() -> dict[str, str]:
         lines = [json.loads(line) for line in (tmp_path / "run" / "results.jsonl").read_text().splitlines()]

@@ -18,8 +18,8 @@ def jobs(count: int, houses: int = 3) -> list[Job]:
     return [Job(f"job_{i}", f"house_{i % houses}") for i in range(count)]
 
 
-def never(item: object) -> dict:
-    raise AssertionError(f"{item} was given up")
+def never(item: object, reason: str) -> dict:
+    raise AssertionError(f"{item} was given up: {reason}")
 
 
 @pytest.mark.parametrize("workers", [1, 2])
@@ -48,7 +48,7 @@ def test_a_killed_worker_costs_its_item_one_more_try(tmp_path: Path) -> None:
 
 def test_an_item_that_kills_every_worker_becomes_an_error_line(tmp_path: Path) -> None:
     items = [*jobs(4), Job("deadly", "house_0", kill=tmp_path / "died", always=True)]
-    lines = list(Processes(2).run(SPEC, items, on_death=lambda item: {"episode_id": item.episode_id, "dead": True}))
+    lines = list(Processes(2).run(SPEC, items, on_death=lambda item, _: {"episode_id": item.episode_id, "dead": True}))
     assert len(lines) == 5
     assert [line["episode_id"] for line in lines if line.get("dead")] == ["deadly"]
     assert len((tmp_path / "died").read_text()) == MAX_TRIES

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,17 +13,18 @@ import pytest
 from sim.gl import mujoco
 from sim.housegen import generate
 from sim.housegen.floor_plan.rectangles import Rect
-from sim.housegen.floor_plan.rooms import PLAN_AREA_M2
+from sim.housegen.floor_plan.rooms import PLAN_AREA_M2, draw_plan_kind
 from sim.housegen.furnishing.placement import RoomLayout
 from sim.housegen.furnishing.placement.floor import put_against_wall
 from sim.housegen.furnishing.placement.on_walls import hang_on_wall
 from sim.housegen.furniture import CATALOGUE
-from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, generate_house, max_bytes
+from sim.housegen.generator import MAX_BYTES, GeneratedHouse, HouseConfig, _draw_plan, generate_house, max_bytes
 from sim.housegen.splits.recipes import SPLITS
+from sim.housegen.structure.openings import HALF_WALL_M
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
-from sim.houses.load import validate_house
-from sim.houses.writing import house_text
+from sim.houses.load import load_house, validate_house
+from sim.houses.writing import house_text, write_house
 from sim.interface import GOAL_CATEGORIES, ConfigError
 from sim.world.check import check_house
 from tests.helpers.sampling import sample
@@ -109,6 +111,35 @@ def test_errors_of_bad_requests_name_the_allowed_values() -> None:
         generate_house(-1)
     with pytest.raises(ConfigError, match="no room kind 'ballroom'"):
         HouseConfig(rooms=("ballroom",))
+
+
+@pytest.mark.parametrize("area_m2", [52.0, 90.0, 200.0, 500.0])
+def test_the_area_and_the_rooms_that_are_asked_for_are_met(area_m2: float) -> None:
+    config = HouseConfig(area_m2=area_m2, rooms=("office",) if area_m2 > 80.0 else ())
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        plan, _ = _draw_plan(rng, draw_plan_kind(rng, area_m2), area_m2, config)
+        inner_m2 = sum(room.rect.grown(-HALF_WALL_M).area_m2 for room in plan.rooms)
+        assert plan.area_m2 == pytest.approx(area_m2, rel=0.05)
+        assert inner_m2 == pytest.approx(area_m2, rel=0.05)
+        assert set(config.rooms) <= {room.kind for room in plan.rooms}
+
+
+def test_a_written_house_is_read_from_its_folder_wherever_that_is(tmp_path: Path) -> None:
+    written = write_house(generate(3, kind="studio", area_m2=55.0), tmp_path / "first", "home")
+    moved = (tmp_path / "first").rename(tmp_path / "second") / written.name
+    house = load_house(moved)
+    assert house.name == "home"
+    assert all((moved.parent / "textures" / texture.file).is_file() for texture in house.spec.textures if texture.file)
+
+
+def test_requests_that_contradict_each_other_are_refused() -> None:
+    with pytest.raises(ConfigError, match="kind 'studio' has 50-68 m2"):
+        HouseConfig(kind="studio", area_m2=300.0)
+    with pytest.raises(ConfigError, match="no place for further rooms"):
+        HouseConfig(kind="studio", rooms=("gym",))
+    with pytest.raises(ConfigError, match="no option 'area'"):
+        generate(0, area=70.0)
 
 
 @pytest.mark.parametrize("split", list(SPLITS))

@@ -11,6 +11,7 @@ import pytest
 
 from sim.errors import HouseError
 from sim.houses.load import load_house
+from sim.houses.mjcf import read_spec
 from sim.task.ground_truth import GroundTruth
 from sim.world.world import World
 from tests.helpers.worlds import room, with_box
@@ -84,6 +85,20 @@ def test_a_file_that_asks_for_too_much_or_has_no_numbers_is_refused_soon(
     with pytest.raises(HouseError, match=message) as refused:
         load_house(tmp_path / "house.xml")
     assert "house.xml" in str(refused.value)
+    assert time.process_time() - began_s < 5.0
+
+
+@pytest.mark.parametrize("copies", [24, 6])
+def test_sensors_that_replicate_doubles_are_counted(copies: int, tmp_path: Path) -> None:
+    replicated = f'<replicate count="{copies}" offset="0.1 0 0"><geom name="chair_00" size="0.1"/></replicate>'
+    text = house(replicated).replace("</mujoco>", "<sensor><clock/></sensor></mujoco>")
+    (tmp_path / "house.xml").write_text(text)
+    began_s = time.process_time()
+    if copies == 24:
+        with pytest.raises(HouseError, match="more than 100000 elements with all copies"):
+            read_spec(tmp_path / "house.xml")
+    else:
+        assert len(read_spec(tmp_path / "house.xml").sensors) == 2**copies
     assert time.process_time() - began_s < 5.0
 
 

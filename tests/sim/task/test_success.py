@@ -12,9 +12,11 @@ from sim.gl import mujoco
 from sim.houses.house import House, read_rooms
 from sim.houses.labels import read_labels
 from sim.interface import CameraModel, SuccessRule
+from sim.task.ground_truth import GroundTruth
 from sim.task.success import GoalRegion, Surroundings, sight_blockers
 from sim.world.freespace import FreeSpace
-from tests.helpers.worlds import room, with_box, with_movable
+from sim.world.world import World
+from tests.helpers.worlds import room, two_storeys, with_box, with_movable
 
 
 def compiled(house: House):
@@ -35,7 +37,7 @@ def region_in(model, data, labels, goal: str, *, floor_z_m: float = 0.0, camera=
     success = SuccessRule(**rule)
     sight_height_m = success.sight_height_with(camera)
     around = Surroundings.of(model, data, labels, sight_height_m=sight_height_m, floor_z_m=floor_z_m)
-    return GoalRegion(model, data, labels, goal, surroundings=around, success=success, floor_z_m=floor_z_m)
+    return GoalRegion(data, labels, goal, surroundings=around, success=success, floor_z_m=floor_z_m)
 
 
 def two_rooms(wall: str = "wall_10", *, low_m: float = 0.0, high_m: float = 2.5, group: int = 0) -> House:
@@ -268,3 +270,25 @@ def test_the_rule_says_which_floors_are_one_storey():
     house = with_box(room(6, 4), "sofa_00", centre_m=(1, 0, 0.3), half_m=(0.4, 0.4, 0.3))
     assert region(house, "sofa", floor_z_m=0.8).footprints
     assert not region(house, "sofa", floor_z_m=0.8, same_storey_m=0.5).footprints
+
+
+@pytest.mark.parametrize(
+    ("place", "goal", "category"),
+    [
+        ((1.0, 0.0), "bed", "table"),
+        ((1.75, 0.0), "sofa", "table"),  # nearer than the bed
+        ((2.97, 0.0), "sofa", "bed"),  # the wall, which is nearer, counts only without an object
+        ((1.0, 0.5), "bed", "table"),
+        ((1.25, 0.0), "bed", "plant"),  # on the table: the smaller of two outlines
+        ((1.25, 0.0), "table", "table"),  # the goal counts first
+        ((-2.9, 1.0), "bed", "wall"),
+        ((-1.0, 1.0), "bed", None),
+        ((0.0, 0.0), "bed", None),  # the lamp hangs from the storey above
+    ],
+)
+def test_a_place_has_the_category_of_the_nearest_object(place, goal, category):
+    house = with_box(two_storeys(), "table_00", centre_m=(1.2, 0, 0.4), half_m=(0.5, 0.3, 0.4))
+    house = with_box(house, "plant_00", centre_m=(1.3, 0, 0.9), half_m=(0.1, 0.1, 0.1))
+    house = with_box(house, "lighting_00", centre_m=(0, 0, 4.0), half_m=(0.1, 0.1, 0.1))
+    truth = GroundTruth(World(house))
+    assert truth.category_at(*place, 0.0, goal=goal, within_m=0.3) == category

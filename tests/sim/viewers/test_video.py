@@ -39,7 +39,7 @@ from sim.viewers.topview import (
     SUCCEEDS,
     TopView,
     shortest_path_m,
-    shown_cells,
+    whole_storey_m,
 )
 from sim.viewers.video import FRAMES_PER_S, VideoRecorder, VideoWriter, video_file
 from sim.viewers.viewer import VIEWER_IMAGES, Moment
@@ -220,6 +220,7 @@ def perceived_in(moment: Moment) -> overlay.Perceived:
 
 
 PLAN = np.zeros((overlay.MAP_PX, overlay.MAP_PX, 3), np.uint8)
+WIDE_PLAN = np.zeros((overlay.MAP_PX, 616, 3), np.uint8)
 INFO = {"collided": True, "distance_to_goal": 123.4, "collisions": 499, "path_length": 123.4}
 
 
@@ -228,7 +229,13 @@ def test_no_text_leaves_the_frame_or_lies_on_another(goal: str, written: list[tu
     state = "gets unstuck or looks around, and says so in a sentence that nobody has shortened for the video"
     panel = overlay.MapPanel(image=PLAN, title="the agent's map", words=state)
     composer = overlay.FrameComposer(
-        goal, CameraModel(), plan_legend=TopView.legend, map_legend=AgentMapPainter.legend, max_steps=1000
+        goal,
+        CameraModel(),
+        plan_legend=TopView.legend,
+        map_legend=AgentMapPainter.legend,
+        scores=True,
+        names=True,
+        max_steps=1000,
     )
     moment = crowded_moment()
     frame = composer.compose(moment, plan=PLAN, map_panel=panel, perceived=perceived_in(moment))
@@ -254,16 +261,52 @@ def test_a_camera_of_another_shape_keeps_its_proportions(shape: tuple[int, int])
     }
     moment = Moment(step=1, observation={}, images=images, action=Action.STOP)
     composer = overlay.FrameComposer("bed", CameraModel(width_px=shape[1], height_px=shape[0]), plan_legend=())
-    frame = composer.compose(moment, plan=PLAN)
+    frame = composer.compose(moment, plan=WIDE_PLAN)
     rows, cols = np.nonzero((frame == 9).all(axis=2))
     assert np.ptp(cols) / np.ptp(rows) == pytest.approx(shape[1] / shape[0], rel=0.02)
     assert np.ptp(cols) + 1 == 640 or np.ptp(rows) + 1 == 480
 
 
+def test_an_agent_without_a_map_and_a_segmentation_has_a_wide_plan_and_no_empty_panels() -> None:
+    composer = overlay.FrameComposer("bed", CameraModel(), plan_legend=TopView.legend)
+    assert composer.plan_px == (616, overlay.MAP_PX)
+    frame = composer.compose(crowded_moment(), plan=WIDE_PLAN)
+    blocks = {tuple(colour) for colour in frame[::8, ::8].reshape(-1, 3).tolist()}
+    assert (228, 228, 226) not in blocks
+    assert (frame[340:620, 660:1270] == 0).all()
+
+
+def test_a_colour_of_both_maps_has_one_meaning() -> None:
+    plan, agents = ({colour: name for name, colour in of.legend} for of in (TopView, AgentMapPainter))
+    assert len(plan) == len(TopView.legend)
+    assert len(agents) == len(AgentMapPainter.legend)
+    shared = {colour for colour in plan if colour in agents}
+    assert {plan[colour] for colour in shared} == {"driven path", "obstacle"}
+    assert all(plan[colour] == agents[colour] for colour in shared)
+    apart = [np.abs(np.subtract(a, b)).max() for a in plan for b in agents if a not in shared or b not in shared]
+    assert min(apart) >= 12
+
+
+@pytest.mark.parametrize("yaw_rad", [0.0, 0.5, 2.0, -1.2])
+def test_the_plan_beside_a_map_has_the_heading_of_the_start_up(env: ObjectNavEnv, yaw_rad: float) -> None:
+    env.reset(options={"episode": replace(EPISODE, start=Pose(-1.0, 0.0, yaw_rad))})
+    view = TopView(env, heading_up=True)
+    view.paint(300)
+    here, ahead, left = view._pixels(
+        np.array([(-1.0, 0.0), (-1.0 + np.cos(yaw_rad), np.sin(yaw_rad)), (-1.0 - np.sin(yaw_rad), np.cos(yaw_rad))])
+    )
+    assert abs(ahead[0] - here[0]) <= 1
+    assert ahead[1] < here[1] - 20
+    assert left[0] < here[0] - 20
+    corners = view._pixels(np.array([(x, y) for x in (-3.0, 3.0) for y in (-3.0, 3.0)]))
+    assert corners.min() >= 0
+    assert corners.max() <= 300
+
+
 def test_a_collision_puts_a_red_frame_around_the_camera_picture() -> None:
     moment = crowded_moment()
     composer = overlay.FrameComposer("bed", CameraModel(), plan_legend=())
-    calm, hit = (composer.compose(moment, plan=PLAN) for _ in range(2))
+    calm, hit = (composer.compose(moment, plan=WIDE_PLAN) for _ in range(2))
     composer.add_outcome(calm, {**INFO, "collided": False, "episode_id": "e"})
     composer.add_outcome(hit, {**INFO, "episode_id": "e"})
     assert tuple(hit[300, 9]) == overlay.ALARM
@@ -334,17 +377,15 @@ def test_the_shortest_path_is_shown_where_the_floor_is_not_exactly_at_zero(tmp_p
     env.close()
 
 
-@pytest.mark.parametrize(("east_m", "whole"), [(10.0, True), (20.0, False)])
-def test_the_plan_shows_a_small_house_whole_and_a_goal_behind_furniture(east_m: float, whole: bool) -> None:
+@pytest.mark.parametrize("east_m", [10.0, 20.0])
+def test_the_plan_shows_the_whole_house_and_a_goal_behind_furniture(east_m: float) -> None:
     furnished = with_box(room(east_m, 4), "cabinet_00", centre_m=(east_m / 2 - 0.5, 0, 0.9), half_m=(0.5, 2.0, 0.9))
     house = with_box(furnished, "sofa_00", centre_m=(east_m / 2 - 0.1, 0, 2.0), half_m=(0.1, 0.8, 0.2))
     truth = GroundTruth(World(house))
     space, target = truth.space(), truth.target("sofa")
-    rows, cols = shown_cells(space, target)
-    x_m, _ = space.frame.axes()
-    assert (rows.stop - rows.start, cols.stop - cols.start) <= space.frame.shape
-    assert x_m[cols][-1] > east_m / 2 - 0.05
-    assert ((rows.stop - rows.start, cols.stop - cols.start) == space.frame.shape) == whole
+    low, high = (edge(whole_storey_m(space, target), axis=0) for edge in (np.min, np.max))
+    assert np.all(low <= (-east_m / 2, -2.0))
+    assert np.all(high >= (east_m / 2, 2.0))
 
 
 def test_a_video_that_the_disk_cannot_hold_is_an_error_and_no_file(tmp_path: Path) -> None:
@@ -406,6 +447,17 @@ def test_the_shortest_path_of_the_plan_is_as_long_as_the_task_says_and_ends_wher
             0.8,
             True,
             "False detection: the agent stopped for something 1.8 m from the nearest chair.",
+        ),
+        (
+            {
+                "end_reason": "stop",
+                "failure": "false_detection",
+                "stop_target_to_goal_m": 1.84,
+                "stop_target_category": "sofa",
+            },
+            4.2,
+            True,
+            "False detection: the agent stopped at a sofa, 1.8 m from the nearest chair.",
         ),
         (
             {"end_reason": "stop", "failure": "stopped_short", "stop_target_to_goal_m": 0.04},

@@ -7,12 +7,13 @@ import time
 
 import pytest
 
+from sim.composition.options import RunOptions
 from sim.errors import ConfigError
 from sim.interface import Action
 from sim.web.controls import Choice, Controls, Interrupted, Wish
 
 LEFT, AHEAD = Action.TURN_LEFT, Action.MOVE_FORWARD
-WISH = Wish(split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt")
+WISH = Wish(split="val", house="val_00", goal="bed", agent="stubborn", semantics="gt", options=RunOptions())
 
 
 def later(action, delay_s: float = 0.1) -> None:

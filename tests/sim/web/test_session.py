@@ -37,9 +37,9 @@ def test_the_place_is_that_of_the_agents_own_stop(
     inner: Stops, driver: Any, place: object, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(SharedAgent, "_show", lambda *_: None)
-    controls: Any = SimpleNamespace(choose=lambda advised: Choice(advised, driver))
+    controls: Any = SimpleNamespace(choose=lambda advised: Choice(advised, driver), hints=False)
     unused: Any = None
-    parts: Any = SimpleNamespace(agent=inner)
+    parts: Any = SimpleNamespace(agent=inner, env=SimpleNamespace())
     shared = SharedAgent(parts, unused, controls, unused)
     shared.reset("bed", 0)
     assert shared.act({}) is Action.STOP  # pyright: ignore[reportArgumentType] - nothing reads the observation

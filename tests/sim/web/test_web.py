@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
 import os
 import re
+import socket as socket_module
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,10 +21,9 @@ import pytest
 
 from sim import report
 from sim import run as sim_run
-from sim.composition.options import RunOptions
-from sim.composition.setup import Setup
-from sim.errors import ConfigError
-from stubborn.segmentation.shipped import SHIPPED_REDNET
+from sim.evaluation.results import read_result_lines
+from sim.task.trajectory import read_trajectory, trajectory_file
+from sim.web import __main__ as web
 from tests.helpers.browser import ESCAPE, Browser, missing
 
 pytest.importorskip("starlette", reason="no starlette: pip install -e '.[web]'")
@@ -29,9 +31,6 @@ pytest.importorskip("uvicorn", reason="no uvicorn: pip install -e '.[web]'")
 client = pytest.importorskip("websockets.sync.client", reason="no websockets: pip install -e '.[web]'")
 
 from websockets.exceptions import WebSocketException  # noqa: E402
-
-from sim.web import session  # noqa: E402
-from sim.web.controls import Wish  # noqa: E402
 
 WISH = {"split": "traps", "house": "wedged_spawn", "goal": "bed", "semantics": "gt"}
 LINE = {"episode_id": "e/0", "house": "h", "goal": "bed", "end_reason": "stop", "success": 1.0, "num_steps": 9}
@@ -42,7 +41,8 @@ class Server:
 
     def __init__(self, runs: Path, port: int = 0) -> None:
         command = [sys.executable, "-m", "sim.web", "--port", str(port), "--runs", str(runs)]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.log = tempfile.TemporaryFile("w+")  # noqa: SIM115 - it is there as long as the server
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True)
         assert self.process.stdout is not None
         found = re.search(r"http://127\.0\.0\.1:(\d+)", self.process.stdout.readline())
         assert found
@@ -77,6 +77,10 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (run / "results.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     (run / "config.json").write_text(json.dumps({"agent": "stubborn", "semantics": "gt"}))
     (run / "videos" / "e%2F0.mp4").write_bytes(b"a video")
+    other = folder / "runs" / "other"
+    other.mkdir()
+    (other / "results.jsonl").write_text(json.dumps(LINE | {"success": 0.0}) + "\n")
+    (other / "config.json").write_text(json.dumps({"agent": "oracle", "semantics": "rednet"}))
     (folder / "secret.mp4").write_bytes(b"a secret")
     os.symlink(folder / "secret.mp4", run / "videos" / "e%2F1.mp4")
     os.symlink(folder, folder / "runs" / "elsewhere")
@@ -182,6 +186,42 @@ def test_commands_that_are_not_in_the_package_cannot_be_started(server: Server, 
         assert next(answer for answer in answers if answer["kind"] == "refused")["message"]
 
 
+BROKEN = {
+    "binary": b"\x82\x82abcd\x00\x00",
+    "not UTF-8": b"\x81\x82abcd\x9e\x9c",
+    "not masked": b"\x81\x02{}",
+    "unknown opcode": b"\x83\x81abcdx",
+    "continuation of nothing": b"\x80\x81abcdx",
+    "longer than memory": b"\x81\xff\x7f\xff\xff\xff\xff\xff\xff\xffabcd",
+    "close without a code": b"\x88\x81abcdx",
+    "another protocol": b"GET / HTTP/1.1\r\n\r\n",
+}
+"""Frames of a websocket that no browser sends, masked by "abcd" where they are."""
+
+
+@pytest.mark.parametrize("frame", BROKEN.values(), ids=BROKEN)
+def test_broken_frames_leave_no_traceback(server: Server, frame: bytes) -> None:
+    with server.connect() as socket:
+        socket.recv(timeout=10)
+        socket.socket.sendall(frame)
+        socket.socket.settimeout(0.3)
+        with contextlib.suppress(WebSocketException, TimeoutError):
+            while True:
+                socket.recv(timeout=0.3)
+    assert server.get("/")[0] == 200
+    server.log.seek(0)
+    assert "Traceback" not in server.log.read()
+
+
+def test_bytes_that_are_no_request_leave_no_traceback(server: Server) -> None:
+    for data in (b"\x16\x03\x01", b"GET /\xff HTTP/1.1\r\n\r\n", b"GET / HTTP/1.1\r\nHost: [\r\n\r\n"):
+        with socket_module.create_connection(("127.0.0.1", server.port), timeout=5) as connection:
+            connection.sendall(data + b"\r\n\r\n")
+            assert connection.recv(100).split()[1] in (b"400", b"403")
+    server.log.seek(0)
+    assert "Traceback" not in server.log.read()
+
+
 # ---- in a real browser
 
 
@@ -230,7 +270,7 @@ def test_an_episode_runs_to_its_end_and_a_second_client_sees_it(server: Server, 
 
 
 def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_back(
-    server: Server, browser: Browser
+    server: Server, browser: Browser, runs: Path
 ) -> None:
     browser.visit(server.address)
     wait_for(lambda: browser.run("return document.querySelector('#link').textContent") == "connected")
@@ -263,6 +303,11 @@ def test_ten_actions_are_driven_the_agent_is_taken_over_from_and_gets_the_robot_
     # The STOP of a person is not a false detection. The agent may have driven near the bed.
     sentence = ended["outcome"]["sentence"]
     assert "came too early" in sentence or "The STOP counts" in sentence
+    run = runs / Path(ended["outcome"]["recorded"].removeprefix("Recorded in ").removesuffix(".")).name
+    (line,) = read_result_lines(run / "results.jsonl").values
+    assert (line["agent"], line["other_driver"], line["person_steps"]) == ("human+agent", "stubborn", 11)
+    recorded = read_trajectory(trajectory_file(run, line["episode_id"]))
+    assert (recorded.num_steps, recorded.end_reason) == (line["num_steps"], "stop")
     assert browser.console_errors() == []
 
 
@@ -303,51 +348,52 @@ def test_a_page_that_was_left_is_not_counted_and_the_back_button_brings_it_back(
     wait_for(lambda: browser.run(link) == "connected")
 
 
-def test_a_network_of_your_own_is_used_and_one_that_is_not_there_is_refused(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--weights", "none.safetensors", "No weights at 'none.safetensors'."),
+        ("--agent", "no_such:AGENT", "'no_such:AGENT': no module 'no_such' can be imported from here."),
+        ("--house", "none.xml", "House 'none.xml': there is no such file."),
+    ],
+)
+def test_what_is_not_there_is_refused_in_one_line(
+    option: str, value: str, told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked: list[RunOptions] = []
-
-    def build(setup: Setup, *, watched: bool) -> None:
-        asked.append(setup.options)
-        raise ConfigError("enough")
-
-    monkeypatch.setattr(session, "build_parts", build)
-    (tmp_path / "mine.safetensors").write_bytes(SHIPPED_REDNET.read_bytes())
-    playing = session.Session(Silent(), tmp_path / "mine.safetensors")
-    for semantics in ("rednet", "gt"):
-        with pytest.raises(ConfigError, match="enough"):
-            playing._play(Wish(split="traps", house="wedged_spawn", goal="bed", agent="stubborn", semantics=semantics))
-    assert [options.weights for options in asked] == [tmp_path / "mine.safetensors", None]
-    command = [sys.executable, "-m", "sim.web", "--port", "0", "--weights", str(tmp_path / "none.safetensors")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-    assert (done.returncode, done.stderr) == (2, f"error: No weights at '{tmp_path / 'none.safetensors'}'.\n")
+    assert web.entry(["--port", "0", option, value]) == 2
+    assert capsys.readouterr().err.replace(f"{Path.cwd()}/", "") == f"error: {told}\n"
 
 
-class Silent:
-    """An audience without clients."""
-
-    def wanted(self) -> frozenset[str]:
-        return frozenset()
-
-    def show(self, frame: session.Frame) -> None:
-        pass
-
-    def tell(self, state: Any) -> None:
-        pass
-
-
-def test_finished_runs_are_listed_with_their_videos(server: Server, browser: Browser) -> None:
+def test_finished_runs_are_filtered_opened_and_compared(server: Server, browser: Browser) -> None:
     browser.visit(server.address)
     browser.click("#tab-runs")
-    wait_for(lambda: browser.run("return document.querySelectorAll('#run-list button').length") == 1)
-    assert "2 of 3 found, 1 error, SPL" in browser.run("return document.querySelector('#run-list').innerText")
+    rows = "return [...document.querySelectorAll('#run-list tr')].map(row => row.innerText)"
+    wait_for(lambda: browser.run(rows))
+    browser.keys("#run-filter", "rednet other")
+    (other,) = browser.run(rows)
+    assert "other" in other
+    assert "0 of 1" in other
+    browser.run(
+        "const f = document.getElementById('run-filter'); f.value = 'mine'; f.dispatchEvent(new Event('input'))"
+    )
+    (mine,) = browser.run(rows)
+    assert "2 of 3, 1 error" in mine
+    assert str(time.localtime().tm_year) in mine
     browser.click("#run-list button")
-    rows = wait_for(lambda: browser.run("return [...document.querySelectorAll('#episodes tr')].map(r => r.innerText)"))
-    assert "found" in rows[0]
-    assert [("Video" in row) for row in rows] == [True, False, False]
-    assert "error" in rows[2]
-    assert "misc" not in rows[2]
+    episodes = "return [...document.querySelectorAll('#episodes tr')].map(row => row.innerText)"
+    shown = wait_for(lambda: browser.run(episodes))
+    assert "found" in shown[0]
+    assert [("Video" in row) for row in shown] == [True, False, False]
+    assert "error" in shown[2]
+    assert "misc" not in shown[2]
+    browser.run(
+        "const f = document.getElementById('outcome-filter'); f.value = 'missed'; f.dispatchEvent(new Event('change'))"
+    )
+    assert browser.run(episodes) == shown[2:]
+    browser.run("for (const name of ['mine', 'other']) marked.add(name); showRuns();")
+    browser.click("#compare")
+    compared = wait_for(lambda: browser.run("return document.getElementById('comparison-tables').innerText"))
+    assert "paired over 1 episodes" in compared
+    assert "-100.0" in compared
     assert browser.console_errors() == []
 
 
@@ -371,6 +417,23 @@ def test_a_report_shows_its_pictures_and_videos(tmp_path: Path, browser: Browser
         assert browser.console_errors() == []
     finally:
         server.kill()
+
+
+def test_all_pictures_are_above_the_fold_and_none_is_black_while_loading(server: Server, browser: Browser) -> None:
+    browser.resize(1400, 900)
+    try:
+        browser.visit(server.address)
+        wait_for(lambda: browser.run("return document.querySelector('#link').textContent").startswith("connected"))
+        boxes = browser.run(
+            "told({...state, phase: 'loading', note: ''});"
+            "return [...document.querySelectorAll('figure')].map(f => [f.getBoundingClientRect().bottom,"
+            " getComputedStyle(f.querySelector('canvas')).visibility, f.offsetHeight])"
+        )
+        assert len(boxes) == 8
+        assert all(bottom <= 900 and height > 100 for bottom, _, height in boxes)
+        assert {visibility for _, visibility, _ in boxes} == {"hidden"}
+    finally:
+        browser.resize(1400, 1000)
 
 
 def test_nothing_is_wider_than_a_phone(server: Server, browser: Browser) -> None:

@@ -97,7 +97,7 @@ def test_depth_is_scaled_from_the_nearest_to_the_farthest_distance() -> None:
 def test_shrinking_takes_the_middle_label_of_a_block() -> None:
     labels = np.array([[1, 1, 9, 9], [1, 1, 9, 9]], np.uint8)
     assert shrink(labels, 2).tolist() == [[1, 9]]
-    with pytest.raises(ConfigError, match="no whole number of 3 pixel blocks"):
+    with pytest.raises(ConfigError, match="not a whole number of 3 pixel blocks"):
         shrink(labels, 3)
 
 

@@ -1,0 +1,71 @@
+"""Records an episode that a person drove, in the format of `--record`: for `stubborn teleop` and the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from sim.composition.human import HUMAN, HUMAN_NAME, judged
+from sim.composition.options import RunOptions
+from sim.composition.record import identity_of
+from sim.composition.setup import Setup, resolve
+from sim.env.objectnav import ObjectNavEnv
+from sim.episodes.splits import Episode
+from sim.evaluation.last_view import write_last_view
+from sim.evaluation.rollout import record_episode
+
+_OF_THE_WORLD = ("robot", "camera", "profile", "noise", "task")
+"""Fields of the configuration that hold for a person as for an agent."""
+
+
+def setup_of_person(setup: Setup, out: Path | None, *, with_agent: bool = False) -> Setup:
+    """Returns the setup that describes a person in the world of another setup.
+
+    Args:
+        setup: of the agent that could have driven.
+        out: folder of the record.
+        with_agent: whether the agent drove a part of the episode; its results are not those of a person.
+    """
+    options = setup.options
+    name = f"{HUMAN_NAME}+agent" if with_agent else HUMAN_NAME
+    kept = ("split", "house", "labels", "root", "goal", "start_deg", "robot", "seed", "seed_key", "profile", "noise")
+    of_person = RunOptions(
+        agent=name,
+        semantics="gt",
+        episodes=1,
+        out=out,
+        record=True,
+        **{field: getattr(options, field) for field in kept},
+    )
+    person = resolve(of_person, HUMAN)
+    return replace(
+        person,
+        config=replace(person.config, **{field: getattr(setup.config, field) for field in _OF_THE_WORLD}),
+        settings={path: value for path, value in setup.settings.items() if path.partition(".")[0] in _OF_THE_WORLD},
+    )
+
+
+def record_driven(
+    setup: Setup, env: ObjectNavEnv, episode: Episode, metrics: Mapping[str, Any], content: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Writes trajectory and last picture of the episode that has just ended; returns its result line.
+
+    Args:
+        setup: of the person.
+        env: the environment of the episode.
+        episode: the episode.
+        metrics: what `play_episode` returned.
+        content: of the record's `config.json`.
+
+    Raises:
+        ConfigError: the folder is not writable.
+    """
+    options = setup.options
+    assert options.out is not None
+    line = identity_of(setup, episode) | judged(metrics)
+    about = {"profile": options.profile, "noise": options.noise, "split": content["split_identity"]}
+    record_episode(env, options.out, line, about | {"versions": content["versions"]})
+    write_last_view(env, options.out, line["episode_id"])
+    return line

@@ -1,0 +1,27 @@
+"""Finds the code of the user that a run uses, and whether it needs a process of its own."""
+
+from __future__ import annotations
+
+from sim.composition.options import RunOptions
+from sim.evaluation.executors import Isolation
+
+STEP_TIMEOUT_S = 600.0
+"""Longest time of a call of the agent where `--step-timeout` is not given."""
+RUNNER = "sim.composition.runner"
+"""Module of the runner of episodes, which a worker imports."""
+
+
+def own_modules(options: RunOptions) -> list[str]:
+    """Returns the modules of the user that the options name as `package.module:NAME`."""
+    names = (options.agent, options.explorer, options.semantics)
+    return [name.partition(":")[0] for name in names if name is not None and ":" in name]
+
+
+def isolation_of(options: RunOptions) -> Isolation:
+    """Returns whether the episodes of a run need a process of their own, and how long a call of the agent may take.
+
+    Code of a user does: it may hang, crash, or change the state of its process.
+    """
+    limit_s = STEP_TIMEOUT_S if options.step_timeout is None else options.step_timeout
+    own_process = bool(own_modules(options)) or options.step_timeout is not None
+    return Isolation(needed=own_process and limit_s > 0.0, limit_s=limit_s)

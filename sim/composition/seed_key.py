@@ -1,0 +1,55 @@
+"""Finds the key of a run, with which the seeds of its agents are drawn (`sim.evaluation.rollout.agent_seed`)."""
+
+from __future__ import annotations
+
+import fcntl
+import secrets
+from pathlib import Path
+
+from sim.composition.options import RunOptions
+from sim.errors import ConfigError
+from sim.evaluation.results import read_record
+from sim.reading import read_bytes
+
+KEY_FILE = "seed_key"
+"""File with the key of all shards, in the folder of the whole run."""
+
+
+def seed_key_of(options: RunOptions) -> str:
+    """Returns the key of a run: the given one, else that of its folder or of its shards, else a new one.
+
+    Raises:
+        ConfigError: the folder has another key than the given one.
+    """
+    assert options.out is not None
+    config = options.out / "config.json"
+    recorded = read_record(config).get("seed_key") if config.exists() else None
+    if options.seed_key is not None:
+        if recorded not in (None, options.seed_key):
+            raise ConfigError(
+                f"--out '{options.out}' holds a run with --seed-key {recorded}, this run has {options.seed_key}; "
+                "choose another folder."
+            )
+        return options.seed_key
+    if recorded is not None:
+        return recorded
+    whole = options.out.parent if options.shard is not None else options.out
+    return _shared_key(whole / KEY_FILE, make=options.shard is not None) or secrets.token_hex(8)
+
+
+def _shared_key(file: Path, *, make: bool) -> str | None:
+    """Returns the key in the file that all shards of a run share; None where there is none.
+
+    Args:
+        file: holds the key.
+        make: whether to make the file, with a new key, if it does not exist.
+    """
+    if make:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("a+", encoding="utf-8") as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX)  # shards begin at the same time
+            if stream.tell() == 0:
+                stream.write(secrets.token_hex(8))
+    if not file.exists():
+        return None
+    return read_bytes(file, what="Key of the shards", most=10_000).decode(errors="replace").strip() or None

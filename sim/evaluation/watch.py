@@ -1,0 +1,97 @@
+"""Marks the calls of an agent, so that the process that started a worker can end a call that never returns.
+
+A worker writes the beginning and the end of each call to memory that it shares with the process that started it
+(`sim.evaluation.executors`). Nothing in the worker itself can end a call: it may loop in C or have stopped the process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+from multiprocessing.context import SpawnContext
+from typing import Any
+
+WHERE_BYTES = 240
+"""Longest description of a call."""
+TICK_S = 0.25
+"""Interval at which workers are watched."""
+BETWEEN_CALLS_S = 1800.0
+"""Longest time without a call: loading a house, rendering, compiling the kernels in the first run."""
+
+
+class Calls:
+    """Memory of one worker, shared with the process that watches it.
+
+    Args:
+        context: of the processes.
+        limit_s: longest time of a call; 0: no limit.
+    """
+
+    def __init__(self, context: SpawnContext, *, limit_s: float) -> None:
+        self._mark = context.RawArray("d", 1)  # time of the last begin, or minus that of the last end
+        self._where = context.RawArray("c", WHERE_BYTES)
+        self.limit_s = limit_s
+        self._seen, self._waited_s, self._looked_s = 0.0, 0.0, time.monotonic()
+
+    @property
+    def where(self) -> str:
+        """The call that runs, for example "Agent 'mine:make', step 3"; "" between two calls."""
+        return self._where.value.decode(errors="replace") if self._mark[0] > 0.0 else ""
+
+    def begin(self, where: str) -> None:
+        """Marks the beginning of a call, in the worker."""
+        self._where.value = where.encode(errors="replace")[: WHERE_BYTES - 1]
+        self._mark[0] = time.monotonic()
+
+    def end(self) -> None:
+        """Marks the end of a call, in the worker."""
+        self._mark[0] = -time.monotonic()
+
+    def rest(self) -> None:
+        """Starts to wait anew: the worker gets work now."""
+        self._waited_s, self._looked_s = 0.0, time.monotonic()
+
+    def overdue(self) -> str:
+        """Returns a sentence where the worker has shown no sign of life for too long, else ""; for its watcher.
+
+        Time in which the watcher itself did not run does not count, for example after Ctrl-Z.
+        """
+        now_s, mark = time.monotonic(), self._mark[0]
+        passed_s, self._looked_s = min(now_s - self._looked_s, 2.0 * TICK_S), now_s
+        self._waited_s = self._waited_s + passed_s if mark == self._seen else 0.0
+        self._seen = mark
+        limit_s = self.limit_s if mark > 0.0 else max(self.limit_s, BETWEEN_CALLS_S)
+        if self.limit_s == 0.0 or self._waited_s <= limit_s:
+            return ""
+        return (
+            f"{self.where or 'The worker'}: no answer within {limit_s:g} s (--step-timeout), so its process was ended"
+        )
+
+
+_calls: Calls | None = None
+"""The calls of this worker; None: this process is not a watched worker."""
+
+
+def watched_as(calls: Calls) -> None:
+    """Has `marked` write to these calls: this process is a worker."""
+    global _calls
+    _calls = calls
+
+
+def is_stop(error: BaseException) -> bool:
+    """Returns whether an error is Ctrl-C or SIGTERM. In a worker, signals do not raise it, but code of a user may."""
+    return isinstance(error, KeyboardInterrupt) and _calls is None
+
+
+@contextlib.contextmanager
+def marked(where: str) -> Iterator[Any]:
+    """Marks a call of the agent for as long as the `with` block runs."""
+    if _calls is None:
+        yield
+        return
+    _calls.begin(where)
+    try:
+        yield
+    finally:
+        _calls.end()
