@@ -33,6 +33,7 @@ def test_a_segmentation_of_ones_own_is_run_recorded_and_named(
 ) -> None:
     segmentations.ASKED.clear()
     given = ["--house", str(house), "--goal", "sofa", "--episodes", "1", "--out", str(tmp_path), "--semantics", FLAT]
+    given += ["--step-timeout", "0"]  # in this process
     assert entry([*given, "--config", *SMALL, "detector.level=0.125"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert f"with segmentation by {FLAT}" in printed

@@ -223,7 +223,7 @@ def test_candidates_of_failed_episodes_are_neither_fitted_nor_judged(tmp_path: P
 
 def test_too_few_candidates_are_refused_with_the_numbers():
     features, truth = examples(30, 0.3, seed=5)
-    with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of either"):
+    with pytest.raises(ConfigError, match=rf"{truth.sum()} true and {(~truth).sum()} false candidates; 20 of each"):
         fit(log_of({"bed": (features, truth)}), 20)
 
 
@@ -236,7 +236,7 @@ def test_segmentation_that_needs_no_verification_gets_a_verifier_that_accepts_al
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_shipped_parameters_judge_clear_cases_for_every_category(method: str):
-    verifier = verifier_for(IMPERFECT, method=method)
+    verifier = verifier_for(SegmenterSpec(kind="noisy"), method=method)
     assert isinstance(verifier, FittedVerifier)
     for goal in GOAL_CATEGORIES:
         seldom = verifier.probability(goal, Features(20, 3.0, 0.62, 0.88))
