@@ -234,7 +234,7 @@ class SegmenterSpec:
                 raise ConfigError(f"SegmenterSpec.{name} must be a tuple of names, got '{getattr(self, name)}'.")
         unknown = sorted(set(self.truth) - TRUE_IMAGES)
         if unknown:
-            raise ConfigError(f"SegmenterSpec.truth names '{unknown[0]}'. There is: {', '.join(sorted(TRUE_IMAGES))}.")
+            raise ConfigError(f"SegmenterSpec.truth names '{unknown[0]}'. Available: {', '.join(sorted(TRUE_IMAGES))}.")
 
     @property
     def uses_ground_truth(self) -> bool:
@@ -255,7 +255,7 @@ class Segmenter(Protocol):
         ...
 
     def posteriors(self, observation: Observation) -> NDArray[np.float32]:
-        """Returns the probability of each category of `MPCAT40` but void, float32 (40, h, w), in their order.
+        """Returns the probability of each category of `MPCAT40` except void, float32 (40, h, w), in their order.
 
         The resolution may be any whole fraction of the image's. All probabilities of a pixel may be 0 if the frame has
         no information on it. Agents that track objects of all categories (`stubborn-plus`), explorers that map them

@@ -1,4 +1,4 @@
-"""Agents by name: those of `stubborn`, the oracle of `sim`, and anybody's own as `package.module:NAME`."""
+"""Finds agents by name: those of `stubborn`, the oracle of `sim`, and your own as `package.module:NAME`."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def find_agent(name: str) -> AgentSpec:
         near = difflib.get_close_matches(name, SPECS, n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown agent '{name}'.{hint} There is: {', '.join(SPECS)}, or your own as package.module:NAME."
+            f"Unknown agent '{name}'.{hint} Available: {', '.join(SPECS)}, or your own as package.module:NAME."
         )
     found = import_attribute(name, module_name, attribute)
     if isinstance(found, AgentSpec):
@@ -87,7 +87,8 @@ def find_explorer(name: str) -> ExplorerConfig:
     module_name, separator, attribute = name.partition(":")
     if not separator or not attribute:
         raise ConfigError(
-            f"Unknown --explorer '{name}'. There is: {', '.join(agents.EXPLORERS)}, or your own as package.module:NAME."
+            f"Unknown --explorer '{name}'. Available: {', '.join(agents.EXPLORERS)}, or your own as "
+            "package.module:NAME."
         )
     found = import_attribute(name, module_name, attribute)
     if not dataclasses.is_dataclass(found) or isinstance(found, type) or not isinstance(found, ExplorerConfig):
@@ -124,5 +125,5 @@ def build_agent(
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Agent '{name}' cannot be built: {told}") from error
+        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Agent '{name}' cannot be built: {reason}") from error

@@ -34,8 +34,8 @@ def import_attribute(name: str, module_name: str, attribute: str) -> Any:
         if is_stop(error):
             raise
         place = "" if isinstance(error, SyntaxError) else place_of(error, below=__file__)  # its text names the line
-        told = f"{type(error).__name__}: {text_of(error)}{place}"
-        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {told}") from error
+        reason = f"{type(error).__name__}: {text_of(error)}{place}"
+        raise ConfigError(f"'{name}': module '{module_name}' cannot be imported: {reason}") from error
     finally:
         os.chdir(folder)  # the options' paths are relative to it
     try:

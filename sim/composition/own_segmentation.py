@@ -74,8 +74,8 @@ def built(name: str, own: SegmentationSpec, given: Mapping[str, Any]) -> OwnSegm
     except BaseException as error:
         if is_stop(error) or (isinstance(error, ObjectNavError) and not isinstance(error, AgentError)):
             raise
-        told = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
-        raise ConfigError(f"Segmentation '{name}' cannot be built: {told}") from error
+        reason = f"{type(error).__name__}: {text_of(error)}{place_of(error, below=__file__)}"
+        raise ConfigError(f"Segmentation '{name}' cannot be built: {reason}") from error
     if not any(callable(getattr(segmenter, method, None)) for method in _METHODS[:2]):
         raise ConfigError(f"Segmentation '{name}': {type(segmenter).__name__} has no method scores or posteriors.")
     return OwnSegmenter(name, segmenter, own.spec, given["camera"])
@@ -191,9 +191,9 @@ class OwnSegmenter:
         except BaseException as error:
             if is_stop(error):
                 raise
-            told = f"{type(error).__name__}: {text_of(error)}"
+            reason = f"{type(error).__name__}: {text_of(error)}"
             place = place_of(error, below=__file__)
-            raise AgentError(f"Segmentation '{self._name}', {method}: {told}{place}") from error
+            raise AgentError(f"Segmentation '{self._name}', {method}: {reason}{place}") from error
 
     def _refuse(self, method: str, what: str) -> NoReturn:
         raise AgentError(f"Segmentation '{self._name}': {method} returned {what}.")

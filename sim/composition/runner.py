@@ -123,10 +123,10 @@ class EpisodeRunner:
             traceback.print_exc()
         for viewer in self._viewers:
             viewer.close()
-        told = text_of(error)
+        reason = text_of(error)
         if not isinstance(error, ObjectNavError):
-            told = f"{type(error).__name__}: {told} (unexpected; --debug shows where)"
-        return error_line(self._setup, episode, told)
+            reason = f"{type(error).__name__}: {reason} (unexpected; --debug shows where)"
+        return error_line(self._setup, episode, reason)
 
     def close(self) -> None:
         """Frees the renderers; viewers discard an unfinished recording."""

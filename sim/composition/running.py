@@ -112,7 +112,7 @@ def report_house(options: RunOptions, console: Console) -> None:
 def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console: Console) -> None:
     """Prints how many episodes the folder holds already, and whether other code ran them."""
     if todo < total:
-        console.print(f"{total - todo} of them were there already, {todo} to go.")
+        console.print(f"{total - todo} of them exist already, {todo} remain.")
     for name, (before, now) in (run.other_versions() if 0 < todo < total else {}).items():
         console.print(
             f"The run began with {name} {before}; these episodes run with {now}, and their results may differ.",
@@ -123,7 +123,7 @@ def _report_resumed(run: RunDirectory, total: int, todo: int, code: str, console
     others = run.record_code(code) if todo else []
     if others:
         console.print(
-            f"The episodes that were there were run by other code ({', '.join(others)}) than these ({code}).",
+            f"The existing episodes were run by other code ({', '.join(others)}) than these ({code}).",
             highlight=False,
             soft_wrap=True,
         )

@@ -116,7 +116,7 @@ KINDS: Mapping[str, SegmentationKind] = MappingProxyType(
             make=NoisySegmenter,
         ),
         "rednet": SegmentationKind(
-            description="the RedNet that ships, or your own with --weights",
+            description="the shipped RedNet, or your own with --weights",
             spec=SegmenterSpec(sensors=("rgb",)),
             config=NetworkConfig(),
             make=_make_network,
@@ -148,7 +148,7 @@ def find_segmentation(semantics: str, weights: Path | None) -> SegmentationKind:
         near = difflib.get_close_matches(semantics, KINDS, n=1)
         hint = f" Did you mean '{near[0]}'?" if near else ""
         raise ConfigError(
-            f"Unknown --semantics '{semantics}'.{hint} There is: {', '.join(KINDS)}, or your own as "
+            f"Unknown --semantics '{semantics}'.{hint} Available: {', '.join(KINDS)}, or your own as "
             "package.module:NAME."
         )
     if weights is not None and not isinstance(kind.config, NetworkConfig):

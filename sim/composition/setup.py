@@ -38,7 +38,7 @@ from stubborn.detection.verification import (
 
 @dataclass(frozen=True, kw_only=True)
 class VerificationConfig:
-    """How the agent verifies a candidate before it stops."""
+    """Selects how the agent verifies a candidate before it stops."""
 
     method: str = "naive-bayes"
     """`naive-bayes` (the paper's), `logistic`, `threshold` or `none`."""

@@ -318,6 +318,6 @@ def _with_changes(
 
 def _check_options(goal: str | None, render_mode: str | None) -> None:
     if goal is not None and goal not in GOAL_CATEGORIES:
-        raise EpisodeError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+        raise EpisodeError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
     if render_mode not in (None, "rgb_array"):
-        raise ConfigError(f"Unknown render_mode '{render_mode}'. There is: rgb_array.")
+        raise ConfigError(f"Unknown render_mode '{render_mode}'. Available: rgb_array.")

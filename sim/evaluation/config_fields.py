@@ -16,7 +16,7 @@ class Absent(enum.Enum):
 
 ABSENT = Absent.ABSENT
 Difference = tuple[str, Any, Any]
-"""Dotted path of a field, its value in the first object and in the second; `ABSENT` where there is none."""
+"""Dotted path of a field, its value in the first object and in the second; `ABSENT` in an object without it."""
 
 
 def differing_fields(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[Difference]:

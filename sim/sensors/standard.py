@@ -171,7 +171,7 @@ def _checked(sensor: Sensor) -> Sensor:
     unknown = [name for name in declared_fields(sensor) if name not in CONTEXT_FIELDS]
     if unknown:
         raise ConfigError(
-            f"Sensor '{sensor.name}': reads names '{unknown[0]}'. There is: {', '.join(CONTEXT_FIELDS)}; images are "
+            f"Sensor '{sensor.name}': reads names '{unknown[0]}'. Available: {', '.join(CONTEXT_FIELDS)}; images are "
             "declared in `images`."
         )
     if sensor.name in STANDARD_SENSORS and type(sensor) is not type(STANDARD_SENSORS[sensor.name]):
@@ -182,7 +182,7 @@ def _checked(sensor: Sensor) -> Sensor:
 def _standard_sensor(name: str) -> Sensor:
     if name not in STANDARD_SENSORS:
         raise ConfigError(
-            f"Unknown sensor '{name}'. There is: {', '.join(STANDARD_SENSORS)}, or an object with the interface "
+            f"Unknown sensor '{name}'. Available: {', '.join(STANDARD_SENSORS)}, or an object with the interface "
             "`sim.sensors.sensor.Sensor`."
         )
     return STANDARD_SENSORS[name]

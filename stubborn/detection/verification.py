@@ -125,7 +125,7 @@ class FittedVerifier:
             ConfigError: there is no such method, or the file is missing or holds something else.
         """
         if method not in METHODS:
-            raise ConfigError(f"Unknown verification '{method}'. There is: {', '.join((*METHODS, ACCEPT_ALL))}.")
+            raise ConfigError(f"Unknown verification '{method}'. Available: {', '.join((*METHODS, ACCEPT_ALL))}.")
         make, where = METHODS[method], f"Verifier file '{file}'"
         methods = read_json(file, _File, what="Verifier file").methods
         if method not in methods:
@@ -144,7 +144,7 @@ class FittedVerifier:
     def probability(self, goal: str, features: Features) -> float:
         """Returns the probability in [0, 1] that a candidate for this goal is true."""
         if goal not in GOAL_CATEGORIES:
-            raise ConfigError(f"Unknown goal '{goal}'. There is: {', '.join(GOAL_CATEGORIES)}.")
+            raise ConfigError(f"Unknown goal '{goal}'. Available: {', '.join(GOAL_CATEGORIES)}.")
         return self.by_category.get(goal, self.pooled).probability(features)
 
     def accepts(self, goal: str, features: Features) -> bool:

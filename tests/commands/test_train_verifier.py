@@ -180,7 +180,7 @@ def test_val_and_test_are_only_judged():
 
 
 def test_segmentation_that_needs_no_verification_is_refused():
-    with pytest.raises(ConfigError, match=r"'gt' makes no errors to learn\. There is: noisy, rednet"):
+    with pytest.raises(ConfigError, match=r"'gt' makes no errors to learn\. Available: noisy, rednet"):
         train_verifier.main(train_verifier.Args(semantics="gt"))
 
 

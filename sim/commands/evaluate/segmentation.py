@@ -63,7 +63,7 @@ class Args:
     card: cli.OutFile | None = None
     """File of the model card to write."""
     curves: tuple[Path, ...] = ()
-    """With --card: folders of the trainings that led to the network, first one first, for a picture of the curves."""
+    """With --card: folders of the trainings that led to the network, in their order, for a picture of the curves."""
     block_px: cli.Count | None = None
     """Factor by which the 640 x 480 image is shrunk, in place of the stored one; --calibrate stores it."""
     mirror: bool = False
@@ -76,7 +76,7 @@ class Args:
 
 @dataclass
 class Predictions:
-    """What a network predicted on the views of some folders."""
+    """The predictions of a network on the views of some folders."""
 
     matrix: Int64[np.ndarray, "classes classes"]
     """Confusion matrix, see `stubborn.segmentation.evaluation.confusion`."""
@@ -91,7 +91,7 @@ class Predictions:
 
 
 def main(args: Args) -> int:
-    """Evaluates, prints and, where asked to, writes; returns the exit status."""
+    """Evaluates the network, prints and writes the results; returns the exit status."""
     for name in ("threads", "block_px"):
         value = getattr(args, name)
         if value is not None and value < 1:

@@ -34,7 +34,7 @@ COMPARED = ("semantics", "detector", "split_identity")
 
 @dataclass(frozen=True, kw_only=True)
 class LogOptions:
-    """The options that commands which play for a log have in common."""
+    """The options that all commands with a log of episodes have in common."""
 
     split: str
     """A shipped split, or a folder with the same layout (`stubborn episodes`)."""
@@ -64,7 +64,7 @@ def check(args: LogOptions) -> None:
     """Raises ConfigError for an exact kind of segmentation, and for a fit on val or test."""
     if not find_segmentation(args.semantics, args.weights).spec.needs_verification:
         kinds = [name for name, kind in KINDS.items() if kind.spec.needs_verification]
-        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. There is: {', '.join(kinds)}.")
+        raise ConfigError(f"--semantics '{args.semantics}' makes no errors to learn. Available: {', '.join(kinds)}.")
     if args.split in ("val", "test") and not args.judge:
         raise ConfigError(f"Nothing is fitted on '{args.split}'; use --judge there.")
 
@@ -102,12 +102,12 @@ def lines_of(
     """Returns the lines of the first `args.episodes` episodes, by id; those that are not in the log yet are run now.
 
     Args:
-        args: with 0 minutes no episode is run, and the log is read whichever code made it, with whichever seed.
+        args: with 0 minutes no episode is run, and the log is read whatever its code and seed.
         split: the split of `args`.
         log: folder of the log.
         line_type: the fields of a line.
         runner: runs an episode and returns its line.
-        nothing: what the line of an episode holds whose worker died.
+        nothing: content of the line of an episode whose worker died.
 
     Raises:
         ConfigError: the log is of another split or of other segmentation.

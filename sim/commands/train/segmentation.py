@@ -108,7 +108,7 @@ class Args:
     precision: str = "auto"
     """bf16, fp32, or auto: bf16 where the processor or the GPU computes with it."""
     rare_share: cli.Share = 0.0
-    """Views with a goal category that fewer than this share of the views show are used more often; 0: all once."""
+    """Views with a goal category that a smaller share of the views shows are used more often; 0: each is used once."""
     balance: cli.Share = 0.0
     """Share of the views that are drawn by an object: category, then style, then object; windows show it. Views need
     --extras instances. 0: all views in turn, as --rare-share says."""
@@ -176,7 +176,7 @@ def main(args: Args) -> int:
 
 
 class _Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
+    """The progress of a run, as `state.pt` holds it."""
 
     size: str
     step: ReadCount
@@ -354,7 +354,7 @@ class Trainer:
         return float(loss.detach())
 
     def _loss(self, rgb: Tensor, second: Tensor, target: Tensor, pixels: Tensor | None) -> Tensor:
-        """Returns the loss; with --subpixel, the finest output is trained on the pixel of the blocks that is drawn."""
+        """Returns the loss; with --subpixel, the finest output is trained on the sampled pixel of each block."""
         if not (self.args.subpixel and isinstance(self.model, RedNet)):
             return pyramid_loss(self.model.pyramid(rgb, second), target, self.weights, pixels=pixels)
         row, column = divmod(int(np.random.default_rng([self.args.seed, 2, self.step]).integers(4)), 2)

@@ -54,9 +54,9 @@ from sim.commands.train.training_files import (
 )
 
 LAST_EPISODES = 300
-"""A row of the curve is a mean over so many episodes."""
+"""Number of episodes over which a row of the curve is a mean."""
 SMOOTHED = 12
-"""The thick line of a curve is a mean over one of so many parts of the training."""
+"""The thick line of a curve is a running mean over the training divided by this number."""
 PLANS_IN_MEMORY = 256
 MAY_CHANGE = ("out", "minutes", "goals", "beside", "print_s", "save_s")
 """Options in which a continued run may differ from its start."""
@@ -74,7 +74,7 @@ class Args:
     minutes: cli.Positive = 90.0
     """Time of the training; that of earlier runs of the same folder counts."""
     goals: cli.Count = 10_000_000
-    """Most long-term goals of the training, all environments together."""
+    """Largest number of long-term goals of the training, all environments together."""
     seed: cli.Seed = 0
     """Seed of the network, of its exploration and of the episodes."""
     out: cli.OutFolder = Path("runs/semexp")
@@ -129,11 +129,11 @@ def _require_curve(file: Path) -> None:
         return
     with file.open(newline="", encoding="utf-8", errors="replace") as stream:
         if not set(_DRAWN) <= set(next(csv.reader(stream), [])):
-            raise ConfigError(f"--beside: '{file}' is no curve of this command.")
+            raise ConfigError(f"--beside: '{file}' is not a curve of this command.")
 
 
 class _Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
+    """The progress of a run, as `state.pt` holds it."""
 
     goals: Count
     steps: Count
@@ -259,7 +259,7 @@ class _Watch(BaseCallback):
         return not self.run.is_over
 
     def _on_rollout_start(self) -> None:
-        """Saves now and not at the end of the rollout before, whose goals the network had not been trained on then."""
+        """Saves here: at the end of a rollout, the network has not yet been trained on its goals."""
         now_s = time.perf_counter()
         self.run.trained = self.run.goals, self.run.steps
         if now_s - self._saved_s >= self.run.args.save_s:

@@ -34,17 +34,17 @@ WARM_UP_STEPS = 100
 
 
 def stride(count: int, most: int) -> int:
-    """Returns the least step through `count` items, at least one, that takes at most `most` of them; 0: all."""
+    """Returns the smallest stride, at least 1, that takes at most `most` of `count` items; `most` 0: all of them."""
     return max(1, -(-count // most)) if most else 1
 
 
 class Progress(msgspec.Struct):
-    """How far a run is, as `state.pt` holds it."""
+    """The progress of a run, as `state.pt` holds it."""
 
     step: Count
     spent_s: Number
     best: float
-    """Least loss of an evaluation; inf before the first."""
+    """Smallest loss of an evaluation; inf before the first."""
     evaluated_s: Number
     options: dict[str, str]
     """See `options_of`."""
@@ -121,12 +121,12 @@ class TimedTraining(ABC):
             parts.append(self.train_once())
             progress.spent_s = time.perf_counter() - start_s
             if len(parts) == LOG_EVERY_STEPS:
-                told = self._log(parts)
+                message = self._log(parts)
                 parts = []
                 if time.perf_counter() - printed_s >= PRINT_EVERY_S:
                     printed_s = time.perf_counter()
                     left = f"{max(0.0, limit_s - progress.spent_s) / 60:.1f} of {self.args.minutes:g} min left"
-                    print(f"step {progress.step}, {left}: {told}", flush=True)
+                    print(f"step {progress.step}, {left}: {message}", flush=True)
             if progress.spent_s - progress.evaluated_s > max(EVALUATE_EVERY * limit_s, 10.0 * self._evaluation_s):
                 self._evaluate()
             if time.perf_counter() - saved_s > SAVE_EVERY_S:
@@ -159,11 +159,11 @@ class TimedTraining(ABC):
         progress, began_s = self.progress, time.perf_counter()
         progress.evaluated_s = progress.spent_s
         model: Any = self.average.module.eval()
-        loss, found, told = self.evaluate(model)
+        loss, found, message = self.evaluate(model)
         row = {"step": progress.step, "minutes": round(progress.spent_s / 60, 2)} | found
         row = {key: round(value, 4) if isinstance(value, float) else value for key, value in row.items()}
         append_row(self.out / "val.csv", row)
-        print(f"held back, step {progress.step}: {told}", flush=True)
+        print(f"held back, step {progress.step}: {message}", flush=True)
         if loss < progress.best:
             progress.best = loss
             options = {key: str(value) for key, value in asdict(self.args).items()}
